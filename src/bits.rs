@@ -224,8 +224,8 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
         TypedKind::I16 => word.map(|word| word.cast_signed().to_string()),
         TypedKind::U32 => long.map(|long| long.to_string()),
         TypedKind::I32 => long.map(|long| long.cast_signed().to_string()),
-        TypedKind::F32 => long.map(|long| float(f32::from_bits(long))),
-        TypedKind::Binary => one.map(binary),
+        TypedKind::F32 => long.map(|long| float_text(f32::from_bits(long))),
+        TypedKind::Binary => one.map(binary_text),
         TypedKind::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(NOT_PRINTABLE)).collect()),
     }
 }
@@ -238,13 +238,13 @@ pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }
 
-pub fn binary(byte: u8) -> String {
+pub fn binary_text(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
 /// Returns the shortest representation that parses back to the same number, with an exponent if it would otherwise be
 /// long.
-fn float(value: f32) -> String {
+fn float_text(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }
 }

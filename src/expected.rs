@@ -8,9 +8,9 @@ use thiserror::Error;
 
 /// The set of allowed values, reported when an invalid value is given.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Expected {
+pub enum AllowedValues {
     /// One of a few keywords, which the message lists.
-    #[error("{}", alternatives(.0))]
+    #[error("{}", join_alternatives(.0))]
     Words(Cow<'static, [&'static str]>),
     #[error("one of {}", .0.join(", "))]
     OneOf(Vec<String>),
@@ -199,23 +199,23 @@ pub struct Limit {
     thousandths: i128,
 }
 
-impl Expected {
+impl AllowedValues {
     pub const fn words(words: &'static [&'static str]) -> Self {
-        Expected::Words(Cow::Borrowed(words))
+        AllowedValues::Words(Cow::Borrowed(words))
     }
 
     pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
-        Expected::Range { quantity, low: low.into(), high: high.into() }
+        AllowedValues::Range { quantity, low: low.into(), high: high.into() }
     }
 
     /// Creates a range of whole numbers.
     pub const fn between(low: i128, high: i128) -> Self {
-        Expected::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
+        AllowedValues::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
     /// Creates a range of numbers without a unit.
     pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
-        Expected::range(Quantity::Number, low, high)
+        AllowedValues::range(Quantity::Number, low, high)
     }
 }
 
@@ -246,7 +246,7 @@ impl fmt::Display for Limit {
     }
 }
 
-fn alternatives(words: &[&str]) -> String {
+fn join_alternatives(words: &[&str]) -> String {
     match words {
         [before @ .., last] if !before.is_empty() => format!("{} or {last}", before.join(", ")),
         words => words.concat(),
@@ -260,15 +260,15 @@ mod tests {
     #[test]
     fn words_and_limits_are_printed() {
         let cases = [
-            (Expected::words(&["on"]), "on"),
-            (Expected::words(&["auto", "on", "off"]), "auto, on or off"),
-            (Expected::range(Quantity::Milliseconds, 0, 2000), "a time in milliseconds from 0 to 2000"),
+            (AllowedValues::words(&["on"]), "on"),
+            (AllowedValues::words(&["auto", "on", "off"]), "auto, on or off"),
+            (AllowedValues::range(Quantity::Milliseconds, 0, 2000), "a time in milliseconds from 0 to 2000"),
             (
-                Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
+                AllowedValues::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
                 "a voltage in volts from 4.75 to 12.5",
             ),
-            (Expected::Seconds { low: Limit::thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
-            (Expected::BusAddress { last: 0x5F }, "an address from 0x40 to 0x5F"),
+            (AllowedValues::Seconds { low: Limit::thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
+            (AllowedValues::BusAddress { last: 0x5F }, "an address from 0x40 to 0x5F"),
         ];
         for (expected, words) in cases {
             assert_eq!(expected.to_string(), words);

@@ -12,7 +12,7 @@ fn main() -> ExitCode {
         Invocation::Command(status) => ExitCode::from(status),
         Invocation::Window(start) => match ui::run(start, program.studio, program.tabs) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(why) => ExitCode::from(cli::no_window(&why)),
+            Err(why) => ExitCode::from(cli::report_window_error(&why)),
         },
     }
 }

@@ -4,21 +4,23 @@
 
 mod values;
 
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
-pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH, Values, Whole, Words, number};
+pub use values::{
+    ANY, Checked, Decimal, Milliseconds, Millivolts, OptionalValue, SWITCH, Values, Whole, Words, number,
+};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub key: String,
     /// The refused value as the user wrote it.
     pub value: String,
-    pub allowed: Expected,
+    pub allowed: AllowedValues,
 }
 
 impl Refused {
     /// Creates the error for a refused value; `allowed` describes the accepted values.
-    pub fn new(key: &str, value: impl ToString, allowed: Expected) -> Self {
+    pub fn new(key: &str, value: impl ToString, allowed: AllowedValues) -> Self {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
 

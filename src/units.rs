@@ -97,7 +97,7 @@ impl Parity {
     }
 
     /// Returns the letter that stands between the numbers of data bits and stop bits, as in `8E1`.
-    pub const fn letter(self) -> char {
+    pub const fn parity_letter(self) -> char {
         match self {
             Parity::None => 'N',
             Parity::Even => 'E',
@@ -133,7 +133,7 @@ impl CharacterFormat {
 
 impl fmt::Display for CharacterFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} 8{}1", self.baud, self.parity.letter())
+        write!(f, "{} 8{}1", self.baud, self.parity.parity_letter())
     }
 }
 

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use encoder_studio::analysis::capture::TableHints;
 use encoder_studio::analysis::diagnosis::{Record, diagnose};
 use encoder_studio::analysis::ellipse::Ellipse;
-use encoder_studio::analysis::lissajous::{Density, Square};
+use encoder_studio::analysis::lissajous::{PlotSquare, SampleDensity};
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
 use encoder_studio::analysis::signal_analysis::Analysis;
@@ -70,7 +70,7 @@ pub(crate) fn run() {
     let record = Record { samples, references_v: None, periods: Some(1000) };
     println!("{:<28} {:>8.3}", "diagnosis", median(ROUNDS, || diagnose(&record, Ok(&analysis), &Limits::HIPERFACE)));
     let density = || {
-        let mut density = Density::new(Square::around(&sine, &cosine).unwrap(), 256).unwrap();
+        let mut density = SampleDensity::new(PlotSquare::around(&sine, &cosine).unwrap(), 256).unwrap();
         density.add(&sine, &cosine);
         density
     };

@@ -8,8 +8,10 @@ use crate::median;
 use std::hint::black_box;
 
 use encoder_studio::analysis::history::{History, Kind, Part};
-use encoder_studio::analysis::{Time, Unwrap};
-use encoder_studio::buses::bridge::protocol::{BissData, BissStatus, Continuity, Data, Gap, Message, Receiver};
+use encoder_studio::analysis::{PositionUnwrapper, SampleTime};
+use encoder_studio::buses::bridge::protocol::{
+    BissData, BissStatus, Continuity, Message, PacketGap, Receiver, StreamData,
+};
 use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, PositionData};
 
 /// Frames in a batch, and the number of its decodings in one measurement.
@@ -92,7 +94,7 @@ fn sent(layout: &Layout) -> Vec<u8> {
         let values = (first_index..count.min(first_index + 56)).map(frame).collect();
         let t0_us = u64::from(first_index) * u64::from(PERIOD_US);
         let data = BissData { first_index, t0_us, period_us: PERIOD_US, lost: 0, width: 6, values };
-        Message::Data(Data::Biss(data)).emit(0).emit()
+        Message::Data(StreamData::Biss(data)).emit(0).emit()
     };
     (0..count).step_by(56).flat_map(packet).collect()
 }
@@ -101,15 +103,15 @@ fn sent(layout: &Layout) -> Vec<u8> {
 fn receive(bytes: &[u8], layout: &Layout) -> u64 {
     let mut receiver = Receiver::default();
     let mut continuity = Continuity::at_start();
-    let mut unwrap = Unwrap::rotary(1 << 33).unwrap();
+    let mut unwrap = PositionUnwrapper::rotary(1 << 33).unwrap();
     let mut history = History::new(&[Kind::Whole], 4_000_000);
     let (mut times, mut steps) = (Vec::new(), Vec::new());
     for portion in bytes.chunks(512) {
         receiver.push(portion);
         while let Some(packet) = receiver.next_packet() {
             let Ok(Message::Data(data)) = Message::parse(&packet) else { panic!("nothing else was sent") };
-            assert_eq!(continuity.follow(&data), Gap::None);
-            let Data::Biss(data) = data else { panic!("nothing else was sent") };
+            assert_eq!(continuity.follow(&data), PacketGap::None);
+            let StreamData::Biss(data) = data else { panic!("nothing else was sent") };
             times.clear();
             steps.clear();
             for (at, (_, raw)) in data.values.iter().enumerate() {
@@ -117,7 +119,7 @@ fn receive(bytes: &[u8], layout: &Layout) -> u64 {
                 let position = i64::try_from(layout.steps(&reading.unwrap())).unwrap();
                 steps.push(unwrap.next(position).unwrap().steps);
                 let nanoseconds = (data.t0_us as i64 + at as i64 * i64::from(data.period_us)) * 1000;
-                times.push(Time::from_nanoseconds(nanoseconds));
+                times.push(SampleTime::from_nanoseconds(nanoseconds));
             }
             history.append(&times, &[Part::whole(&steps)]).unwrap();
         }

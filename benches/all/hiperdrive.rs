@@ -13,16 +13,16 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, unbounded};
 use encoder_studio::buses::ethernet_ip::protocol::{
-    ForwardClose, IoPacket, Owner, Path, RealTimeFormat, RequestTimeout,
+    EPath, ForwardClose, IoPacket, Owner, RealTimeFormat, RequestTimeout,
 };
 use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Intent, MotionRequest, Permit};
-use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, Opened, Rules};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionIntent, MotionRequest, Permit, SpeedTorque};
+use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, MotionRules, Opened};
 use encoder_studio::devices::hiperdrive::protocol::{
-    ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
+    ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutputImage, Topology, Variant,
 };
-use encoder_studio::devices::hiperdrive::sim::{Setup, Station};
+use encoder_studio::devices::hiperdrive::sim::{Station, StationConfig};
 use encoder_studio::link::{Clock, DatagramChannel, DatagramPort, RealClock, UdpPort};
 
 const INTERVAL: Duration = Duration::from_millis(10);
@@ -32,7 +32,7 @@ const TO_ORIGINATOR: u32 = 0x0003_0001;
 
 fn opened(port: u16) -> Opened {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };
+    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::assemblies(104, 100, 101) };
     Opened {
         to_target_id: TO_TARGET,
         to_originator_id: TO_ORIGINATOR,
@@ -63,7 +63,7 @@ impl Target {
         let ends = end.clone();
         let thread = spawn(move || {
             let clock = RealClock::start();
-            let mut station = Station::new(Setup::default());
+            let mut station = Station::new(StationConfig::default());
             station.open(clock.now(), INTERVAL * 8);
             let (mut due, mut sequence) = (Instant::now() + INTERVAL, 0);
             let mut buffer = [0; 256];
@@ -82,8 +82,8 @@ impl Target {
                 let Ok((count, _)) = socket.recv_from(&mut buffer) else { continue };
                 let at = Instant::now();
                 let packet = IoPacket::parse(&buffer[..count], RealTimeFormat::Header).unwrap();
-                let image = OutImage::parse(&packet.data, LAYOUT).unwrap();
-                let word = image.drives[0].control().unwrap();
+                let image = OutputImage::parse(&packet.data, LAYOUT).unwrap();
+                let word = image.drives[0].control_word().unwrap();
                 station.cyclic(clock.now(), &image, true);
                 sender.send((at, word)).unwrap();
             }
@@ -141,7 +141,7 @@ impl DeviceConnection for Ours {
 
 /// A loop that sleeps, checks and sends.
 struct Naive {
-    shared: Arc<Mutex<(Intent, Histogram)>>,
+    shared: Arc<Mutex<(MotionIntent, Histogram)>>,
     clock: Arc<RealClock>,
     end: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -154,7 +154,7 @@ impl DeviceConnection for Naive {
 
     fn intend(&self, wish: MotionRequest) {
         let intent = &mut self.shared.lock().unwrap().0;
-        *intent = Intent { request: wish, number: intent.number + 1, refreshed: self.clock.now(), ..*intent };
+        *intent = MotionIntent { request: wish, number: intent.number + 1, refreshed: self.clock.now(), ..*intent };
     }
 
     fn refresh(&self) {
@@ -184,7 +184,7 @@ fn port() -> (Box<dyn DatagramChannel>, Target, Arc<RealClock>) {
 fn ours() -> (Box<dyn DeviceConnection>, Target) {
     let (packets, target, clock) = port();
     let motion = Motion::new(clock.clone());
-    let rules = Rules {
+    let rules = MotionRules {
         requested: Some(1),
         scale: Some((256, 1)),
         limits: Some((-33_000_000, 33_000_000)),
@@ -200,7 +200,7 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
 
 fn naive() -> (Box<dyn DeviceConnection>, Target) {
     let (mut packets, target, clock) = port();
-    let intent = Intent::rest(DriveNumber::FIRST, 1, clock.now());
+    let intent = MotionIntent::rest(DriveNumber::FIRST, 1, clock.now());
     let shared = Arc::new(Mutex::new((intent, Histogram::default())));
     let end = Arc::new(AtomicBool::new(false));
     let (ends, cell, time) = (end.clone(), shared.clone(), clock.clone());
@@ -228,7 +228,7 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     let mut took = Vec::with_capacity(count);
     sleep(INTERVAL * 5);
     while took.len() < count {
-        way.intend(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+        way.intend(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
         let held = Instant::now() + Duration::from_micros(random.u64(120_000..160_000));
         while Instant::now() < held {
             way.refresh();

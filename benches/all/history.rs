@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::{Flags, Grid, History, Kind, Part, Picture};
-use encoder_studio::analysis::{Time, Unwrap};
+use encoder_studio::analysis::{PositionUnwrapper, SampleTime};
 
 const SAMPLES: usize = 10_000_000;
 const SIGNALS: usize = 4;
@@ -55,7 +55,7 @@ struct NaiveColumn {
 }
 
 impl Naive {
-    fn append(&mut self, times: &[Time], columns: &[Vec<f64>]) {
+    fn append(&mut self, times: &[SampleTime], columns: &[Vec<f64>]) {
         self.times.extend(times.iter().map(|time| time.nanoseconds()));
         self.columns.resize_with(columns.len(), Default::default);
         for (NaiveColumn { values, levels }, new) in self.columns.iter_mut().zip(columns) {
@@ -102,7 +102,7 @@ fn append(batch: usize) {
         for which in 0..2 {
             let mut total = Duration::ZERO;
             for (number, least) in least[which].iter_mut().enumerate() {
-                let times: Vec<Time> = times(number * batch, batch);
+                let times: Vec<SampleTime> = times(number * batch, batch);
                 let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values)).collect();
                 let began = Instant::now();
                 if which == 0 {
@@ -129,7 +129,7 @@ fn append(batch: usize) {
 }
 
 /// Returns the time of all batches, the median, and the worst one.
-fn copies(times: &[Time], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
+fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
     let mut least = vec![Duration::MAX; batches];
     let mut totals: Vec<Duration> = (0..ROUNDS)
         .map(|_| {
@@ -226,15 +226,16 @@ fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind)
     let began = Instant::now();
     let mut history = History::new(&vec![kind; columns], SAMPLES).with_longest_pause(period * 10);
     let reals: Vec<Vec<f64>> = (0..columns).map(|signal| signal_of(signal, BATCH)).collect();
-    let mut unwrap = Unwrap::rotary(RANGE).unwrap();
+    let mut unwrap = PositionUnwrapper::rotary(RANGE).unwrap();
     let (mut most, mut breaks_seen, mut breaks_made, mut wrong) = (0, 0, 0, 0_u64);
     let (mut pauses, mut truth, mut wholes) = (0_i64, 0_i64, Vec::new());
     for number in 0..samples / BATCH {
         let pause = number % PAUSE == PAUSE - 1;
         pauses += i64::from(pause);
         breaks_made += u64::from(pause);
-        let time = |at: usize| Time::from_nanoseconds((number * BATCH + at) as i64 * period + pauses * 1_000_000_000);
-        let times: Vec<Time> = (0..BATCH).map(time).collect();
+        let time =
+            |at: usize| SampleTime::from_nanoseconds((number * BATCH + at) as i64 * period + pauses * 1_000_000_000);
+        let times: Vec<SampleTime> = (0..BATCH).map(time).collect();
         if kind == Kind::Whole {
             wholes.clear();
             wholes.extend((0..BATCH).map(|_| {
@@ -299,9 +300,11 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
     history
 }
 
-fn times(start: usize, count: usize) -> Vec<Time> {
+fn times(start: usize, count: usize) -> Vec<SampleTime> {
     // A little uneven, as on a real line.
-    (start..start + count).map(|at| Time::from_nanoseconds(at as i64 * PERIOD + (at * 7919 % 50_000) as i64)).collect()
+    (start..start + count)
+        .map(|at| SampleTime::from_nanoseconds(at as i64 * PERIOD + (at * 7919 % 50_000) as i64))
+        .collect()
 }
 
 fn signal_of(signal: usize, count: usize) -> Vec<f64> {

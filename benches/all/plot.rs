@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use egui::{Context, RawInput, Rect, Vec2, pos2};
-use encoder_studio::analysis::Time;
+use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::history::{Flags, Kind, Part};
 use encoder_studio::app::recorder::{self, GroupId, Recorder, Scale, Series};
 use encoder_studio::app::{ColorScheme, Language, RecorderOwner, SessionId, Text, ThemeData};
@@ -33,13 +33,13 @@ pub(crate) fn run(parts: &[String]) {
         SIZE.y
     );
     let mut bench = Bench::new();
-    let all = (Time::ORIGIN, Time::from_nanoseconds(SAMPLES as i64 * PERIOD));
+    let all = (SampleTime::ORIGIN, SampleTime::from_nanoseconds(SAMPLES as i64 * PERIOD));
     let span = all.1.nanoseconds_since(all.0);
     // Each frame shows another stretch, so that nothing of the previous one can be reused.
     let stretch = |share: f64, round: usize| {
         let length = (span as f64 * share) as i64;
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
-        recorder::RecorderAction::Look(Time::from_nanoseconds(from), Time::from_nanoseconds(from + length))
+        recorder::RecorderAction::Look(SampleTime::from_nanoseconds(from), SampleTime::from_nanoseconds(from + length))
     };
     for (label, share) in [
         ("all visible", 1.0),
@@ -97,7 +97,8 @@ fn filled() -> (Recorder, GroupId) {
 }
 
 fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, flagged: bool) {
-    let times: Vec<Time> = (first..first + count).map(|at| Time::from_nanoseconds(at as i64 * PERIOD)).collect();
+    let times: Vec<SampleTime> =
+        (first..first + count).map(|at| SampleTime::from_nanoseconds(at as i64 * PERIOD)).collect();
     let columns: Vec<Vec<f64>> =
         (0..SIGNALS).map(|signal| (first..first + count).map(|at| value(signal, at)).collect()).collect();
     let flags: Vec<Flags> =

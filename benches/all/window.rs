@@ -108,7 +108,7 @@ fn stream() {
             };
             if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {
                 let (pictures, positions, lost) =
-                    (self.took.len(), encoder.record.positions(), encoder.record.dropped());
+                    (self.took.len(), encoder.record.positions(), encoder.record.dropped_count());
                 let middle = median(&mut self.took) as f64 / 1e3;
                 let most = self.took[self.took.len() - 1] as f64 / 1e3;
                 let seconds = STREAMED.as_secs();
@@ -163,7 +163,7 @@ fn write_capture(path: &std::path::Path) {
 
 /// Runs the complete window with the capture in its scope: every frame another stretch, as fast as possible.
 fn plot() {
-    use encoder_studio::analysis::Time;
+    use encoder_studio::analysis::SampleTime;
     use encoder_studio::app::{Action, Environment, Studio, ThemeData, recorder};
     use encoder_studio::kinds::program;
     use encoder_studio::signals::state as signals;
@@ -187,7 +187,7 @@ fn plot() {
                 let share = [1.0, 0.5, 0.1, 1e-3][self.times.len() % 4];
                 let length = (span as f64 * share) as i64;
                 let from = (span - length) / 300 * (self.times.len() % 300) as i64;
-                let (from, to) = (Time::from_nanoseconds(from), Time::from_nanoseconds(from + length));
+                let (from, to) = (SampleTime::from_nanoseconds(from), SampleTime::from_nanoseconds(from + length));
                 let mailbox = studio.mailbox();
                 mailbox.send(Action::Recorder(
                     encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),

@@ -14,7 +14,7 @@ pub struct Phase(f64);
 impl Phase {
     /// Returns the phase of a position in periods, which is the fractional part of a position of either sign. Returns
     /// `None` if the position is not finite.
-    pub fn of_periods(periods: f64) -> Option<Self> {
+    pub fn from_periods(periods: f64) -> Option<Self> {
         // The remainder of -1e-20 rounds to 1.
         let phase = periods.rem_euclid(1.0);
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
@@ -49,7 +49,7 @@ impl Phase {
 /// Returns the exact phase of a pair of offset-free voltages, or `None` without a signal, which means that both
 /// voltages are zero or one is not a number.
 pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
-    if sine == 0.0 && cosine == 0.0 { None } else { Phase::of_periods(sine.atan2(cosine) / TAU) }
+    if sine == 0.0 && cosine == 0.0 { None } else { Phase::from_periods(sine.atan2(cosine) / TAU) }
 }
 
 /// Table of atan(t) at evenly spaced nodes from 0 to 1, with linear interpolation between them.
@@ -83,7 +83,7 @@ impl OctantTable {
         if sine < 0.0 {
             angle = TAU - angle;
         }
-        Phase::of_periods(angle / TAU)
+        Phase::from_periods(angle / TAU)
     }
 
     /// Returns the largest error of linear interpolation between two nodes, in radians, which is h²/8 · 3√3/8.
@@ -167,11 +167,11 @@ mod tests {
 
     #[test]
     fn a_phase_is_always_below_one() {
-        assert_eq!(Phase::of_periods(-1e-20), Phase::of_periods(0.0));
-        assert_eq!(Phase::of_periods(3.25).unwrap().periods(), 0.25);
-        assert_eq!(Phase::of_periods(-0.25).unwrap().degrees(), 270.0);
-        assert_eq!(Phase::of_periods(1.0 - f64::EPSILON / 2.0).unwrap().step(32), u32::MAX);
-        assert_eq!(Phase::of_periods(1.0 - f64::EPSILON / 2.0).unwrap().nearest_step(16), 0);
-        assert_eq!(Phase::of_periods(f64::NAN), None);
+        assert_eq!(Phase::from_periods(-1e-20), Phase::from_periods(0.0));
+        assert_eq!(Phase::from_periods(3.25).unwrap().periods(), 0.25);
+        assert_eq!(Phase::from_periods(-0.25).unwrap().degrees(), 270.0);
+        assert_eq!(Phase::from_periods(1.0 - f64::EPSILON / 2.0).unwrap().step(32), u32::MAX);
+        assert_eq!(Phase::from_periods(1.0 - f64::EPSILON / 2.0).unwrap().nearest_step(16), 0);
+        assert_eq!(Phase::from_periods(f64::NAN), None);
     }
 }

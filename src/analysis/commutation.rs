@@ -15,7 +15,7 @@ pub struct Motor {
 
 /// Result of energising a second vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SecondVector {
+pub struct SecondVectorResult {
     /// Number of pole pairs derived from the movement, rounded; 0 if the shaft has moved by more than an electrical
     /// turn.
     pub pole_pairs: u32,
@@ -28,7 +28,7 @@ impl ElectricalAngle {
     pub fn from_turns(turns: f64) -> Option<Self> {
         const STEPS: f64 = 4_294_967_296.0;
         // 0.999… may round to a whole turn, which is equivalent to 0.
-        Phase::of_periods(turns).map(|phase| ElectricalAngle((phase.periods() * STEPS).round() as u64 as u32))
+        Phase::from_periods(turns).map(|phase| ElectricalAngle((phase.periods() * STEPS).round() as u64 as u32))
     }
 
     /// Creates an angle from the number stored in the encoder's memory.
@@ -78,12 +78,12 @@ impl Motor {
     /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
     /// The distance must be below ½, or the shaft may turn the other way. Returns `None` if the shaft has not moved or
     /// the distance is zero.
-    pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVector> {
+    pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVectorResult> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
         let pole_pairs = (electrical_turns / moved).abs().round();
         let sensible = ratio.is_finite() && ratio != 0.0 && pole_pairs.is_finite();
-        sensible.then_some(SecondVector { pole_pairs: pole_pairs as u32, ratio })
+        sensible.then_some(SecondVectorResult { pole_pairs: pole_pairs as u32, ratio })
     }
 
     /// Converts periods to the position within one revolution. Whole revolutions are dropped because they would cost
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     fn phase(periods: f64) -> Phase {
-        Phase::of_periods(periods).unwrap()
+        Phase::from_periods(periods).unwrap()
     }
 
     #[test]
@@ -146,10 +146,10 @@ mod tests {
     fn a_second_vector_yields_pole_pairs_and_phase_order() {
         // With four pole pairs, a quarter of an electrical turn is 1/16 revolution: 64 of 1024 periods.
         let motor = Motor::new(1024, 4).unwrap();
-        assert_eq!(motor.second_vector(64.0, 0.25), Some(SecondVector { pole_pairs: 4, ratio: 1.0 }));
+        assert_eq!(motor.second_vector(64.0, 0.25), Some(SecondVectorResult { pole_pairs: 4, ratio: 1.0 }));
         let exchanged = motor.second_vector(-64.0, 0.25).unwrap();
         assert_eq!((exchanged.pole_pairs, exchanged.ratio), (4, -1.0));
-        assert_eq!(motor.second_vector(128.0, 0.25), Some(SecondVector { pole_pairs: 2, ratio: 2.0 }));
+        assert_eq!(motor.second_vector(128.0, 0.25), Some(SecondVectorResult { pole_pairs: 2, ratio: 2.0 }));
         assert_eq!((motor.second_vector(0.0, 0.25), motor.second_vector(64.0, 0.0)), (None, None));
     }
 }

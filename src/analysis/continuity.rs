@@ -16,7 +16,7 @@ const MOSTLY: f64 = 0.9;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
     /// Missing samples, or `None` if the capture has no gap or no times.
-    pub missing: Option<Missing>,
+    pub missing: Option<MissingSamples>,
     /// Index of the first sample with a time earlier than that of the previous sample, counted from 0.
     pub back: Option<usize>,
     /// Total time in continuous sections in seconds, or `None` without times.
@@ -26,7 +26,7 @@ pub struct Continuity {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Missing {
+pub struct MissingSamples {
     pub gaps: usize,
     pub longest_s: f64,
 }
@@ -48,7 +48,7 @@ impl Continuity {
             if step < 0.0 {
                 continuity.back = continuity.back.or(Some(before + 1));
             } else {
-                let missing = continuity.missing.get_or_insert(Missing { gaps: 0, longest_s: 0.0 });
+                let missing = continuity.missing.get_or_insert(MissingSamples { gaps: 0, longest_s: 0.0 });
                 missing.gaps += 1;
                 missing.longest_s = missing.longest_s.max(step);
             }

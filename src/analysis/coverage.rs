@@ -27,15 +27,15 @@ pub struct Coverage {
 
 /// Angle accumulated over several periods, as the quarters so far and the vector within the current quarter.
 #[derive(Clone, Copy)]
-pub(super) struct Angle {
+pub(super) struct UnwrappedAngle {
     quarters: i64,
     sine: f64,
     cosine: f64,
 }
 
-impl Angle {
+impl UnwrappedAngle {
     fn of(sine: f64, cosine: f64) -> Self {
-        Angle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
+        UnwrappedAngle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
     }
 
     /// Returns the angle advanced to the given voltages, by less than half a period.
@@ -47,10 +47,10 @@ impl Angle {
             2 if self.cosine * sine < self.sine * cosine => -2,
             step => i64::from(step),
         };
-        Angle { quarters: self.quarters + step, sine, cosine }
+        UnwrappedAngle { quarters: self.quarters + step, sine, cosine }
     }
 
-    fn is_ahead_of(&self, other: &Angle) -> bool {
+    fn is_ahead_of(&self, other: &UnwrappedAngle) -> bool {
         self.quarters > other.quarters
             || (self.quarters == other.quarters && other.cosine * self.sine > other.sine * self.cosine)
     }
@@ -64,14 +64,14 @@ impl Angle {
 
 /// Path of an angle: its extremes, total length and reversals.
 struct AnglePath {
-    top: Angle,
-    bottom: Angle,
-    high: Angle,
-    low: Angle,
+    top: UnwrappedAngle,
+    bottom: UnwrappedAngle,
+    high: UnwrappedAngle,
+    low: UnwrappedAngle,
     /// Angle at the start of the section. `turned` is the angle at the last reversal, and `here` is the current angle.
-    begun: Angle,
-    turned: Angle,
-    here: Angle,
+    begun: UnwrappedAngle,
+    turned: UnwrappedAngle,
+    here: UnwrappedAngle,
     direction: Direction,
     travel: f64,
     path: f64,
@@ -89,7 +89,7 @@ impl AnglePath {
     /// Number of quarter periods that an angle must move back to count as a reversal, so that noise does not count.
     const BACK: i64 = 3;
 
-    fn from(first: Angle) -> Self {
+    fn from(first: UnwrappedAngle) -> Self {
         AnglePath {
             top: first,
             bottom: first,
@@ -105,7 +105,7 @@ impl AnglePath {
         }
     }
 
-    fn go_to(&mut self, here: Angle) {
+    fn go_to(&mut self, here: UnwrappedAngle) {
         self.here = here;
         self.high = if here.is_ahead_of(&self.high) { here } else { self.high };
         self.low = if self.low.is_ahead_of(&here) { here } else { self.low };
@@ -119,7 +119,7 @@ impl AnglePath {
     }
 
     /// Records a direction that has become apparent or has changed at the angle `at`.
-    fn turn_at(&mut self, at: Angle, direction: Direction) {
+    fn turn_at(&mut self, at: UnwrappedAngle, direction: Direction) {
         self.keep_ends();
         if self.direction != Direction::Unknown {
             self.path += (at.periods() - self.turned.periods()).abs();
@@ -130,7 +130,7 @@ impl AnglePath {
     }
 
     /// Starts a new section at an angle that was reached by an unknown path.
-    fn begin_at(&mut self, here: Angle) {
+    fn begin_at(&mut self, here: UnwrappedAngle) {
         self.end_stretch();
         (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
         self.direction = Direction::Unknown;
@@ -196,7 +196,7 @@ impl Coverage {
         let length = sine.len().min(cosine.len());
         let start = kept(length, left_out).next()?.start;
         let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
-        let first = Angle::of(first_y, first_x);
+        let first = UnwrappedAngle::of(first_y, first_x);
         let (mut here, mut way) = (first, AnglePath::from(first));
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);

@@ -37,7 +37,7 @@ pub enum FitError {
     #[error("all points are equal")]
     Constant,
     #[error("the {} channel does not change", .0.word())]
-    Dead(Channel),
+    Dead(SignalChannel),
     /// Both channels carry the same signal, or one channel carries the inverse of the other.
     #[error("the points lie on a line")]
     Line,
@@ -50,7 +50,7 @@ pub enum FitError {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
+pub enum SignalChannel {
     Sine,
     Cosine,
 }
@@ -66,12 +66,12 @@ const CONDITION: f64 = 1e-13;
 /// Number of times the origin is moved to the centre of the previous ellipse.
 const ROUNDS: usize = 4;
 
-impl Channel {
+impl SignalChannel {
     /// Returns `sine` or `cosine`.
     pub const fn word(self) -> &'static str {
         match self {
-            Channel::Sine => "sine",
-            Channel::Cosine => "cosine",
+            SignalChannel::Sine => "sine",
+            SignalChannel::Cosine => "cosine",
         }
     }
 }
@@ -118,14 +118,14 @@ impl Ellipse {
     /// # Errors
     /// [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the period.
     pub fn fit(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
-        Ellipse::of_moments(&Moments::of(sine, cosine)?)
+        Ellipse::from_moments(&Moments::of(sine, cosine)?)
     }
 
     /// Fits an ellipse to points given by their moments.
     ///
     /// # Errors
     /// The same as for [`fit`](Self::fit).
-    pub fn of_moments(moments: &Moments) -> Result<Self, FitError> {
+    pub fn from_moments(moments: &Moments) -> Result<Self, FitError> {
         if moments.count() < LEAST_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
         }
@@ -151,7 +151,7 @@ impl Ellipse {
     }
 
     /// Returns the circle described by the corrected signals.
-    pub fn corrected(&self) -> Ellipse {
+    pub fn corrected_ellipse(&self) -> Ellipse {
         let Ellipse { amplitude_v, .. } = *self;
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
     }
@@ -174,22 +174,27 @@ impl Ellipse {
         self.phase_error_rad.to_degrees()
     }
 
-    pub fn correction(&self) -> Correction {
+    pub fn correction(&self) -> EllipseCorrection {
         let (sin, cos) = self.phase_error_rad.sin_cos();
-        Correction { p: self.offset_cosine_v, q: self.offset_sine_v, tan: sin / cos, scale: self.gain_ratio / cos }
+        EllipseCorrection {
+            p: self.offset_cosine_v,
+            q: self.offset_sine_v,
+            tan: sin / cos,
+            scale: self.gain_ratio / cos,
+        }
     }
 }
 
 /// Correction that maps samples on an ellipse to a zero-centred circle with the amplitude of the cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Correction {
+pub struct EllipseCorrection {
     p: f64,
     q: f64,
     tan: f64,
     scale: f64,
 }
 
-impl Correction {
+impl EllipseCorrection {
     /// Returns the corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
     pub fn apply(&self, sine: f64, cosine: f64) -> (f64, f64) {
         let x = cosine - self.p;
@@ -211,14 +216,14 @@ fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
     // Relative to the level: a constant of 2.5 V has a range of at most a few units in the last place.
-    if most <= around_mean.level() * 1e-9 {
+    if most <= around_mean.max_abs_voltage() * 1e-9 {
         return Err(FitError::Constant);
     }
     if range_x < DEAD * most {
-        return Err(FitError::Dead(Channel::Cosine));
+        return Err(FitError::Dead(SignalChannel::Cosine));
     }
     if range_y < DEAD * most {
-        return Err(FitError::Dead(Channel::Sine));
+        return Err(FitError::Dead(SignalChannel::Sine));
     }
     let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
     // Each channel is taken relative to its own spread, or a small gain would look like a line.

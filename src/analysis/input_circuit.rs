@@ -14,7 +14,7 @@ pub struct InputFilter {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
+pub struct FilterResponse {
     /// Lag of the output behind the input in electrical degrees, 0 to 90.
     pub phase_deg: f64,
     /// Ratio of the output amplitude to the input amplitude, 0 to 1.
@@ -22,13 +22,13 @@ pub struct Response {
 }
 
 impl InputFilter {
-    pub fn at(&self, frequency_hz: f64) -> Response {
+    pub fn at(&self, frequency_hz: f64) -> FilterResponse {
         let product = TAU * frequency_hz * self.resistance_ohm * self.capacitance_f;
-        Response { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }
+        FilterResponse { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }
     }
 }
 
-impl Response {
+impl FilterResponse {
     /// Returns the lag in steps of the absolute position of 1/32 period.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// Square in the plane of the cosine (horizontal) and the sine (vertical).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Square {
+pub struct PlotSquare {
     pub cosine_v: f64,
     pub sine_v: f64,
     /// Distance from the centre to an edge, in volts.
@@ -15,20 +15,20 @@ pub struct Square {
 
 /// Accumulated density of samples.
 #[derive(Clone, Debug)]
-pub struct Density {
-    square: Square,
+pub struct SampleDensity {
+    square: PlotSquare,
     side: usize,
     counts: Vec<u32>,
     directions: Vec<u8>,
     /// Squared vector lengths in each direction.
-    lengths: [Lengths; SECTORS],
+    lengths: [VectorLengths; SECTORS],
     outside: u64,
     bad: u64,
 }
 
 /// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts, or (∞, 0) without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lengths {
+pub struct VectorLengths {
     pub least_v: f64,
     pub most_v: f64,
 }
@@ -43,10 +43,10 @@ const MARGIN: f64 = 0.05;
 /// Minimum half side of the square in volts, for samples that are all equal.
 const LEAST_HALF_V: f64 = 1e-3;
 
-impl Square {
+impl PlotSquare {
     /// Creates a square centred on zero, the origin of the vectors.
     pub const fn centred(half_v: f64) -> Self {
-        Square { cosine_v: 0.0, sine_v: 0.0, half_v }
+        PlotSquare { cosine_v: 0.0, sine_v: 0.0, half_v }
     }
 
     /// Returns a square around all finite samples, with a margin, or `None` if a channel has no finite value.
@@ -54,25 +54,25 @@ impl Square {
         let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
         let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
         let middle = |low: f64, high: f64| low + (high - low) / 2.0;
-        Some(Square { cosine_v: middle(left, right), sine_v: middle(bottom, top), half_v: half * (1.0 + MARGIN) })
+        Some(PlotSquare { cosine_v: middle(left, right), sine_v: middle(bottom, top), half_v: half * (1.0 + MARGIN) })
     }
 }
 
-impl Density {
+impl SampleDensity {
     /// Creates an empty picture of `side` × `side` cells, limited to 1 to [`MOST_CELLS`] per side. Returns `None` for
     /// an empty square.
-    pub fn new(square: Square, side: usize) -> Option<Self> {
-        let Square { cosine_v, sine_v, half_v } = square;
+    pub fn new(square: PlotSquare, side: usize) -> Option<Self> {
+        let PlotSquare { cosine_v, sine_v, half_v } = square;
         if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
             return None;
         }
         let side = side.clamp(1, MOST_CELLS);
-        let mut density = Density {
+        let mut density = SampleDensity {
             square,
             side,
             counts: vec![0; side * side],
             directions: vec![0; side * side],
-            lengths: [Lengths::NONE; SECTORS],
+            lengths: [VectorLengths::NONE; SECTORS],
             outside: 0,
             bad: 0,
         };
@@ -86,7 +86,7 @@ impl Density {
 
     /// Adds samples in volts. Surplus values of the longer channel are ignored.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
-        let Square { cosine_v, sine_v, half_v } = self.square;
+        let PlotSquare { cosine_v, sine_v, half_v } = self.square;
         let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
         let side = self.side as f64;
         let scale = side / (2.0 * half_v);
@@ -117,11 +117,11 @@ impl Density {
 
     pub fn clear(&mut self) {
         self.counts.fill(0);
-        self.lengths = [Lengths::NONE; SECTORS];
+        self.lengths = [VectorLengths::NONE; SECTORS];
         (self.outside, self.bad) = (0, 0);
     }
 
-    pub fn square(&self) -> Square {
+    pub fn square(&self) -> PlotSquare {
         self.square
     }
 
@@ -151,13 +151,13 @@ impl Density {
 
     /// Returns the shortest and longest vector in each of the [`SECTORS`] directions. The lengths are exact, but each
     /// sample is assigned to the direction of its cell.
-    pub fn lengths(&self) -> [Lengths; SECTORS] {
-        self.lengths.map(|squares| Lengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
+    pub fn vector_lengths(&self) -> [VectorLengths; SECTORS] {
+        self.lengths.map(|squares| VectorLengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
     }
 }
 
-impl Lengths {
-    const NONE: Lengths = Lengths { least_v: f64::INFINITY, most_v: 0.0 };
+impl VectorLengths {
+    const NONE: VectorLengths = VectorLengths { least_v: f64::INFINITY, most_v: 0.0 };
 }
 
 /// Returns the index of the direction of a vector, at most `SECTORS` − 1.
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn a_sample_is_counted_in_the_cell_of_its_voltages() {
         // Cells of 0.25 V from −0.5 to 0.5 V.
-        let mut density = Density::new(Square::centred(0.5), 4).unwrap();
+        let mut density = SampleDensity::new(PlotSquare::centred(0.5), 4).unwrap();
         let samples = [
             (-0.5, -0.5, Some(0)),
             (-0.49, 0.49, Some(3)),
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn lengths_are_those_of_the_samples_in_each_direction() {
-        let mut density = Density::new(Square::centred(0.7), 256).unwrap();
+        let mut density = SampleDensity::new(PlotSquare::centred(0.7), 256).unwrap();
         for degree in 0..3_600 {
             let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
             // 0.5 V all around, 0.4 V at 90°, 0.65 V at 200°, and 2 V at 300°, which is outside.
@@ -228,8 +228,8 @@ mod tests {
             };
             density.add(&[length * y], &[length * x]);
         }
-        let lengths = density.lengths();
-        let near = |found: Lengths, least: f64, most: f64| {
+        let lengths = density.vector_lengths();
+        let near = |found: VectorLengths, least: f64, most: f64| {
             assert!((found.least_v - least).abs() < 1e-12 && (found.most_v - most).abs() < 1e-12, "{found:?}");
         };
         near(lengths[10], 0.5, 0.5);
@@ -238,21 +238,21 @@ mod tests {
         near(lengths[60], 0.5, 2.0);
         assert_eq!((density.outside(), density.most() > 1), (1, true));
         density.clear();
-        assert_eq!(density.lengths()[0], Lengths { least_v: f64::INFINITY, most_v: 0.0 });
+        assert_eq!(density.vector_lengths()[0], VectorLengths { least_v: f64::INFINITY, most_v: 0.0 });
     }
 
     #[test]
     fn a_square_is_fitted_around_the_samples() {
-        let square = Square::around(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
+        let square = PlotSquare::around(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
         assert!((square.sine_v - 2.5).abs() < 1e-12 && square.cosine_v.abs() < 1e-12);
         assert!((square.half_v - 0.525).abs() < 1e-12);
-        assert!((Square::around(&[2.5], &[2.5]).unwrap().half_v - 1.05e-3).abs() < 1e-9);
-        assert_eq!(Square::around(&[], &[]), None);
-        assert_eq!(Square::around(&[f64::NAN], &[1.0]), None);
+        assert!((PlotSquare::around(&[2.5], &[2.5]).unwrap().half_v - 1.05e-3).abs() < 1e-9);
+        assert_eq!(PlotSquare::around(&[], &[]), None);
+        assert_eq!(PlotSquare::around(&[f64::NAN], &[1.0]), None);
         for half_v in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(Density::new(Square::centred(half_v), 4).is_none());
+            assert!(SampleDensity::new(PlotSquare::centred(half_v), 4).is_none());
         }
-        assert_eq!(Density::new(Square::centred(1.0), 0).unwrap().side(), 1);
+        assert_eq!(SampleDensity::new(PlotSquare::centred(1.0), 0).unwrap().side(), 1);
     }
 
     proptest! {
@@ -262,8 +262,8 @@ mod tests {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =
                 samples.iter().map(|(sine, cosine)| (f64::from(*sine), f64::from(*cosine))).unzip();
             let cut = cut.min(sine.len());
-            for square in [Square::around(&sine, &cosine), Some(Square::centred(0.6))].into_iter().flatten() {
-                let mut density = Density::new(square, 16).unwrap();
+            for square in [PlotSquare::around(&sine, &cosine), Some(PlotSquare::centred(0.6))].into_iter().flatten() {
+                let mut density = SampleDensity::new(square, 16).unwrap();
                 density.add(&sine[..cut], &cosine[..cut]);
                 density.add(&sine[cut..], &cosine[cut..]);
                 let inside: u64 = density.counts().iter().map(|count| u64::from(*count)).sum();

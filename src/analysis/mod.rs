@@ -30,6 +30,6 @@ mod time;
 mod unwrap;
 pub mod wiring;
 
-pub use motion::{Motion, Rates};
-pub use time::Time;
-pub use unwrap::{Unwrap, UnwrappedPosition};
+pub use motion::{Motion, MotionRates};
+pub use time::SampleTime;
+pub use unwrap::{PositionUnwrapper, UnwrappedPosition};

@@ -115,7 +115,7 @@ impl Moments {
     }
 
     /// Returns the largest absolute voltage.
-    pub(super) fn level(&self) -> f64 {
+    pub(super) fn max_abs_voltage(&self) -> f64 {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use super::Time;
+use super::SampleTime;
 
 /// Calculates speed and acceleration from unwrapped positions.
 #[derive(Clone, Debug)]
@@ -11,11 +11,11 @@ pub struct Motion {
     /// Averaging window in nanoseconds, at least 1.
     window: i64,
     /// Positions within the last two windows, oldest first.
-    recent: VecDeque<(Time, i64)>,
+    recent: VecDeque<(SampleTime, i64)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rates {
+pub struct MotionRates {
     /// Speed in steps/s, averaged over the last window and thus valid for its middle, or `None` until a window has
     /// passed.
     pub speed: Option<f64>,
@@ -40,9 +40,9 @@ impl Motion {
 
     /// Processes the next position in steps and returns the rates. A position that is not later than the previous one
     /// yields no rates.
-    pub fn next(&mut self, time: Time, steps: i64) -> Rates {
+    pub fn next(&mut self, time: SampleTime, steps: i64) -> MotionRates {
         if self.recent.back().is_some_and(|(before, _)| time <= *before) {
-            return Rates::default();
+            return MotionRates::default();
         }
         let middle = self.before(time.plus(-self.window));
         let oldest = middle.and_then(|(middle, _)| self.before(middle.plus(-self.window)));
@@ -56,16 +56,16 @@ impl Motion {
             _ => None,
         };
         self.push(time, steps);
-        Rates { speed, acceleration }
+        MotionRates { speed, acceleration }
     }
 
     /// Returns the newest position at or before `time`, or `None` if there is none.
-    fn before(&self, time: Time) -> Option<(Time, i64)> {
+    fn before(&self, time: SampleTime) -> Option<(SampleTime, i64)> {
         let after = self.recent.partition_point(|(at, _)| *at <= time);
         self.recent.get(after.checked_sub(1)?).copied()
     }
 
-    fn push(&mut self, time: Time, steps: i64) {
+    fn push(&mut self, time: SampleTime, steps: i64) {
         // The last position but one represents those close to it; the last one is always kept, since the next may come
         // much later.
         let crowded = self
@@ -90,7 +90,7 @@ impl Motion {
 
 /// Returns the speed in steps/s between two positions, the earlier of which is `from`. The differences are exact before
 /// division.
-fn slope(from: (Time, i64), to: (Time, i64)) -> f64 {
+fn slope(from: (SampleTime, i64), to: (SampleTime, i64)) -> f64 {
     to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)
 }
 
@@ -100,8 +100,8 @@ mod tests {
 
     const MILLISECOND: i64 = 1_000_000;
 
-    fn at(milliseconds: i64) -> Time {
-        Time::from_nanoseconds(milliseconds * MILLISECOND)
+    fn at(milliseconds: i64) -> SampleTime {
+        SampleTime::from_nanoseconds(milliseconds * MILLISECOND)
     }
 
     #[test]
@@ -109,17 +109,17 @@ mod tests {
         for (label, period) in [("slow", 250), ("as the window", 100), ("fast", 1)] {
             let mut motion = Motion::over(100 * MILLISECOND);
             let days = 10 * 86_400_000;
-            let rates: Vec<Rates> =
+            let rates: Vec<MotionRates> =
                 (0..1000).map(|k| motion.next(at(days + k * period), (1 << 50) + k * period * 3)).collect();
-            assert_eq!(rates[0], Rates::default(), "{label}");
-            assert_eq!(rates[999], Rates { speed: Some(3000.0), acceleration: Some(0.0) }, "{label}");
+            assert_eq!(rates[0], MotionRates::default(), "{label}");
+            assert_eq!(rates[999], MotionRates { speed: Some(3000.0), acceleration: Some(0.0) }, "{label}");
         }
     }
 
     #[test]
     fn a_parabola_has_its_acceleration() {
         let mut motion = Motion::over(50 * MILLISECOND);
-        let mut last = Rates::default();
+        let mut last = MotionRates::default();
         // Uneven periods: 7 and 13 ms.
         let mut now = 0;
         for k in 0..100 {
@@ -135,8 +135,8 @@ mod tests {
         let mut motion = Motion::over(10 * MILLISECOND);
         assert_eq!(motion.next(at(0), 0).speed, None);
         assert_eq!(motion.next(at(9), 9).speed, None);
-        assert_eq!(motion.next(at(10), 10), Rates { speed: Some(1000.0), acceleration: None });
-        assert_eq!(motion.next(at(10), 11), Rates::default());
+        assert_eq!(motion.next(at(10), 10), MotionRates { speed: Some(1000.0), acceleration: None });
+        assert_eq!(motion.next(at(10), 11), MotionRates::default());
         motion.reset();
         assert_eq!(motion.next(at(30), 1_000_000).speed, None);
         assert_eq!(motion.next(at(40), 1_000_000).speed, Some(0.0));
@@ -146,9 +146,9 @@ mod tests {
     fn memory_is_bounded_at_any_rate() {
         let mut motion = Motion::over(1_000 * MILLISECOND);
         let capacity = motion.recent.capacity();
-        let mut last = Rates::default();
+        let mut last = MotionRates::default();
         for k in 0..300_000 {
-            last = motion.next(Time::from_nanoseconds(k * 10_000), k);
+            last = motion.next(SampleTime::from_nanoseconds(k * 10_000), k);
         }
         assert_eq!(motion.recent.capacity(), capacity);
         assert!((last.speed.unwrap() - 100_000.0).abs() < 1e-6);

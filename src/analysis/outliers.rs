@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::coverage::Coverage;
-use super::ellipse::{Channel, Ellipse, FitError};
+use super::ellipse::{Ellipse, FitError, SignalChannel};
 use super::moments::{Moments, Scale};
 
 /// Samples excluded from a fit.
@@ -43,17 +43,17 @@ const UPRIGHT: f64 = 0.15;
 /// Fraction of the other channel's range below which a channel is considered constant.
 const DEAD: f64 = 0.05;
 
-pub(super) enum OutlierSearch {
+pub(super) enum OutlierResult {
     /// No outliers were found, or too many samples deviate to count as outliers.
     Nothing,
     Outliers(Ellipse, Outliers),
 }
 
 /// Searches for outliers; `all` is the ellipse through all samples, if known.
-pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierSearch {
+pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierResult {
     let count = sine.len().min(cosine.len());
     if count < LEAST_SAMPLES {
-        return OutlierSearch::Nothing;
+        return OutlierResult::Nothing;
     }
     // An odd stride does not lock onto a period of 2ⁿ samples.
     let stride = (count / SAMPLED) | 1;
@@ -69,7 +69,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         }
         (Some(all), None) => *all,
         (None, Some(upright)) => upright,
-        (None, None) => return OutlierSearch::Nothing,
+        (None, None) => return OutlierResult::Nothing,
     };
     let mut ellipse = start;
     let mut stretches: Vec<Range<usize>> = Vec::new();
@@ -78,7 +78,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         let found = beyond(sine, cosine, &ellipse, limit);
         let left_out: usize = found.iter().map(Range::len).sum();
         if left_out as f64 > MOST * count as f64 {
-            return OutlierSearch::Nothing;
+            return OutlierResult::Nothing;
         }
         if (round > 0 || Some(&ellipse) == all) && found == stretches {
             break;
@@ -87,24 +87,24 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
         match fit_without(sine, cosine, &stretches, scale) {
             Ok(better) => ellipse = better,
-            Err(_) => return OutlierSearch::Nothing,
+            Err(_) => return OutlierResult::Nothing,
         }
     }
     if stretches.is_empty() {
-        return OutlierSearch::Nothing;
+        return OutlierResult::Nothing;
     }
     let outliers = Outliers {
         count: stretches.iter().map(Range::len).sum(),
         longest: stretches.iter().map(Range::len).max().unwrap_or(0),
-        farthest_v: farthest(sine, cosine, &stretches, &ellipse),
+        farthest_v: max_distance(sine, cosine, &stretches, &ellipse),
         all: all.and_then(|all| Some((*all, Coverage::of(sine, cosine, all)?))),
         stretches,
     };
-    OutlierSearch::Outliers(ellipse, outliers)
+    OutlierResult::Outliers(ellipse, outliers)
 }
 
 /// Returns the channel that is constant apart from single samples, or `None` if both channels move.
-pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
+pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<SignalChannel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }
@@ -121,22 +121,22 @@ fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: S
     for part in kept(sine.len().min(cosine.len()), left_out) {
         moments.add(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;
     }
-    Ellipse::of_moments(&moments)
+    Ellipse::from_moments(&moments)
 }
 
 /// Returns an upright ellipse derived from quantiles, which a few samples do not affect.
 ///
 /// # Errors
 /// Returns the constant channel, or `None` if both channels are constant.
-fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
+fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>> {
     /// Share of samples beyond each quantile. For a tenth of the time, a sine is outside cos(0.05·π) of its amplitude.
     const SHARE: f64 = 0.05;
     let reach = (SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
         let mut values = values.to_vec();
         let (last, rank) = (values.len().saturating_sub(1), (values.len() as f64 * SHARE) as usize);
-        let low = rank_of(&mut values, rank);
-        let high = rank_of(&mut values, last.saturating_sub(rank));
+        let low = value_at_rank(&mut values, rank);
+        let high = value_at_rank(&mut values, last.saturating_sub(rank));
         ((low + high) / 2.0, (high - low) / 2.0 / reach)
     };
     let ((offset_sine_v, sine_v), (offset_cosine_v, amplitude_v)) = (channel(sine), channel(cosine));
@@ -145,9 +145,9 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
     if most <= 1e-9 * offset_sine_v.abs().max(offset_cosine_v.abs()) {
         Err(None)
     } else if sine_v < DEAD * most {
-        Err(Some(Channel::Sine))
+        Err(Some(SignalChannel::Sine))
     } else if amplitude_v < DEAD * most {
-        Err(Some(Channel::Cosine))
+        Err(Some(SignalChannel::Cosine))
     } else {
         let gain_ratio = amplitude_v / sine_v;
         Ok(Ellipse { amplitude_v, offset_cosine_v, offset_sine_v, gain_ratio, phase_error_rad: 0.0 })
@@ -163,11 +163,11 @@ fn median_deviation(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     };
     let mut offs: Vec<f64> = sine.iter().zip(cosine).map(off).collect();
     let middle = offs.len() / 2;
-    rank_of(&mut offs, middle)
+    value_at_rank(&mut offs, middle)
 }
 
 /// Returns the value of the given rank, counted from the smallest.
-fn rank_of(values: &mut [f64], rank: usize) -> f64 {
+fn value_at_rank(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }
 
@@ -199,7 +199,7 @@ fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Ra
     stretches
 }
 
-fn farthest(sine: &[f64], cosine: &[f64], stretches: &[Range<usize>], ellipse: &Ellipse) -> f64 {
+fn max_distance(sine: &[f64], cosine: &[f64], stretches: &[Range<usize>], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
     let samples = stretches.iter().flat_map(|part| {
         sine.get(part.clone()).unwrap_or_default().iter().zip(cosine.get(part.clone()).unwrap_or_default())

@@ -14,7 +14,7 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 use super::coverage::Coverage;
-use super::ellipse::{Correction, Ellipse};
+use super::ellipse::{Ellipse, EllipseCorrection};
 use super::outliers::kept;
 
 /// Number of fitted harmonics of the period.
@@ -26,14 +26,14 @@ pub struct PositionError {
     pub raw_deg: Vec<f64>,
     /// Remaining error after correction, in electrical degrees at the same angles.
     pub corrected_deg: Vec<f64>,
-    pub basis: Basis,
+    pub basis: ErrorBasis,
     /// Peak to peak of the remaining error, in electrical degrees.
     pub corrected_pp_deg: f64,
 }
 
 /// Basis on which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Basis {
+pub enum ErrorBasis {
     /// The motion was steady, so the error is the deviation of samples that the harmonics do not explain.
     Motion { noise_deg: f64 },
     /// The distance from the ellipse was used, because the motion was not steady or the capture was too short.
@@ -76,10 +76,10 @@ impl PositionError {
         let found = fit(&samples, left_out, ellipse, coverage.periods)
             .filter(|(_, noise_deg)| *noise_deg <= STEADY * expected_deg.max(0.01));
         let corrected_deg: Vec<f64> = match &found {
-            Some((terms, _)) => angles().map(|angle| harmonics_at(angle).dot(terms).to_degrees()).collect(),
+            Some((terms, _)) => sample_angles().map(|angle| harmonics_at(angle).dot(terms).to_degrees()).collect(),
             None => vec![0.0; POINTS],
         };
-        let of_ellipse = angles().map(|angle| {
+        let of_ellipse = sample_angles().map(|angle| {
             let (sine, cosine) = ellipse.at(angle);
             (sine.atan2(cosine) - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
         });
@@ -88,14 +88,14 @@ impl PositionError {
         let mean = raw_deg.iter().sum::<f64>() / POINTS as f64;
         raw_deg.iter_mut().for_each(|error| *error -= mean);
         let (basis, corrected_pp_deg) = match found {
-            Some((_, noise_deg)) => (Basis::Motion { noise_deg }, peak_to_peak(&corrected_deg)),
+            Some((_, noise_deg)) => (ErrorBasis::Motion { noise_deg }, peak_to_peak(&corrected_deg)),
             // One sine with this rms.
-            None => (Basis::Ellipse, 2.0 * 2.0_f64.sqrt() * expected_deg),
+            None => (ErrorBasis::Ellipse, 2.0 * 2.0_f64.sqrt() * expected_deg),
         };
         PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
     }
 
-    pub fn raw_pp_deg(&self) -> f64 {
+    pub fn raw_peak_to_peak_deg(&self) -> f64 {
         peak_to_peak(&self.raw_deg)
     }
 }
@@ -114,7 +114,7 @@ pub fn harmonics(curve: &[f64]) -> [f64; HARMONICS] {
     })
 }
 
-fn angles() -> impl Iterator<Item = f64> {
+fn sample_angles() -> impl Iterator<Item = f64> {
     (0..POINTS).map(|at| TAU * at as f64 / POINTS as f64)
 }
 
@@ -152,7 +152,8 @@ fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, peri
     };
     let bends = periods >= 2.0;
     let correction = ellipse.correction();
-    let mut sums = Sums { normal: Normal::zeros(), right: Terms::zeros(), squares: 0.0, count: 0, motions: 0 };
+    let mut sums =
+        NormalEquations { normal: Normal::zeros(), right: Terms::zeros(), squares: 0.0, count: 0, motions: 0 };
     for segment in 0..segments {
         let start = if segments == 1 { 0 } else { (count - length) * segment / (segments - 1) };
         sums.add(&Segment::of(samples, left_out, start..start + length, timed), &correction, bends);
@@ -187,7 +188,7 @@ impl Segment {
 }
 
 /// Normal equations of the harmonics, with the motions already removed.
-struct Sums {
+struct NormalEquations {
     normal: Normal,
     right: Terms,
     squares: f64,
@@ -195,8 +196,8 @@ struct Sums {
     motions: usize,
 }
 
-impl Sums {
-    fn add(&mut self, segment: &Segment, correction: &Correction, bends: bool) {
+impl NormalEquations {
+    fn add(&mut self, segment: &Segment, correction: &EllipseCorrection, bends: bool) {
         let Segment { times, sine, cosine } = segment;
         let stride = (times.len() / SEGMENT_SAMPLES).max(1);
         let (Some(begin), Some(end)) = (times.first(), times.last()) else { return };

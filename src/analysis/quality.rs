@@ -116,11 +116,11 @@ impl Limits {
     /// and gain errors, so judge the minimum and maximum over a period.
     pub fn vector(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
-        if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude(length)) }
+        if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude_verdict(length)) }
     }
 
     /// Judges a peak amplitude in volts.
-    pub fn amplitude(&self, volts: f64) -> Verdict {
+    pub fn amplitude_verdict(&self, volts: f64) -> Verdict {
         if within(volts, self.ok_v) {
             Verdict::Ok
         } else if within(volts, self.fault_v) {
@@ -134,7 +134,7 @@ impl Limits {
     /// relative to the amplitude.
     pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
         let amplitude = ellipse.amplitude_v;
-        let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude(volts), volts));
+        let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude_verdict(volts), volts));
         let (verdict, volts) = if worst[1].0 > worst[0].0 { worst[1] } else { worst[0] };
         let offsets = [ellipse.offset_sine_v / amplitude, ellipse.offset_cosine_v / amplitude];
         let beyond = |value: f64, limit: f64| !within(value, (-limit, limit));

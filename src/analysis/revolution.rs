@@ -54,7 +54,8 @@ impl Revolution {
         }
         let correction = ellipse.correction();
         let count = sine.len().min(cosine.len()).min(reference_deg.len());
-        let (mut raw, mut corrected, mut shaft) = (Follow::new(TAU), Follow::new(TAU), Follow::new(360.0));
+        let (mut raw, mut corrected, mut shaft) =
+            (AngleUnwrapper::new(TAU), AngleUnwrapper::new(TAU), AngleUnwrapper::new(360.0));
         let (mut as_measured, mut as_corrected, mut reference) = (Vec::new(), Vec::new(), Vec::new());
         for at in kept(count, left_out).flatten() {
             let (Some(y), Some(x), Some(angle)) = (sine.get(at), cosine.get(at), reference_deg.get(at)) else { break };
@@ -88,14 +89,14 @@ impl Revolution {
 }
 
 /// Follows an angle beyond the wraps of the measured value.
-struct Follow {
+struct AngleUnwrapper {
     whole: f64,
     last: Option<f64>,
 }
 
-impl Follow {
+impl AngleUnwrapper {
     fn new(whole: f64) -> Self {
-        Follow { whole, last: None }
+        AngleUnwrapper { whole, last: None }
     }
 
     fn next(&mut self, angle: f64) -> f64 {

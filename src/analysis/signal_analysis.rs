@@ -5,7 +5,7 @@
 use super::continuity::Continuity;
 use super::coverage::Coverage;
 use super::ellipse::{Ellipse, FitError};
-use super::outliers::{self, OutlierSearch, Outliers};
+use super::outliers::{self, OutlierResult, Outliers};
 use super::position_error::{PositionError, Samples};
 
 /// Minimum number of octants of a period that must contain samples (U).
@@ -79,8 +79,8 @@ impl Analysis {
             return Err(error.into());
         }
         let (ellipse, outliers) = match outliers::find(sine_v, cosine_v, all.as_ref().ok()) {
-            OutlierSearch::Nothing => (all?, None),
-            OutlierSearch::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
+            OutlierResult::Nothing => (all?, None),
+            OutlierResult::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
         };
         let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
         let continuity = Continuity::of(time_s);

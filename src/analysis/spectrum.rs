@@ -96,12 +96,12 @@ impl Spectrum {
                 taken.push(at);
             }
         }
-        taken.into_iter().map(|at| self.peak_at(at)).collect()
+        taken.into_iter().map(|at| self.interpolate_peak(at)).collect()
     }
 
     /// Interpolates a sine between two lines of a Hann window from the ratio of the highest line to its higher
     /// neighbour.
-    pub(super) fn peak_at(&self, at: usize) -> SpectralLine {
+    pub(super) fn interpolate_peak(&self, at: usize) -> SpectralLine {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
         let (side, sign) = if after > before { (after, 1.0) } else { (before, -1.0) };

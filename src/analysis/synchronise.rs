@@ -39,7 +39,7 @@ pub struct SynchronisedPosition {
 /// The positions differ by exactly half a period, so either neighbour could be correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
-pub struct AmbiguousPeriod;
+pub struct AmbiguousPeriodError;
 
 impl Synchroniser {
     /// Greatest difference of the positions in steps of 1/32 period that is not a fault (U).
@@ -52,8 +52,8 @@ impl Synchroniser {
     /// Combines an absolute position in steps of 1/32 period with an analogue phase.
     ///
     /// # Errors
-    /// [`AmbiguousPeriod`] at exactly half a period.
-    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriod> {
+    /// [`AmbiguousPeriodError`] at exactly half a period.
+    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriodError> {
         /// Tolerance in steps for rounding at half a period.
         const SLACK: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
@@ -64,7 +64,7 @@ impl Synchroniser {
         let nearest = periods.round();
         let residual = periods - nearest;
         if (residual.abs() - 0.5).abs() * (STEPS as f64) < SLACK || !residual.is_finite() {
-            return Err(AmbiguousPeriod);
+            return Err(AmbiguousPeriodError);
         }
         let range = self.periods.max(1);
         let forward = (nearest as i64).rem_euclid(i64::try_from(range).unwrap_or(i64::MAX)).unsigned_abs();
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     fn phase(periods: f64) -> Phase {
-        Phase::of_periods(periods).unwrap()
+        Phase::from_periods(periods).unwrap()
     }
 
     /// The results match the table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
@@ -142,7 +142,7 @@ mod tests {
             assert!((told.periods() - fine).abs() < 1e-9, "{label}: {told:?}");
             assert!((told.residual_periods - residual).abs() < 6e-5, "{label}: {told:?}");
         }
-        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(AmbiguousPeriod));
+        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(AmbiguousPeriodError));
     }
 
     #[test]

@@ -6,13 +6,13 @@ use crate::units::Moment;
 /// session's clock or the trigger of a capture (earlier times are negative). Covers 292 years in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
-pub struct Time(i64);
+pub struct SampleTime(i64);
 
-impl Time {
-    pub const ORIGIN: Time = Time(0);
+impl SampleTime {
+    pub const ORIGIN: SampleTime = SampleTime(0);
 
     pub const fn from_nanoseconds(nanoseconds: i64) -> Self {
-        Time(nanoseconds)
+        SampleTime(nanoseconds)
     }
 
     pub const fn nanoseconds(self) -> i64 {
@@ -21,27 +21,27 @@ impl Time {
 
     /// Returns the point in time `nanoseconds` later, saturating at the end of the range.
     pub const fn plus(self, nanoseconds: i64) -> Self {
-        Time(self.0.saturating_add(nanoseconds))
+        SampleTime(self.0.saturating_add(nanoseconds))
     }
 
     /// Returns the exact number of nanoseconds since `origin`, or a negative number if `origin` is later.
-    pub const fn nanoseconds_since(self, origin: Time) -> i64 {
+    pub const fn nanoseconds_since(self, origin: SampleTime) -> i64 {
         self.0.saturating_sub(origin.0)
     }
 
     /// Returns the number of seconds since `origin`. The difference is calculated before rounding, so the result is
     /// exact near `origin`.
-    pub fn seconds_since(self, origin: Time) -> f64 {
+    pub fn seconds_since(self, origin: SampleTime) -> f64 {
         self.nanoseconds_since(origin) as f64 / 1e9
     }
 }
 
-impl From<Moment> for Time {
+impl From<Moment> for SampleTime {
     /// Converts a moment of a clock. The origin is the start of the clock.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);
-        Time(seconds.saturating_mul(1_000_000_000).saturating_add(i64::from(elapsed.subsec_nanos())))
+        SampleTime(seconds.saturating_mul(1_000_000_000).saturating_add(i64::from(elapsed.subsec_nanos())))
     }
 }
 
@@ -53,16 +53,16 @@ mod tests {
     #[test]
     fn a_moment_keeps_its_nanoseconds() {
         let ten_days = Duration::new(864_000, 1);
-        assert_eq!(Time::from(Moment::after_start(ten_days)).nanoseconds(), 864_000_000_000_001);
-        assert_eq!(Time::from(Moment::after_start(Duration::MAX)).nanoseconds(), i64::MAX);
+        assert_eq!(SampleTime::from(Moment::after_start(ten_days)).nanoseconds(), 864_000_000_000_001);
+        assert_eq!(SampleTime::from(Moment::after_start(Duration::MAX)).nanoseconds(), i64::MAX);
     }
 
     #[test]
     fn differences_are_exact_after_days() {
-        let late = Time::from_nanoseconds(864_000_000_000_000);
+        let late = SampleTime::from_nanoseconds(864_000_000_000_000);
         assert_eq!(late.plus(1).nanoseconds_since(late), 1);
         assert_eq!(late.plus(1).seconds_since(late), 1e-9);
         assert_eq!(late.nanoseconds_since(late.plus(1)), -1);
-        assert_eq!(Time::from_nanoseconds(i64::MAX).plus(1), Time::from_nanoseconds(i64::MAX));
+        assert_eq!(SampleTime::from_nanoseconds(i64::MAX).plus(1), SampleTime::from_nanoseconds(i64::MAX));
     }
 }

@@ -2,7 +2,7 @@
 //! of thousands of turns. Used for display and speed only, never for values written to a device.
 
 #[derive(Clone, Copy, Debug)]
-pub struct Unwrap {
+pub struct PositionUnwrapper {
     range: Option<i64>,
     /// Last position word and its unwrapped value.
     last: Option<(i64, i64)>,
@@ -18,15 +18,15 @@ pub struct UnwrappedPosition {
     pub broken: bool,
 }
 
-impl Unwrap {
+impl PositionUnwrapper {
     /// Creates the state for an encoder that wraps from `range` − 1 to 0, or returns `None` for a range below 2.
     pub fn rotary(range: i64) -> Option<Self> {
-        (range >= 2).then_some(Unwrap { range: Some(range), last: None, gap: false })
+        (range >= 2).then_some(PositionUnwrapper { range: Some(range), last: None, gap: false })
     }
 
     /// Creates the state for an encoder that does not wrap, whose positions are unchanged.
-    pub fn linear() -> Self {
-        Unwrap { range: None, last: None, gap: false }
+    pub fn without_wrap() -> Self {
+        PositionUnwrapper { range: None, last: None, gap: false }
     }
 
     /// Marks a gap before the next sample.
@@ -63,14 +63,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn follow(mut unwrap: Unwrap, words: &[i64]) -> Vec<(i64, bool)> {
+    fn follow(mut unwrap: PositionUnwrapper, words: &[i64]) -> Vec<(i64, bool)> {
         words.iter().filter_map(|word| unwrap.next(*word)).map(|next| (next.steps, next.broken)).collect()
     }
 
     #[test]
     fn a_wrap_is_followed_like_any_step() {
         let multiturn = 4096 * 4096;
-        let ring = Unwrap::rotary(multiturn).unwrap();
+        let ring = PositionUnwrapper::rotary(multiturn).unwrap();
         let forward = follow(ring, &[multiturn - 2, multiturn - 1, 0, 1, multiturn - 1]);
         assert_eq!(forward.iter().map(|(steps, _)| steps - multiturn).collect::<Vec<_>>(), [-2, -1, 0, 1, -1]);
         assert!(forward.iter().all(|(_, broken)| !broken));
@@ -79,17 +79,17 @@ mod tests {
 
     #[test]
     fn a_step_of_half_the_range_is_ambiguous() {
-        let ring = Unwrap::rotary(100).unwrap();
+        let ring = PositionUnwrapper::rotary(100).unwrap();
         assert_eq!(follow(ring, &[10, 59, 10]), [(10, false), (59, false), (10, false)]);
         assert_eq!(follow(ring, &[10, 60]), [(10, false), (60, true)]);
         assert_eq!(follow(ring, &[10, 61]), [(10, false), (-39, false)]);
-        let odd = Unwrap::rotary(5).unwrap();
+        let odd = PositionUnwrapper::rotary(5).unwrap();
         assert_eq!(follow(odd, &[0, 2, 0, 3]), [(0, false), (2, false), (0, false), (-2, false)]);
     }
 
     #[test]
     fn after_a_gap_the_distance_is_unknown() {
-        let mut ring = Unwrap::rotary(100).unwrap();
+        let mut ring = PositionUnwrapper::rotary(100).unwrap();
         ring.gap();
         assert_eq!(ring.next(98), Some(UnwrappedPosition { steps: 98, broken: false }));
         ring.gap();
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_linear_encoder_has_no_wrap() {
-        let mut linear = Unwrap::linear();
+        let mut linear = PositionUnwrapper::without_wrap();
         assert_eq!(follow(linear, &[-5, 1 << 40, 0]), [(-5, false), (1 << 40, false), (0, false)]);
         linear.next(1);
         linear.gap();
@@ -111,8 +111,8 @@ mod tests {
 
     #[test]
     fn a_range_has_at_least_two_positions() {
-        assert!(Unwrap::rotary(1).is_none());
-        assert!(Unwrap::rotary(i64::MIN).is_none());
+        assert!(PositionUnwrapper::rotary(1).is_none());
+        assert!(PositionUnwrapper::rotary(i64::MIN).is_none());
     }
 
     proptest! {
@@ -120,7 +120,7 @@ mod tests {
         #[test]
         fn a_random_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
             let mut truth = start % range;
-            let mut unwrap = Unwrap::rotary(range).unwrap();
+            let mut unwrap = PositionUnwrapper::rotary(range).unwrap();
             prop_assert_eq!(unwrap.next(truth).unwrap().steps, truth);
             for step in walk {
                 truth += (step * ((range - 1) / 2) as f64) as i64;

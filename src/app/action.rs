@@ -4,20 +4,20 @@ use std::any::Any;
 use std::path::PathBuf;
 
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
-use super::diverged::{Diverged, Resolve};
+use super::diverged::{ConflictResolution, ProfileConflict};
 use super::file_question::FileQuestion;
 use super::payload::Payload;
 use super::recorder::{self, ExportResult};
 use super::review::Permit;
 use super::services::Services;
-use super::session::{DeviceHistory, DraftOutcome, Kind, ProfileFile, Saving};
-use super::settings_store::{SettingsRead, SettingsWritten};
+use super::session::{DeviceHistory, DraftOutcome, Kind, ProfileFile, SaveRequest};
+use super::settings_store::{LoadedSettings, SavedSettings};
 use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, connect};
 use crate::link::LinkError;
-use crate::profile::{Document, PlanId, ProfileError};
+use crate::profile::{PlanId, ProfileDocument, ProfileError};
 use crate::store::{DeviceKey, FileError};
 use crate::worker::{OpenError, Worker};
 
@@ -51,7 +51,7 @@ pub enum Action {
     OpenVirtual,
     Save(SessionId),
     /// Resolve the conflict in a profile that another program has changed in the meantime.
-    Resolve(Resolve),
+    Resolve(ConflictResolution),
     /// Ask for a file to open: a capture in the Signals tab, a profile elsewhere.
     AskOpen,
     /// Open a file as a capture if it is a `.csv` file, or as a profile otherwise.
@@ -119,7 +119,7 @@ pub enum Done {
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
         file: ProfileFile,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
         /// Function that opens the profile with the tables required by its kind, or `None` for a kind that the window
         /// does not support.
         open: Option<OpenProfile>,
@@ -128,26 +128,26 @@ pub enum Done {
     Compare {
         session: SessionId,
         path: PathBuf,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
     },
     Written {
-        saving: Box<Saving>,
+        saving: Box<SaveRequest>,
         file: ProfileFile,
         result: Result<(), FileError>,
     },
     /// A profile was not saved, because its file has changed since it was opened.
-    Diverged(Box<Diverged>),
+    Diverged(Box<ProfileConflict>),
     /// A profile was not saved, because these comments of the user would be lost.
-    WouldLose(Box<Saving>, Vec<String>),
+    WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
     PictureSaved(PathBuf, Result<(), FileError>),
     ReportSaved(PathBuf, Result<(), FileError>),
     /// The time limit for a wait before closing has expired.
-    Waited(Waited),
+    Waited(ShutdownWait),
     Left,
     /// The settings have been read, but too late for the start of the program.
-    SettingsRead(SettingsRead),
-    SettingsKept(Result<SettingsWritten, FileError>),
+    SettingsRead(LoadedSettings),
+    SettingsKept(Result<SavedSettings, FileError>),
     /// The settings have been read while drives are under control. `None` means that there are no settings.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
@@ -157,7 +157,7 @@ pub enum Done {
         session: SessionId,
         of: DeviceKey,
         path: PathBuf,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
     },
     /// The result of a task specific to one kind of device, for one session; see `Done::device`.
     Device(SessionId, Payload),
@@ -207,7 +207,7 @@ impl<D: Kind> OpenedSession for Opened<D> {
 
 /// The waits before the window closes, in order. Each wait includes the preceding ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Waited {
+pub enum ShutdownWait {
     Drives,
     Disk,
     /// Jobs that write nothing.

@@ -7,11 +7,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::worker::Stopper;
+use crate::worker::WorkerStopHandle;
 
 /// A handle that stops the drives of a session when the program ends. It works from any thread, regardless of the state
 /// of the session and of whether the window still draws.
-pub trait Brake: Send {
+pub trait DriveStopHandle: Send {
     /// Stops and switches off all drives and closes their connection because the program is ending. Later requests
     /// cannot start a motion. This does not block and may be called repeatedly.
     fn leave(&self);
@@ -27,10 +27,10 @@ pub trait Brake: Send {
 
 /// All drives that this program can move. Clones share the same state.
 #[derive(Clone, Default)]
-pub struct Brakes(Arc<Shared>);
+pub struct DriveStopHandles(Arc<Shared>);
 
 /// The brake of a session with drives, and the stopper of its jobs.
-type Session = (Box<dyn Brake>, Stopper);
+type Session = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 
 #[derive(Default)]
 struct Shared {
@@ -43,11 +43,11 @@ struct Shared {
 /// Interval between checks for closed connections.
 const LOOKS: Duration = Duration::from_millis(5);
 
-impl Brakes {
+impl DriveStopHandles {
     /// Time allowed for stopping drives and closing connections before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
+    pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stopper: WorkerStopHandle) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
         // Under the lock that `begin` takes as well: one of the two releases the session.
@@ -80,7 +80,7 @@ impl Brakes {
         wait_for(patience, || self.is_done())
     }
 
-    pub(super) fn note_closing(&self) {
+    pub(super) fn set_closing(&self) {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 

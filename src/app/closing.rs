@@ -1,10 +1,10 @@
 //! Closing a session or the window: asks once whether losses and interruptions are acceptable, then waits for
 //! everything else.
 
-use super::action::{Action, Done, Waited};
-use super::brakes::Brakes;
+use super::action::{Action, Done, ShutdownWait};
+use super::brakes::DriveStopHandles;
 use super::question::{Question, Then};
-use super::services::JobEnd;
+use super::services::JobState;
 use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
@@ -14,7 +14,7 @@ pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
     /// Returns the brakes for the drives of all sessions, to be used when the program ends.
-    pub fn brakes(&self) -> Brakes {
+    pub fn brakes(&self) -> DriveStopHandles {
         self.services.brakes.clone()
     }
 
@@ -32,10 +32,10 @@ impl Studio {
         let runs = !services.closing_sessions.is_empty() || self.devices.iter().any(|device| device.is_busy());
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
-            && over(Waited::Drives, services.brakes.is_done())
-            && over(Waited::Writes, !writes)
-            && over(Waited::Jobs, !runs)
-            && over(Waited::Disk, drafts && self.settings_store.is_idle())
+            && over(ShutdownWait::Drives, services.brakes.is_done())
+            && over(ShutdownWait::Writes, !writes)
+            && over(ShutdownWait::Jobs, !runs)
+            && over(ShutdownWait::Disk, drafts && self.settings_store.is_idle())
     }
 
     pub(super) fn close_session(&mut self, id: SessionId) {
@@ -62,7 +62,7 @@ impl Studio {
     fn remove(&mut self, id: SessionId) {
         self.with_device(id, |device, services| {
             device.leave_draft(services);
-            device.let_go(JobEnd::Cancelled, services);
+            device.let_go(JobState::Cancelled, services);
         });
         self.diverged.take_if(|diverged| diverged.session() == id);
         self.devices.retain(|device| device.id() != id);
@@ -100,14 +100,14 @@ impl Studio {
             return;
         }
         self.services.brakes.begin();
-        self.services.brakes.note_closing();
+        self.services.brakes.set_closing();
         self.stop_tools();
         let patience = self.services.world.patience;
         let limits = [
-            (Waited::Drives, patience.drives),
-            (Waited::Disk, patience.disk),
-            (Waited::Jobs, patience.job),
-            (Waited::Writes, patience.write),
+            (ShutdownWait::Drives, patience.drives),
+            (ShutdownWait::Disk, patience.disk),
+            (ShutdownWait::Jobs, patience.job),
+            (ShutdownWait::Writes, patience.write),
         ];
         for (what, limit) in limits {
             self.services.tasks.run("close", move || {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::action::ReadError;
-use super::devices::{ActContext, DeviceCommand};
+use super::devices::{ActionContext, DeviceCommand};
 use super::documents::read_error;
 use super::file_question::FileQuestion;
 use super::payload::{Payload, PayloadKindError};
@@ -19,7 +19,7 @@ impl Studio {
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
-            DeviceCommand::WriteInto(target) => self.write_into(id, target),
+            DeviceCommand::WriteInto(target) => self.write_profile_to(id, target),
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
             DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
             DeviceCommand::Compare(path) => self.compare_with(id, path),
@@ -55,7 +55,7 @@ impl Studio {
         }
     }
 
-    fn write_into(&mut self, id: SessionId, target: SessionId) {
+    fn write_profile_to(&mut self, id: SessionId, target: SessionId) {
         // Nothing is written to a device without a memory: it also takes over profiles that are read-only.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
         if is_written && self.is_only_looked_at(id) {
@@ -76,7 +76,7 @@ impl Studio {
     pub(super) fn apply_device_action(&mut self, id: SessionId, action: Payload) {
         let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
         let mut device = self.devices.remove(at);
-        let mut context = ActContext::new(&mut self.services, &self.devices);
+        let mut context = ActionContext::new(&mut self.services, &self.devices);
         let done = device.act(action, &mut context);
         let next = context.into_next();
         self.devices.insert(at, device);

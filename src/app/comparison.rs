@@ -7,7 +7,7 @@ use super::action::{Action, Done, ReadError};
 use super::documents::{read_error, read_profile};
 use super::studio::{SessionId, Studio};
 use super::{Severity, Text};
-use crate::profile::{Comparison, Document};
+use crate::profile::{Comparison, ProfileDocument};
 
 #[derive(Debug)]
 pub struct ProfileComparison {
@@ -50,7 +50,12 @@ impl Studio {
         });
     }
 
-    pub(super) fn compare(&mut self, session: SessionId, path: PathBuf, result: Result<Box<Document>, ReadError>) {
+    pub(super) fn compare(
+        &mut self,
+        session: SessionId,
+        path: PathBuf,
+        result: Result<Box<ProfileDocument>, ReadError>,
+    ) {
         let Some(device) = self.device(session) else { return };
         let (tab, name) = (device.tab(), device.name());
         let compared = match device.comparable_body() {

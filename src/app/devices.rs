@@ -11,6 +11,6 @@ pub use command::DeviceCommand;
 pub(crate) use kind::OpenProfile;
 pub use kind::{DeviceKind, DeviceType};
 pub(crate) use model::Prepare;
-pub use model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
+pub use model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 pub use open_device::{AnyDevice, OpenDevice};
 pub(super) use selection::Selection;

@@ -1,20 +1,20 @@
 //! Resolution of conflicts when a profile has been changed on disk since it was opened: the differences, entry by
 //! entry.
 
-use super::Kinds;
+use super::KindRegistry;
 use super::action::ReadError;
 use super::documents::read_error;
 use super::question::{Question, Then};
-use super::session::{DivergedFile, Guard, ProfileFile, Saving, Source};
+use super::session::{DivergedFile, FileSnapshot, ProfileFile, SaveRequest, Source};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
-use crate::profile::{Change, Changed, Document, ProfileError, divergence};
+use crate::profile::{Change, ChangedSide, ProfileDocument, ProfileError, diverging_changes};
 
 /// A profile that exists in two different versions.
 #[derive(Debug)]
-pub struct Diverged {
-    saving: Saving,
-    theirs: Result<Box<Document>, ReadError>,
+pub struct ProfileConflict {
+    saving: SaveRequest,
+    theirs: Result<Box<ProfileDocument>, ReadError>,
     text: String,
     rows: Vec<Row>,
     /// Reason why the last choice was not possible.
@@ -24,7 +24,7 @@ pub struct Diverged {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     change: Change,
-    pub changed: Changed,
+    pub changed: ChangedSide,
     /// The version selected for the entry, if any.
     pub take: Option<Side>,
 }
@@ -36,7 +36,7 @@ pub enum Side {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Resolve {
+pub enum ConflictResolution {
     Reload,
     KeepMine,
     Take(usize, Side),
@@ -61,31 +61,31 @@ impl Row {
     }
 }
 
-impl Diverged {
+impl ProfileConflict {
     /// Compares a file with the profile that is to be written to it.
-    pub(super) fn new(saving: Saving, DivergedFile { text, document }: DivergedFile, kinds: Kinds) -> Self {
+    pub(super) fn new(saving: SaveRequest, DivergedFile { text, document }: DivergedFile, kinds: KindRegistry) -> Self {
         let formats = kinds.formats;
         let kind = saving.document.body.kind();
-        let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {
+        let is_of_kind = |found: Box<ProfileDocument>| match found.body.kind() == kind {
             true => Ok(found),
             false => Err(ReadError::Profile(found.body.wrong_kind_error(kind))),
         };
-        let is_known = |found: Box<Document>| found.known().map(Box::new).map_err(ReadError::Profile);
+        let is_known = |found: Box<ProfileDocument>| found.known().map(Box::new).map_err(ReadError::Profile);
         let document = document.and_then(is_of_kind).and_then(is_known);
-        let base = saving.opened.as_ref().and_then(|opened| Document::parse(&opened.text, formats).ok());
+        let base = saving.opened.as_ref().and_then(|opened| ProfileDocument::parse(&opened.text, formats).ok());
         let rows = match (&base, &document) {
-            (Some(base), Ok(theirs)) => divergence(base, theirs, &saving.document),
+            (Some(base), Ok(theirs)) => diverging_changes(base, theirs, &saving.document),
             _ => Vec::new(),
         };
         let take = |changed| match changed {
-            Changed::There => Some(Side::Theirs),
-            Changed::Here => Some(Side::Mine),
-            Changed::Both => None,
+            ChangedSide::There => Some(Side::Theirs),
+            ChangedSide::Here => Some(Side::Mine),
+            ChangedSide::Both => None,
         };
         let row = |(change, changed)| Row { change, changed, take: take(changed) };
         let rows = rows.into_iter().map(row).collect();
         let problem = document.as_ref().err().map(|error| read_error(&saving.path, error, kinds));
-        Diverged { saving, theirs: document, text, rows, problem }
+        ProfileConflict { saving, theirs: document, text, rows, problem }
     }
 
     pub fn session(&self) -> SessionId {
@@ -119,7 +119,7 @@ impl Diverged {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
 
-    fn merged(&self, kinds: Kinds) -> Result<Document, Text> {
+    fn merged(&self, kinds: KindRegistry) -> Result<ProfileDocument, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
         let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
@@ -130,11 +130,11 @@ impl Diverged {
     }
 
     /// Returns a save operation that overwrites the file only if its content has not changed again.
-    fn overwrite_file(self, document: Option<Document>) -> Saving {
-        let Diverged { mut saving, theirs, text, .. } = self;
+    fn overwrite_file(self, document: Option<ProfileDocument>) -> SaveRequest {
+        let ProfileConflict { mut saving, theirs, text, .. } = self;
         // A file that is no longer a profile has nothing to preserve, and the user was told so.
         saving.may_lose = theirs.is_err();
-        saving.opened = saving.opened.map(|opened| Guard { text, ..opened });
+        saving.opened = saving.opened.map(|opened| FileSnapshot { text, ..opened });
         if let Some(document) = document {
             (saving.document, saving.is_merged) = (Box::new(document), true);
         }
@@ -159,8 +159,8 @@ impl Studio {
     }
 
     /// Shows in a profile's session that the file has changed since it was opened.
-    pub(super) fn show_divergence(&mut self, diverged: Diverged) {
-        self.with_device(diverged.session(), |device, _| device.save_waits());
+    pub(super) fn show_divergence(&mut self, diverged: ProfileConflict) {
+        self.with_device(diverged.session(), |device, _| device.mark_save_waiting());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
             self.show(tab, diverged.session());
             self.diverged = Some(diverged);
@@ -168,8 +168,8 @@ impl Studio {
     }
 
     /// Asks for confirmation before comments are lost.
-    pub(super) fn confirm_loss(&mut self, mut saving: Saving, lost: &[String]) {
-        self.with_device(saving.session, |device, _| device.save_waits());
+    pub(super) fn confirm_loss(&mut self, mut saving: SaveRequest, lost: &[String]) {
+        self.with_device(saving.session, |device, _| device.mark_save_waiting());
         saving.may_lose = true;
         let text =
             Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));
@@ -177,11 +177,11 @@ impl Studio {
         self.question = Some(Question::before(text, confirm, Then::Save(Box::new(saving))));
     }
 
-    pub(super) fn resolve(&mut self, resolve: Resolve) {
+    pub(super) fn resolve(&mut self, resolve: ConflictResolution) {
         let Some(mut diverged) = self.diverged.take() else { return };
         let saving = match resolve {
-            Resolve::Close => return,
-            Resolve::Take(at, side) => {
+            ConflictResolution::Close => return,
+            ConflictResolution::Take(at, side) => {
                 if let Some(row) = diverged.rows.get_mut(at) {
                     row.take = Some(side);
                 }
@@ -189,9 +189,9 @@ impl Studio {
                 self.diverged = Some(diverged);
                 return;
             }
-            Resolve::Reload => return self.reload(diverged),
-            Resolve::KeepMine if diverged.can_keep_mine() => diverged.overwrite_file(None),
-            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds) {
+            ConflictResolution::Reload => return self.reload(diverged),
+            ConflictResolution::KeepMine if diverged.can_keep_mine() => diverged.overwrite_file(None),
+            ConflictResolution::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds) {
                 Ok(document) => diverged.overwrite_file(Some(document)),
                 Err(why) => {
                     diverged.problem = Some(why);
@@ -199,7 +199,7 @@ impl Studio {
                     return;
                 }
             },
-            Resolve::KeepMine | Resolve::Merge => {
+            ConflictResolution::KeepMine | ConflictResolution::Merge => {
                 self.diverged = Some(diverged);
                 return;
             }
@@ -208,13 +208,13 @@ impl Studio {
         self.services.tasks.run("save", move || saving.run(kinds));
     }
 
-    fn reload(&mut self, diverged: Diverged) {
-        let Diverged { saving, theirs, text, .. } = diverged;
+    fn reload(&mut self, diverged: ProfileConflict) {
+        let ProfileConflict { saving, theirs, text, .. } = diverged;
         let (Ok(document), Some(opened)) = (theirs, saving.opened) else { return };
         let file = ProfileFile { path: saving.path, key: opened.key, text };
         self.with_device(saving.session, |device, _| {
             device.revert_edits();
-            device.take_document(file, *document);
+            device.apply_document(file, *document);
         });
     }
 }

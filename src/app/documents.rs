@@ -6,18 +6,18 @@ use jiff::Timestamp;
 
 use super::action::{Action, Done, ReadError};
 use super::devices::OpenProfile;
-use super::kinds::Kinds;
+use super::kinds::KindRegistry;
 use super::session::{DraftOutcome, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
-use crate::profile::{Body, Document, Formats, ProfileError};
+use crate::profile::{Body, ProfileDocument, ProfileError, ProfileFormats};
 use crate::store::{Store, read_file};
 
 impl Studio {
     pub(super) fn read(
         &mut self,
         file: ProfileFile,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
         opens: Option<OpenProfile>,
     ) {
         let opening = &mut self.services.opening_files;
@@ -36,7 +36,7 @@ impl Studio {
                 let open = self.devices.iter().map(Box::as_ref).find(own).map(|device| device.id());
                 let id = open.unwrap_or_else(|| self.new_id());
                 if open.is_some() {
-                    self.with_device(id, |device, _| device.take_document(file, *document));
+                    self.with_device(id, |device, _| device.apply_document(file, *document));
                 } else {
                     let (path, found) = (file.path.clone(), document.device());
                     let Some(opens) = opens else { return self.cannot_show(&path, found) };
@@ -95,35 +95,35 @@ pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
 }
 
 /// Converts a profile that has just been read to a document.
-pub(crate) fn document_of(body: Body) -> Document {
+pub(crate) fn document_of(body: Body) -> ProfileDocument {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    Document::new(seconds.to_string(), body)
+    ProfileDocument::new(seconds.to_string(), body)
 }
 
-pub(super) fn read_document(path: PathBuf, store: &Store, kinds: Kinds) -> Action {
+pub(super) fn read_document(path: PathBuf, store: &Store, kinds: KindRegistry) -> Action {
     let (text, result) = match read_text_and_profile(&path, kinds.formats) {
         Ok((text, document)) => (text, Ok(Box::new(document))),
         Err(error) => (String::new(), Err(error)),
     };
     let file = ProfileFile { key: file_key(&path), path, text };
     // Without a profile, the tables are not awaited.
-    let kind = result.as_ref().ok().and_then(|document| kinds.of_profile(document.body.kind()));
+    let kind = result.as_ref().ok().and_then(|document| kinds.for_profile(document.body.kind()));
     let open = kind.map(|kind| kind.read_tables(store));
     Action::Done(Done::Read { file, result, open })
 }
 
-pub(super) fn read_profile(path: &Path, formats: Formats) -> Result<Document, ReadError> {
+pub(super) fn read_profile(path: &Path, formats: ProfileFormats) -> Result<ProfileDocument, ReadError> {
     read_text_and_profile(path, formats).map(|(_, document)| document)
 }
 
-fn read_text_and_profile(path: &Path, formats: Formats) -> Result<(String, Document), ReadError> {
+fn read_text_and_profile(path: &Path, formats: ProfileFormats) -> Result<(String, ProfileDocument), ReadError> {
     let text = read_file(path).map_err(ReadError::File)?;
-    let document = Document::parse(&text, formats).map_err(ReadError::Profile)?;
+    let document = ProfileDocument::parse(&text, formats).map_err(ReadError::Profile)?;
     Ok((text, document))
 }
 
-pub(super) fn read_error(path: &Path, error: &ReadError, kinds: Kinds) -> Text {
+pub(super) fn read_error(path: &Path, error: &ReadError, kinds: KindRegistry) -> Text {
     match error {
         ReadError::File(error) => explain::file(error),
         ReadError::Profile(error) => explain::profile(path, error, kinds),

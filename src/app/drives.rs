@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// The unit in which positions are shown and entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Measure {
+pub enum PositionUnit {
     /// Transmitted steps.
     #[default]
     Steps,
@@ -21,15 +21,16 @@ pub enum Measure {
     Millimetres,
 }
 
-impl Measure {
-    pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
+impl PositionUnit {
+    pub const ALL: [PositionUnit; 4] =
+        [PositionUnit::Steps, PositionUnit::Turns, PositionUnit::Degrees, PositionUnit::Millimetres];
 
     pub const fn unit(self) -> &'static str {
         match self {
-            Measure::Steps => "unit.steps",
-            Measure::Turns => "unit.turns",
-            Measure::Degrees => "unit.degrees",
-            Measure::Millimetres => "unit.millimetres",
+            PositionUnit::Steps => "unit.steps",
+            PositionUnit::Turns => "unit.turns",
+            PositionUnit::Degrees => "unit.degrees",
+            PositionUnit::Millimetres => "unit.millimetres",
         }
     }
 }
@@ -39,7 +40,7 @@ impl Measure {
 pub struct RememberedDrives {
     /// Spindle pitches in nanometres per turn, by drive number.
     pub pitches: BTreeMap<u8, u64>,
-    pub measure: Measure,
+    pub measure: PositionUnit,
     unconfirmed: Vec<u8>,
     /// Number of marks of each drive, which distinguishes a new mark from an earlier one.
     marks: BTreeMap<u8, u64>,
@@ -66,7 +67,7 @@ pub enum SettingsReadState {
 /// A device with drives about which the settings store data.
 pub trait DriveMemory {
     /// Returns the name under which the settings store the device's drives, or `None` before the device has been read.
-    fn remembered_as(&self) -> Option<String>;
+    fn storage_name(&self) -> Option<String>;
 
     /// Adopts the stored data of the drives, and returns the data to store next, if they differ. All data are adopted
     /// once per device; after that, only limits marked elsewhere are adopted.
@@ -79,7 +80,7 @@ pub trait DriveMemory {
     fn marks(&self) -> SettingsReadState;
 
     /// Sets whether the settings have been read since control was taken. Nothing moves before they have been read.
-    fn set_marks(&mut self, marks: SettingsReadState);
+    fn set_read_state(&mut self, marks: SettingsReadState);
 }
 
 impl From<PartialDriveEntry> for RememberedDrives {
@@ -90,7 +91,7 @@ impl From<PartialDriveEntry> for RememberedDrives {
 
 impl RememberedDrives {
     /// Creates drive data without unconfirmed limits.
-    pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: Measure, unsaved: BTreeMap<u16, i64>) -> Self {
+    pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: PositionUnit, unsaved: BTreeMap<u16, i64>) -> Self {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }
 

@@ -65,7 +65,7 @@ impl<B: EditBase> Edits<B> {
     }
 
     /// Adopts new values read from the memory. Edits are kept unless the device now contains their values.
-    pub fn read_again(&mut self, read: impl FnOnce(&mut B)) {
+    pub fn reread(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
         self.history.forget_undone();

@@ -93,7 +93,7 @@ impl fmt::Debug for DeviceFile {
 }
 
 impl FileQuestion {
-    pub fn endings(&self) -> &'static [&'static str] {
+    pub fn file_extensions(&self) -> &'static [&'static str] {
         match self {
             FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {
                 &["ron"]

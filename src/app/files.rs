@@ -9,14 +9,14 @@ use super::question::{Question, Then};
 use super::recorder::{self, ExportResult, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
-use crate::link::{LinkUrl, Scheme};
-use crate::store::{FileError, Folders};
+use crate::link::{LinkScheme, LinkUrl};
+use crate::store::{BaseFolders, FileError};
 
 impl Studio {
     /// Returns the action with all paths made absolute. This is the only point at which paths given by the user enter
     /// the program.
     pub(super) fn with_absolute_path(&self, action: Action) -> Action {
-        let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
+        let whole = |path: PathBuf| self.services.world.folders.absolute_path(&path);
         match action {
             Action::Open(path) => Action::Open(whole(path)),
             Action::Typed(question, path) => Action::Typed(question, whole(path)),
@@ -27,13 +27,13 @@ impl Studio {
 
     /// Returns the link with an absolute path if it refers to a file.
     pub(super) fn with_absolute_file(&self, mut url: LinkUrl) -> LinkUrl {
-        if url.scheme == Scheme::Replay {
-            url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();
+        if url.scheme == LinkScheme::Replay {
+            url.target = self.services.world.folders.absolute_path(Path::new(&url.target)).display().to_string();
         }
         url
     }
 
-    pub fn folders(&self) -> &Folders {
+    pub fn folders(&self) -> &BaseFolders {
         &self.services.world.folders
     }
 

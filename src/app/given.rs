@@ -37,11 +37,11 @@ impl fmt::Debug for Given {
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
 /// A replacement for the function with which a kind opens links. Used by tests only.
-pub struct Opener<D: Device>(Box<Open<D>>);
+pub struct LinkOpener<D: Device>(Box<Open<D>>);
 
-impl<D: Device> Opener<D> {
+impl<D: Device> LinkOpener<D> {
     pub fn new(open: impl Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync + 'static) -> Self {
-        Opener(Box::new(open))
+        LinkOpener(Box::new(open))
     }
 
     /// Opens a link.
@@ -53,7 +53,7 @@ impl<D: Device> Opener<D> {
     }
 }
 
-impl<D: Device> fmt::Debug for Opener<D> {
+impl<D: Device> fmt::Debug for LinkOpener<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Opener")
     }

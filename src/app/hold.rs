@@ -12,14 +12,14 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! After its end it starts again only by another press; by a key only if that press is [fresh](FreshKeys), which none
+//! After its end it starts again only by another press; by a key only if that press is [fresh](KeyStates), which none
 //! is immediately after another key.
 
-use super::press::{FreshKeys, PressKey};
+use super::press::{KeyStates, PressKey};
 
 /// Surroundings of a hold button at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HoldScene {
+pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
@@ -72,9 +72,9 @@ enum HoldSource {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldState {
-    scene: Option<HoldScene>,
+    scene: Option<HoldContext>,
     holder: Option<HoldSource>,
-    keys: FreshKeys,
+    keys: KeyStates,
     pointer: bool,
     was_held: bool,
     /// Whether a hold has begun since the last frame.
@@ -85,7 +85,7 @@ pub struct HoldState {
 
 impl HoldState {
     /// Begins a frame. `follows` states whether the button was present in the previous frame.
-    pub fn begin(&mut self, scene: HoldScene, follows: bool) {
+    pub fn begin(&mut self, scene: HoldContext, follows: bool) {
         let before = self.scene.replace(scene).filter(|_| follows);
         self.pointer &= before.is_some();
         self.was_held = self.holder.is_some();
@@ -164,7 +164,7 @@ impl HoldState {
     }
 
     /// Returns the time in seconds after which another frame is required to detect that a key was released.
-    pub const fn next_picture(&self) -> Option<f64> {
+    pub const fn repaint_delay(&self) -> Option<f64> {
         self.next_picture
     }
 
@@ -184,7 +184,7 @@ impl HoldState {
         has_keyboard && !armed && self.holder.is_none()
     }
 
-    fn key_down(&mut self, key: PressKey, plain: bool, scene: HoldScene) {
+    fn key_down(&mut self, key: PressKey, plain: bool, scene: HoldContext) {
         let fresh = self.keys.press(key);
         match self.holder {
             Some(HoldSource::Key(own)) if own == key && plain => {}

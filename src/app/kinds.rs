@@ -5,24 +5,24 @@ use super::tab::Tab;
 use super::tool::ToolKind;
 use super::{Text, explain};
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Formats};
+use crate::profile::{Cause, ProfileFormats};
 
 #[derive(Clone, Copy)]
-pub struct Kinds {
-    pub formats: Formats,
+pub struct KindRegistry {
+    pub formats: ProfileFormats,
     devices: &'static [&'static dyn DeviceKind],
     tools: &'static [&'static dyn ToolKind],
 }
 
-impl Kinds {
-    pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
+impl KindRegistry {
+    pub const NONE: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[], &[]);
 
     pub const fn new(
-        formats: Formats,
+        formats: ProfileFormats,
         devices: &'static [&'static dyn DeviceKind],
         tools: &'static [&'static dyn ToolKind],
     ) -> Self {
-        Kinds { formats, devices, tools }
+        KindRegistry { formats, devices, tools }
     }
 
     pub fn devices(self) -> &'static [&'static dyn DeviceKind] {
@@ -38,7 +38,7 @@ impl Kinds {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
 
-    pub(super) fn of_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
+    pub(super) fn for_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }
 

@@ -9,10 +9,10 @@ use super::Text;
 use super::action::Opened;
 use super::session::Kind;
 use crate::link::TraceEntry;
-use crate::worker::{Device, Event, JobId, Progress, Ring, Stopper, SubmitError, Worker};
+use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker, WorkerStopHandle};
 
 #[derive(Clone, Debug)]
-pub struct Running<W> {
+pub struct RunningJob<W> {
     pub id: JobId,
     pub title: Text,
     pub since: Zoned,
@@ -24,7 +24,7 @@ pub struct Running<W> {
 pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
-    running: Option<Running<D::JobStep>>,
+    running: Option<RunningJob<D::JobStep>>,
     pub is_virtual: bool,
 }
 
@@ -54,11 +54,11 @@ impl<D: Kind> LiveSession<D> {
     /// Returns an error if another job is running or the session has ended.
     pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
-        self.running = Some(Running { id, title: what, since: now, progress: None, writes, stopping: false });
+        self.running = Some(RunningJob { id, title: what, since: now, progress: None, writes, stopping: false });
         Ok(id)
     }
 
-    pub fn running(&self) -> Option<&Running<D::JobStep>> {
+    pub fn running(&self) -> Option<&RunningJob<D::JobStep>> {
         self.running.as_ref()
     }
 
@@ -120,7 +120,7 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Returns a handle that stops the running job from any thread.
-    pub(crate) fn stopper(&self) -> Stopper {
+    pub(crate) fn stopper(&self) -> WorkerStopHandle {
         self.worker.stopper()
     }
 

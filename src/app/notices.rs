@@ -49,13 +49,13 @@ impl Notice {
 
 /// The window's log of notices, newest last. The oldest notices are removed.
 #[derive(Debug, Default)]
-pub struct Log {
+pub struct NoticeLog {
     notices: VecDeque<Notice>,
     /// The latest notice, if it is still displayed in the window.
     standing: Option<Notice>,
 }
 
-impl Log {
+impl NoticeLog {
     const CAPACITY: usize = 2_000;
 
     /// Adds a notice, which is displayed until it is dismissed or another notice arrives.
@@ -139,7 +139,7 @@ mod tests {
             (Severity::Error, Severity::Warning, true),
         ];
         for (old, new, replaced) in cases {
-            let mut log = Log::default();
+            let mut log = NoticeLog::default();
             log.add(notice(old));
             log.add(notice(new));
             assert_eq!(
@@ -164,7 +164,7 @@ mod tests {
     /// Issue 22.28: saving a file removes the errors about that file and no others.
     #[test]
     fn saving_a_file_settles_its_own_errors() {
-        let mut log = Log::default();
+        let mut log = NoticeLog::default();
         let full = Text::new("file.disk_full").with("path", "/a/b.csv");
         let texts = vec![full, Text::new("session.not_saved")];
         log.add(Notice { at: Zoned::now(), severity: Severity::Error, texts, about: None, part: None });
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_settled_notice_is_removed() {
-        let mut log = Log::default();
+        let mut log = NoticeLog::default();
         let texts = vec![Text::new("session.not_connected")];
         log.add(Notice {
             at: Zoned::now(),

@@ -51,7 +51,7 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
 ///
 /// # Errors
 /// Returns a text that states why the entry is invalid.
-pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
+pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
     let digits = text.trim();
@@ -104,7 +104,7 @@ fn quantity(text: &str) -> Option<f64> {
 ///
 /// # Errors
 /// Returns a text that states why the entry is invalid.
-pub(crate) fn quantity_within(
+pub(crate) fn parse_quantity(
     what: impl Into<Text>,
     text: &str,
     (least, most): (f64, f64),

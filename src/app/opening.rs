@@ -4,16 +4,16 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailure, Opened};
-use super::given::Opener;
+use super::given::LinkOpener;
 use super::question::{Question, Then};
-use super::services::{Environment, JobEnd, Services};
-use super::session::{Kind, Opening, Phase, Source};
+use super::services::{Environment, JobState, Services};
+use super::session::{Kind, PendingOpen, Phase, Source};
 use super::shutdown::shares_wire;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text};
-use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
+use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
 /// Maximum number of frames waiting for the window. This is ten seconds at 2,000 frames per second, far more than a
@@ -26,14 +26,14 @@ impl Studio {
     /// Returns the tab of the device to which a link leads. If the link does not determine the kind of device, the kind
     /// last used with the link is chosen, or the tab shown last if there were several kinds. A new link uses the open
     /// tab.
-    pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
+    pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
         let shown = if kinds.kind_for_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
         let fits = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
         // Each kind has virtual devices: their links do not tell the kind.
-        let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
+        let text = (link.scheme != LinkScheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
@@ -48,12 +48,12 @@ impl Studio {
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_absolute_file(url);
         if let Some(id) = self.session_at(tab, &url) {
-            self.open_for(id, url);
+            self.open_session_link(id, url);
         }
     }
 
     /// Opens a link to a device found by a search. The search has already asked about other masters on the line.
-    pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
+    pub(super) fn open_discovered(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
         if let Some(id) = self.session_at(tab, &url) {
@@ -76,9 +76,9 @@ impl Studio {
                 return None;
             }
             let held = device.is_connected();
-            device.let_go(JobEnd::Cancelled, &mut self.services);
+            device.let_go(JobState::Cancelled, &mut self.services);
             if device.tab() == tab {
-                device.take_link(url.clone());
+                device.switch_link(url.clone());
                 own = Some(device.id());
             } else if held {
                 *device.phase_mut() = Phase::Lost(Text::new("session.let_go_for_other"));
@@ -115,7 +115,7 @@ impl Studio {
         if device.is_writing() {
             return Err(Text::new("session.writes_there").with("name", name));
         }
-        device.let_go(JobEnd::Cancelled, &mut self.services);
+        device.let_go(JobState::Cancelled, &mut self.services);
         *device.phase_mut() = Phase::Lost(why.clone());
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         self.services.notify(Severity::Note, vec![why], Some(&name));
@@ -125,13 +125,13 @@ impl Studio {
     pub(crate) fn reconnect(&mut self, id: SessionId) {
         let Some(device) = self.devices.iter_mut().find(|own| own.id() == id && !own.is_writing()) else { return };
         let Source::Link(url) = device.source().clone() else { return };
-        device.let_go(JobEnd::Cancelled, &mut self.services);
-        self.open_for(id, url);
+        device.let_go(JobState::Cancelled, &mut self.services);
+        self.open_session_link(id, url);
     }
 
     /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened.
     /// Listening proves nothing, because the drive may have read the encoder at power-up and been silent since.
-    fn open_for(&mut self, id: SessionId, url: LinkUrl) {
+    fn open_session_link(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
         if !kinds.kind_for_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
@@ -155,7 +155,7 @@ impl Studio {
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         let over = device.open(url, attempt, earlier, &mut self.services);
         *device.phase_mut() = Phase::Opening;
-        *device.opening_mut() = Some(Opening { attempt: Some(attempt), over, is_sole_master });
+        *device.opening_mut() = Some(PendingOpen { attempt: Some(attempt), over, is_sole_master });
     }
 
     pub(super) fn opened(&mut self, done: Attempt) {
@@ -220,7 +220,7 @@ fn open<D: Kind>(
     let began = (world.now)();
     let mut session = world
         .given
-        .get::<Opener<D>>()
+        .get::<LinkOpener<D>>()
         .map_or_else(|| D::open(url, world.store.clone()), |opener| opener.open(url, world.store.clone()))
         .map_err(|error| Box::new(OpenFailure::Link(error)))?;
     prepare(&mut session);

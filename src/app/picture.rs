@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::store::{FileError, FileProblem, FileTask, write_atomically};
+use crate::store::{FileError, FileErrorKind, FileOperation, write_atomically};
 
 /// A picture in RGB pixels, row by row from the top.
 #[derive(Clone, PartialEq, Eq)]
@@ -37,8 +37,8 @@ impl Picture {
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),
-            task: FileTask::Write,
-            problem: FileProblem::from(error),
+            task: FileOperation::Write,
+            problem: FileErrorKind::from(error),
         };
         write_atomically(path, &self.png().map_err(refused)?)
     }

@@ -30,18 +30,18 @@ enum KeyState {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FreshKeys {
+pub struct KeyStates {
     space: KeyState,
     enter: KeyState,
 }
 
-impl FreshKeys {
+impl KeyStates {
     /// State in which both keys are up and the keyboard focus was never lost.
-    pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
+    pub const UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
     /// Discards the known key states, because the keyboard focus was lost, gained, or has another purpose.
     pub fn forget(&mut self) {
-        *self = FreshKeys::default();
+        *self = KeyStates::default();
     }
 
     /// Handles a key press. Returns whether the press is fresh, that is, whether an earlier frame saw the key up long
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     /// Runs `count` frames without input.
-    fn pictures(keys: &mut FreshKeys, from: f64, apart: f64, count: u32) {
+    fn pictures(keys: &mut KeyStates, from: f64, apart: f64, count: u32) {
         for number in 0..count {
             let _ = keys.end_picture(from + apart * f64::from(number));
         }
@@ -135,7 +135,7 @@ mod tests {
     /// Issue 21.2: a press that the toolkit reports as new is not fresh if the key was not seen up before.
     #[test]
     fn a_press_is_fresh_only_after_a_release() {
-        let mut keys = FreshKeys::default();
+        let mut keys = KeyStates::default();
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
             assert!(!keys.press(Space), "a key that is held repeats itself");
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
-            let mut keys = FreshKeys::UP;
+            let mut keys = KeyStates::UP;
             assert!(keys.press(Enter));
             let _ = keys.end_picture(0.0);
             for number in 1..30 {
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn a_users_press_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
-            let mut keys = FreshKeys::UP;
+            let mut keys = KeyStates::UP;
             assert!(keys.press(Enter));
             assert_eq!(keys.end_picture(0.0), None, "it is down, and nothing is to be waited for");
             keys.release(Enter, 1.0);
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn another_key_ends_the_repeats_of_an_unknown_key() {
-        let mut keys = FreshKeys::default();
+        let mut keys = KeyStates::default();
         keys.press_other_key(1.0);
         assert!(!keys.press(Enter), "at once");
         keys.forget();
@@ -214,21 +214,21 @@ mod tests {
     /// Issue 22.29: Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
     fn a_press_right_after_another_key_is_not_fresh() {
-        let mut keys = FreshKeys::UP;
+        let mut keys = KeyStates::UP;
         keys.doubt(1.0);
         assert!(!keys.press(Enter), "in the same picture");
-        let mut keys = FreshKeys::UP;
+        let mut keys = KeyStates::UP;
         keys.doubt(1.0);
         let _ = keys.end_picture(1.0);
         assert!(!keys.press(Enter), "in the next one, whenever that is");
-        let mut keys = FreshKeys::UP;
+        let mut keys = KeyStates::UP;
         keys.doubt(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(keys.press(Enter), "a person's");
         keys.doubt(2.0);
         pictures(&mut keys, 2.0, 0.05, 2);
         assert!(!keys.press(Enter), "it is down");
-        let mut keys = FreshKeys::default();
+        let mut keys = KeyStates::default();
         keys.doubt(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(!keys.press(Enter), "it may be held");

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::Text;
 use super::action::RecorderOwner;
 use super::file_question::FileQuestion;
-use super::session::Saving;
+use super::session::SaveRequest;
 use super::studio::SessionId;
 use super::tab::Tab;
 
@@ -24,7 +24,7 @@ pub(crate) enum Then {
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
     Forget(RecorderOwner),
-    Save(Box<Saving>),
+    Save(Box<SaveRequest>),
     OpenLink(SessionId),
     /// Continue the search started from the form of a tab in the connection dialog.
     Find(Tab),

@@ -11,7 +11,7 @@ pub trait Recording {
     fn recorder_mut(&mut self) -> &mut Recorder;
 
     /// Returns the number of samples that were dropped before they could be recorded.
-    fn dropped(&self) -> u64;
+    fn dropped_count(&self) -> u64;
 
     /// Sets the polling interval. `begins` states whether polling was off before.
     #[doc(hidden)]

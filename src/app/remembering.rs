@@ -15,8 +15,8 @@ const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
     pub(super) fn remember_drives(&mut self) {
-        for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
-            let Some(key) = drives.remembered_as() else { continue };
+        for drives in self.devices.iter_mut().filter_map(|device| device.drive_memory()) {
+            let Some(key) = drives.storage_name() else { continue };
             if let Some(changed) = drives.exchange_remembered(&self.settings.drives(&key)) {
                 self.settings.remember_drives(key, changed);
             }
@@ -31,36 +31,36 @@ impl Studio {
         let mut is_due = self.is_in_control() && self.settings_store.is_older(&now, PACE);
         for drives in self.controlled_drives() {
             if is_old && drives.marks() == SettingsReadState::Read {
-                drives.set_marks(SettingsReadState::Unread);
+                drives.set_read_state(SettingsReadState::Unread);
             }
             is_due |= drives.marks() == SettingsReadState::Unread;
         }
         if is_due && self.settings_store.begin_read(&self.services) {
             self.controlled_drives()
-                .for_each(|drives| drives.set_marks(drives.marks().max(SettingsReadState::Reading)));
+                .for_each(|drives| drives.set_read_state(drives.marks().max(SettingsReadState::Reading)));
         }
     }
 
     pub(super) fn apply_read_settings(&mut self, found: Option<Settings>) {
         if let Some(found) = self.settings_store.finish_read(found, &mut self.settings) {
-            for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
-                drives.remembered_as().into_iter().for_each(|key| drives.lock_by(&found.drives(&key)));
+            for drives in self.devices.iter_mut().filter_map(|device| device.drive_memory()) {
+                drives.storage_name().into_iter().for_each(|key| drives.lock_by(&found.drives(&key)));
             }
         }
         self.remember_drives();
         let reading = |drives: &&mut dyn DriveMemory| drives.marks() == SettingsReadState::Reading;
-        self.controlled_drives().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
+        self.controlled_drives().filter(reading).for_each(|drives| drives.set_read_state(SettingsReadState::Read));
     }
 
     /// Records that the settings could not be read. No drive under control moves until they have been read.
-    pub(super) fn settings_unread(&mut self, error: &FileError) {
+    pub(super) fn handle_settings_error(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.fail_read();
-        self.controlled_drives().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
+        self.controlled_drives().for_each(|drives| drives.set_read_state(SettingsReadState::Unread));
     }
 
     fn controlled_drives(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
         let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::is_in_control));
-        in_hand.filter_map(|device| device.remembers_drives())
+        in_hand.filter_map(|device| device.drive_memory())
     }
 }

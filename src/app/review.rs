@@ -4,7 +4,7 @@ mod permit;
 
 use std::path::PathBuf;
 
-pub use permit::{Permit, Toggle};
+pub use permit::{Permit, PermitToggle};
 
 use super::session::Kind;
 use super::{Severity, Text, explain};
@@ -12,7 +12,7 @@ use crate::profile::{Plan, PlanId};
 use crate::worker::commit::Planned;
 use crate::worker::{Committed, is_uncounted};
 
-pub struct Review<K: Reviewed> {
+pub struct Review<K: Reviewable> {
     pub title: Text,
     pub state: ReviewState<K>,
     /// Whether to write even though the device has reached its limit of write cycles.
@@ -22,10 +22,10 @@ pub struct Review<K: Reviewed> {
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
     /// The relevant permits, and whether they are granted.
-    permits: Vec<Toggle>,
+    permits: Vec<PermitToggle>,
 }
 
-pub enum ReviewState<K: Reviewed> {
+pub enum ReviewState<K: Reviewable> {
     Planning,
     Ready(Box<K::Prepared>),
     Writing(Box<K::Prepared>),
@@ -42,9 +42,9 @@ pub enum ReviewState<K: Reviewed> {
     },
 }
 
-impl<K: Reviewed> Review<K> {
+impl<K: Reviewable> Review<K> {
     pub(crate) fn new(mut change: K::Change, is_for_another: bool, is_for_another_type: bool) -> Self {
-        let own = |permit| K::permitted(&mut change, permit).map(|own| Toggle { permit, is_on: *own });
+        let own = |permit| K::permitted(&mut change, permit).map(|own| PermitToggle { permit, is_on: *own });
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
         Review {
@@ -99,7 +99,7 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// Returns the permits that are granted or would make a difference.
-    fn permit_toggles(&self) -> Vec<Toggle> {
+    fn permit_toggles(&self) -> Vec<PermitToggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::OtherType => self.is_for_another_type,
@@ -191,7 +191,7 @@ pub struct ReviewSheet {
     /// Cost in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
     pub execution_mode: ExecutionMode,
-    pub toggles: Vec<Toggle>,
+    pub toggles: Vec<PermitToggle>,
     /// Questions that the user must answer first.
     pub questions: Vec<Question>,
     /// Whether to write even if the device reaches its limit of write cycles or their number is unknown.
@@ -223,7 +223,7 @@ pub enum Stage {
 }
 
 /// A kind of device with a memory, and the texts for its writes.
-pub trait Reviewed: Kind<Review = Review<Self>> {
+pub trait Reviewable: Kind<Review = Review<Self>> {
     type Change: Clone;
     type Prepared: Planned + Clone;
     type Written;
@@ -274,9 +274,9 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     }
 }
 
-pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
+pub(crate) type Op<K> = <<K as Reviewable>::Prepared as Planned>::Op;
 
-pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+pub fn written_texts<K: Reviewable>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
@@ -301,14 +301,14 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
     (!items.is_empty()).then(|| Text::new("review.redo").with_list("items", items))
 }
 
-impl<K: Reviewed> Review<K> {
+impl<K: Reviewable> Review<K> {
     /// Returns the review in the form displayed, after `done` operations have been completed.
     pub fn sheet(&self, done: usize) -> ReviewSheet {
-        self.sheet_with(done, K::op)
+        self.review_sheet(done, K::op)
     }
 
     /// Returns the review in the form displayed, with the connected device's own descriptions of operations.
-    pub(in crate::app) fn sheet_with(
+    pub(in crate::app) fn review_sheet(
         &self,
         done: usize,
         op: impl Fn(&K::Prepared, &Op<K>) -> OperationTexts,

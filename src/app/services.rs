@@ -7,16 +7,16 @@ use std::sync::Arc;
 use jiff::Zoned;
 
 use super::Text;
-use super::brakes::Brakes;
+use super::brakes::DriveStopHandles;
 use super::file_question::FileQuestion;
 use super::given::Given;
-use super::kinds::Kinds;
-use super::notices::{Log, Notice, Severity};
+use super::kinds::KindRegistry;
+use super::notices::{Notice, NoticeLog, Severity};
 use super::shutdown::{ClosingSession, GracePeriods};
 use super::studio::SessionId;
-use super::tasks::{Tasks, Wake};
+use super::tasks::{TaskRunner, Wake};
 use crate::link::{LinkError, PortInfo};
-use crate::store::{Folders, Store};
+use crate::store::{BaseFolders, Store};
 use crate::worker::JobId;
 
 /// The studio's access to the outside world, which tests replace.
@@ -25,23 +25,23 @@ pub struct Environment {
     pub store: Store,
     /// The configuration that kinds of device receive from outside.
     pub given: Given,
-    pub kinds: Kinds,
+    pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// The folders to which relative paths refer.
-    pub folders: Folders,
+    pub folders: BaseFolders,
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// Maximum waiting times when closing.
     pub patience: GracePeriods,
 }
 
 impl Environment {
-    pub fn real(store: Store, kinds: Kinds) -> Self {
+    pub fn real(store: Store, kinds: KindRegistry) -> Self {
         Environment {
             store,
             given: Given::default(),
             kinds,
             ports: Arc::new(crate::link::ports),
-            folders: Folders::of_user(),
+            folders: BaseFolders::for_current_user(),
             now: Arc::new(Zoned::now),
             patience: GracePeriods::default(),
         }
@@ -49,7 +49,7 @@ impl Environment {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum JobEnd {
+pub enum JobState {
     Running,
     Done,
     Failed(Text),
@@ -62,18 +62,18 @@ pub struct JobRecord {
     pub until: Option<Zoned>,
     pub about: String,
     pub title: Text,
-    pub end: JobEnd,
+    pub end: JobState,
     key: (SessionId, JobId),
 }
 
 pub struct Services {
     pub(crate) world: Environment,
-    pub(crate) tasks: Tasks,
-    pub log: Log,
+    pub(crate) tasks: TaskRunner,
+    pub log: NoticeLog,
     /// Jobs, newest last.
     jobs: VecDeque<JobRecord>,
     pub(crate) file_question: Option<FileQuestion>,
-    pub(crate) brakes: Brakes,
+    pub(crate) brakes: DriveStopHandles,
     /// Sessions that have been released but have not ended yet.
     pub(super) closing_sessions: Vec<ClosingSession>,
     pub(super) opening_files: Vec<std::path::PathBuf>,
@@ -96,8 +96,8 @@ impl Services {
     }
 
     pub(crate) fn new(world: Environment, wake: Wake) -> Self {
-        let (log, jobs) = (Log::default(), VecDeque::new());
-        let (tasks, closing_sessions) = (Tasks::new(wake), Vec::new());
+        let (log, jobs) = (NoticeLog::default(), VecDeque::new());
+        let (tasks, closing_sessions) = (TaskRunner::new(wake), Vec::new());
         let opening_files = Vec::new();
         Services {
             world,
@@ -105,7 +105,7 @@ impl Services {
             log,
             jobs,
             file_question: None,
-            brakes: Brakes::default(),
+            brakes: DriveStopHandles::default(),
             closing_sessions,
             opening_files,
             drafts_on_their_way: 0,
@@ -152,7 +152,7 @@ impl Services {
             until: None,
             about,
             title: what,
-            end: JobEnd::Running,
+            end: JobState::Running,
             key: (session, id),
         });
         if self.jobs.len() > Self::JOBS {
@@ -160,7 +160,7 @@ impl Services {
         }
     }
 
-    pub(crate) fn end_job(&mut self, session: SessionId, id: JobId, end: JobEnd) {
+    pub(crate) fn end_job(&mut self, session: SessionId, id: JobId, end: JobState) {
         let now = self.now();
         if let Some(job) = self.jobs.iter_mut().rev().find(|job| job.key == (session, id)) {
             job.end = end;

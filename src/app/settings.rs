@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
 use super::drives::{PartialDriveEntry, RememberedDrives};
-use super::kinds::Kinds;
+use super::kinds::KindRegistry;
 use super::tab::Tab;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,7 +62,7 @@ impl Default for Settings {
 
 impl Settings {
     /// Returns the settings used when the program is started for the first time.
-    pub fn of(kinds: Kinds) -> Self {
+    pub fn of(kinds: KindRegistry) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
@@ -163,7 +163,7 @@ impl Settings {
     }
 
     /// Replaces an unknown tab with the first one.
-    pub(super) fn settle(&mut self, kinds: Kinds) {
+    pub(super) fn settle(&mut self, kinds: KindRegistry) {
         if !kinds.has_tab(self.tab) {
             self.tab = kinds.first_tab();
         }
@@ -284,7 +284,7 @@ mod tests {
     fn links_of_an_unknown_tab_are_kept() {
         let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
         let mut settings = Settings::parse(text).unwrap();
-        settings.settle(Kinds::NONE);
+        settings.settle(KindRegistry::NONE);
         settings.use_link(HIPERFACE, "tcp:host:2");
         let again = Settings::parse(&settings.emit()).unwrap();
         assert_eq!(again.tab, Tab::default());

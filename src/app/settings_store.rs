@@ -13,10 +13,10 @@ use crossbeam_channel::bounded;
 use jiff::Zoned;
 
 use super::action::{Action, Done};
-use super::kinds::Kinds;
+use super::kinds::KindRegistry;
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
-use crate::store::{FileError, FileProblem, read_text, update_text};
+use crate::store::{FileError, FileErrorKind, read_text, update_text};
 
 /// Maximum time for which the start of the program waits for the settings.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -42,7 +42,7 @@ pub(crate) struct SettingsStore {
 }
 
 #[derive(Debug)]
-pub enum SettingsRead {
+pub enum LoadedSettings {
     /// The settings are complete, as the program wrote them.
     Whole(Box<Settings>),
     Missing,
@@ -58,7 +58,7 @@ pub enum SettingsRead {
 }
 
 #[derive(Debug)]
-pub struct SettingsWritten {
+pub struct SavedSettings {
     settings: Box<Settings>,
     /// Paths of a broken file and of its copy.
     aside: Option<(PathBuf, PathBuf)>,
@@ -98,19 +98,19 @@ impl SettingsStore {
     }
 
     /// Adopts settings that were read. Changes made by the user in the meantime are kept.
-    pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
+    pub(super) fn take(&mut self, read: LoadedSettings, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
         let kinds = services.world.kinds;
         let found = match read {
-            SettingsRead::Whole(found) => {
+            LoadedSettings::Whole(found) => {
                 self.may_write = true;
                 *found
             }
-            SettingsRead::Missing => {
+            LoadedSettings::Missing => {
                 self.may_write = true;
                 Settings::of(kinds)
             }
-            SettingsRead::Broken { settings, path, aside } => {
+            LoadedSettings::Broken { settings, path, aside } => {
                 let text = match &aside {
                     Ok(aside) => Text::new("session.settings_broken").with("aside", aside.display()),
                     Err(why) => Text::new("session.settings_left").with("why", why),
@@ -119,7 +119,7 @@ impl SettingsStore {
                 self.may_write = aside.is_ok();
                 *settings
             }
-            SettingsRead::Unreadable(error) => {
+            LoadedSettings::Unreadable(error) => {
                 let text = Text::new("session.settings_unread").with_text("why", explain::file(&error));
                 services.notify(Severity::Warning, vec![text], None);
                 return;
@@ -143,13 +143,13 @@ impl SettingsStore {
     /// Handles the result of a write. A failure is reported only once.
     pub(super) fn finish_write(
         &mut self,
-        result: Result<SettingsWritten, FileError>,
+        result: Result<SavedSettings, FileError>,
         settings: &mut Settings,
         services: &mut Services,
     ) {
         let Some(written) = self.writing.take() else { return };
         match result {
-            Ok(SettingsWritten { settings: found, aside }) => {
+            Ok(SavedSettings { settings: found, aside }) => {
                 self.known = written;
                 self.reconcile(&found, settings);
                 self.failed = None;
@@ -163,7 +163,7 @@ impl SettingsStore {
             }
             Err(error) => {
                 // Another program will release it: the write is retried.
-                self.failed = (error.problem != FileProblem::InUse).then_some(written);
+                self.failed = (error.problem != FileErrorKind::InUse).then_some(written);
                 if !std::mem::replace(&mut self.is_failure_reported, true) {
                     let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
                     services.notify(Severity::Warning, vec![text], None);
@@ -227,23 +227,23 @@ impl SettingsStore {
 }
 
 /// Reads the settings. A broken file is copied to a name next to it.
-fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
+fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     match understood(read_text(&path), kinds) {
-        Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
+        Ok(Some((settings, true))) => LoadedSettings::Whole(Box::new(settings)),
         Ok(Some((settings, false))) => {
             let aside = broken_copy_path(&path);
             let copied = fs::copy(&path, &aside);
             let aside = copied.map(|_| aside).map_err(|error| error.to_string());
-            SettingsRead::Broken { settings: Box::new(settings), path, aside }
+            LoadedSettings::Broken { settings: Box::new(settings), path, aside }
         }
-        Ok(None) => SettingsRead::Missing,
-        Err(error) => SettingsRead::Unreadable(error),
+        Ok(None) => LoadedSettings::Missing,
+        Err(error) => LoadedSettings::Unreadable(error),
     }
 }
 
 /// Parses settings as far as possible, and returns them with whether they are complete. Returns `None` if there is no
 /// file.
-fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(Settings, bool)>, FileError> {
+fn understood(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
             let (mut settings, is_whole) = match Settings::parse(&text) {
@@ -253,8 +253,8 @@ fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(S
             settings.settle(kinds);
             Ok(Some((settings, is_whole)))
         }
-        Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
-        Err(FileError { problem: FileProblem::NotUtf8 { .. } | FileProblem::TooLarge { .. }, .. }) => {
+        Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
+        Err(FileError { problem: FileErrorKind::NotUtf8 { .. } | FileErrorKind::TooLarge { .. }, .. }) => {
             Ok(Some((Settings::of(kinds), false)))
         }
         Err(error) => Err(error),
@@ -262,8 +262,8 @@ fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(S
 }
 
 /// Reads the settings, or returns `None` if no window can have written any.
-fn found(path: &Path, kinds: Kinds) -> Result<Option<Settings>, FileError> {
-    use FileProblem::{IsFolder, NoFolder, NotAFile, NotFolder};
+fn found(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
+    use FileErrorKind::{IsFolder, NoFolder, NotAFile, NotFolder};
     match understood(read_text(path), kinds) {
         Err(FileError { problem: NoFolder | NotFolder | IsFolder | NotAFile, .. }) => Ok(None),
         read => Ok(read?.map(|(settings, _)| settings)),
@@ -277,7 +277,7 @@ fn broken_copy_path(path: &Path) -> PathBuf {
 }
 
 /// Writes the changes of `ours` since `known` into the current file.
-fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result<SettingsWritten, FileError> {
+fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) -> Result<SavedSettings, FileError> {
     update_text(path, |text| {
         let (there, is_whole) = match understood(text, kinds)? {
             Some((found, is_whole)) => (Some(found), is_whole),
@@ -287,7 +287,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
         // If the file was deleted, it has no other changes.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
-        Ok((text, SettingsWritten { settings: Box::new(merged), aside }))
+        Ok((text, SavedSettings { settings: Box::new(merged), aside }))
     })
 }
 
@@ -300,7 +300,7 @@ fn move_to_backup(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> 
     }
     let failed = |error: std::io::Error| FileError {
         path: aside.clone(),
-        task: crate::store::FileTask::Write,
+        task: crate::store::FileOperation::Write,
         problem: error.into(),
     };
     fs::copy(path, &aside).map_err(failed)?;

@@ -6,9 +6,9 @@ use std::time::Duration;
 use crossbeam_channel::Sender;
 
 use super::action::{Action, Done};
-use super::brakes::Brakes;
-use super::services::{JobEnd, Services};
-use super::session::{JobEnding, Kind};
+use super::brakes::DriveStopHandles;
+use super::services::{JobState, Services};
+use super::session::{JobCompletion, Kind};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Wire};
@@ -29,7 +29,7 @@ pub struct GracePeriods {
 impl Default for GracePeriods {
     fn default() -> Self {
         GracePeriods {
-            drives: Brakes::PATIENCE,
+            drives: DriveStopHandles::PATIENCE,
             disk: Duration::from_secs(3),
             job: Duration::from_secs(10),
             write: Duration::from_secs(90),
@@ -56,7 +56,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Waits for the end, for at most `patience`. Returns whether the end was reached.
     fn wait(&self, patience: Duration) -> bool;
 
-    fn job_endings(&self) -> Vec<JobEnding>;
+    fn job_endings(&self) -> Vec<JobCompletion>;
 }
 
 impl<D: Kind> ClosingWorker for Ending<D> {
@@ -68,7 +68,7 @@ impl<D: Kind> ClosingWorker for Ending<D> {
         Ending::wait(self, patience)
     }
 
-    fn job_endings(&self) -> Vec<JobEnding> {
+    fn job_endings(&self) -> Vec<JobCompletion> {
         self.events().try_iter().filter_map(|event| D::job_endings(&event)).collect()
     }
 }
@@ -82,7 +82,7 @@ impl ClosingWorker for End {
         End::wait(self, patience)
     }
 
-    fn job_endings(&self) -> Vec<JobEnding> {
+    fn job_endings(&self) -> Vec<JobCompletion> {
         Vec::new()
     }
 }
@@ -131,8 +131,8 @@ impl Services {
             }
             if ended && let Some(job) = closing.info.write.take() {
                 let why = Text::new("session.ended");
-                let end = JobEnd::Failed(why.clone());
-                let end = JobEnding { job, end, severity: Severity::Error, texts: vec![why] };
+                let end = JobState::Failed(why.clone());
+                let end = JobCompletion { job, end, severity: Severity::Error, texts: vec![why] };
                 endings.push((closing.info.session, closing.info.about.clone(), end));
             }
             !ended

@@ -33,7 +33,7 @@ impl StopPresses {
     }
 
     /// Returns the time of the press that counts now. A click made with the keyboard has no separate press.
-    pub fn pressed_at(&self, by_pointer: bool, now: f64) -> f64 {
+    pub fn press_time(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }
 }
@@ -59,9 +59,9 @@ mod tests {
         presses.means_motion(true, 10.0, 10.0);
         presses.goes_down(10.25);
         // Released long after.
-        let pressed = presses.pressed_at(true, 12.0);
+        let pressed = presses.press_time(true, 12.0);
         assert_eq!(pressed, 10.25);
         assert!(presses.means_motion(false, pressed, 12.0));
-        assert_eq!(presses.pressed_at(false, 13.0), 13.0, "by the keyboard");
+        assert_eq!(presses.press_time(false, 13.0), 13.0, "by the keyboard");
     }
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, Waited};
+use super::action::{Action, Done, ShutdownWait};
 use super::comparison::ProfileComparison;
-use super::connect::Connect;
+use super::connect::ConnectDialog;
 use super::devices::{AnyDevice, DeviceType, Selection};
-use super::diverged::Diverged;
+use super::diverged::ProfileConflict;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
@@ -25,10 +25,10 @@ pub struct SessionId(pub(crate) u32);
 
 pub struct Studio {
     pub settings: Settings,
-    pub connect: Option<Connect>,
+    pub connect: Option<ConnectDialog>,
     pub question: Option<Question>,
     /// A profile whose file has changed since it was opened.
-    pub diverged: Option<Diverged>,
+    pub diverged: Option<ProfileConflict>,
     pub services: Services,
     pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
     pub(crate) devices: Vec<Box<AnyDevice>>,
@@ -36,7 +36,7 @@ pub struct Studio {
     next_id: u32,
     pub(crate) settings_store: SettingsStore,
     pub(super) closing: bool,
-    pub(super) waited: Option<Waited>,
+    pub(super) waited: Option<ShutdownWait>,
     path_question: Option<FileQuestion>,
     pub(super) comparison: Option<ProfileComparison>,
 }
@@ -68,7 +68,7 @@ impl Studio {
 
     /// Starts with a link, a profile or, if neither is given, the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
-        let tab = self.tab_of(link.as_ref());
+        let tab = self.tab_for_link(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();
         let link = link.or_else(|| self.virtual_link(tab).filter(|_| is_empty));
         if let Some(link) = link {
@@ -141,7 +141,7 @@ impl Studio {
             Action::Tool(tab, action) => self.apply_tool_action(tab, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
-                self.devices.iter_mut().for_each(|device| device.save_waits());
+                self.devices.iter_mut().for_each(|device| device.mark_save_waiting());
                 let text = Text::new("session.no_thread").with("why", why);
                 self.services.notify(Severity::Error, vec![text], None);
             }
@@ -195,7 +195,7 @@ impl Studio {
         self.path_question.take()
     }
 
-    pub fn opening_files(&self) -> &[PathBuf] {
+    pub fn files_being_opened(&self) -> &[PathBuf] {
         &self.services.opening_files
     }
 
@@ -279,7 +279,7 @@ impl Studio {
     }
 
     fn searches(&self) -> bool {
-        self.connect.as_ref().is_some_and(Connect::is_searching)
+        self.connect.as_ref().is_some_and(ConnectDialog::is_searching)
     }
 
     fn can_stop_tools(&self) -> bool {
@@ -341,11 +341,11 @@ impl Studio {
                 self.settings_store.finish_write(result, &mut self.settings, &mut self.services)
             }
             Done::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
-            Done::SettingsSeen(Err(error)) => self.settings_unread(&error),
+            Done::SettingsSeen(Err(error)) => self.handle_settings_error(&error),
             Done::Draft(id, done) => self.finish_draft(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {
-                self.with_device(session, |device, services| device.take_backup(&of, &path, result, services));
+                self.with_device(session, |device, services| device.apply_backup(&of, &path, result, services));
             }
             Done::Tool(tab, done) => self.finish_tool_action(tab, done),
         }

@@ -12,7 +12,7 @@ use super::Action;
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Runner for tasks on threads. The result of each task is an action.
-pub struct Tasks {
+pub struct TaskRunner {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
     wake: Wake,
@@ -25,12 +25,12 @@ pub struct Mailbox {
     wake: Wake,
 }
 
-impl Tasks {
+impl TaskRunner {
     /// Creates an empty list of tasks.
     pub(crate) fn new(wake: Wake) -> Self {
         // Unbounded: each thread sends once, and there are as many as the user's clicks.
         let (sender, receiver) = unbounded();
-        Tasks { sender, receiver, wake }
+        TaskRunner { sender, receiver, wake }
     }
 
     /// Runs a task on a thread. The result of the task is returned as an action.

@@ -19,11 +19,11 @@ pub enum Language {
 pub struct Text {
     catalogue: &'static Catalogue,
     id: &'static str,
-    arguments: Vec<(&'static str, Argument)>,
+    arguments: Vec<(&'static str, TextArgument)>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Argument {
+enum TextArgument {
     Words(String),
     /// A number in English format, with a decimal point.
     Number(String),
@@ -32,24 +32,26 @@ enum Argument {
     List(Vec<Text>),
 }
 
-impl Argument {
+impl TextArgument {
     /// Returns the memory in bytes used by the argument's heap data.
     fn size(&self) -> usize {
         match self {
-            Argument::Words(words) | Argument::Number(words) => words.len(),
-            Argument::Name(english, german) => english.len() + german.len(),
-            Argument::Text(text) => text.size(),
-            Argument::List(texts) => texts.iter().map(Text::size).sum(),
+            TextArgument::Words(words) | TextArgument::Number(words) => words.len(),
+            TextArgument::Name(english, german) => english.len() + german.len(),
+            TextArgument::Text(text) => text.size(),
+            TextArgument::List(texts) => texts.iter().map(Text::size).sum(),
         }
     }
 
     fn text_for(&self, place: Output) -> String {
         match self {
-            Argument::Number(number) if matches!(place, Output::Window(Language::German)) => number.replace('.', ","),
-            Argument::Name(_, german) if matches!(place, Output::Window(Language::German)) => german.clone(),
-            Argument::Words(words) | Argument::Number(words) | Argument::Name(words, _) => words.clone(),
-            Argument::Text(text) => text.text_for(place),
-            Argument::List(texts) => texts.iter().map(|text| text.text_for(place)).collect::<Vec<_>>().join(", "),
+            TextArgument::Number(number) if matches!(place, Output::Window(Language::German)) => {
+                number.replace('.', ",")
+            }
+            TextArgument::Name(_, german) if matches!(place, Output::Window(Language::German)) => german.clone(),
+            TextArgument::Words(words) | TextArgument::Number(words) | TextArgument::Name(words, _) => words.clone(),
+            TextArgument::Text(text) => text.text_for(place),
+            TextArgument::List(texts) => texts.iter().map(|text| text.text_for(place)).collect::<Vec<_>>().join(", "),
         }
     }
 }
@@ -86,49 +88,49 @@ impl Text {
     /// Replaces `{name}` with a word, a number or a name.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
-        self.arguments.push((name, Argument::Words(value.to_string())));
+        self.arguments.push((name, TextArgument::Words(value.to_string())));
         self
     }
 
     /// Replaces `{name}` with another text.
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
-        self.arguments.push((name, Argument::Text(text)));
+        self.arguments.push((name, TextArgument::Text(text)));
         self
     }
 
     /// Replaces `{name}` with a name that is not in a catalogue, given in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
-        self.arguments.push((name, Argument::Name(english.to_owned(), german.to_owned())));
+        self.arguments.push((name, TextArgument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
     /// Replaces `{name}` with a number with the given decimals, formatted as 1.5 in English and 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
-        self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
+        self.arguments.push((name, TextArgument::Number(format!("{value:.decimals$}"))));
         self
     }
 
     /// Replaces `{name}` with a number that is already in English format.
     #[must_use]
-    pub(crate) fn with_digits(mut self, name: &'static str, digits: impl ToString) -> Self {
-        self.arguments.push((name, Argument::Number(digits.to_string())));
+    pub(crate) fn with_formatted_number(mut self, name: &'static str, digits: impl ToString) -> Self {
+        self.arguments.push((name, TextArgument::Number(digits.to_string())));
         self
     }
 
     /// Replaces `{name}` with a list of other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
-        self.arguments.push((name, Argument::List(texts.into_iter().collect())));
+        self.arguments.push((name, TextArgument::List(texts.into_iter().collect())));
         self
     }
 
     pub(super) fn is_about(&self, path: &Path) -> bool {
         let name = path.display().to_string();
-        let is_it = |(argument, value): &(&str, Argument)| {
-            *argument == "path" && matches!(value, Argument::Words(words) if *words == name)
+        let is_it = |(argument, value): &(&str, TextArgument)| {
+            *argument == "path" && matches!(value, TextArgument::Words(words) if *words == name)
         };
         self.arguments.iter().any(is_it)
     }
@@ -178,12 +180,12 @@ impl Text {
 
 /// Formats a number given in digits with the decimal sign of a language.
 pub(crate) fn signed(number: &str, language: Language) -> String {
-    Argument::Number(number.to_owned()).text_for(Output::Window(language))
+    TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
 /// Formats a number with the given decimals and the decimal sign of a language.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
-    Argument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
+    TextArgument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
 
 impl From<&'static str> for Text {

@@ -99,11 +99,11 @@ impl TryFrom<String> for Rgb {
 impl Rgb {
     /// Returns the contrast with another colour, from 1 to 21, as defined by WCAG 2.
     pub fn contrast(self, other: Rgb) -> f64 {
-        let (a, b) = (self.luminance(), other.luminance());
+        let (a, b) = (self.relative_luminance(), other.relative_luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
-    fn luminance(self) -> f64 {
+    fn relative_luminance(self) -> f64 {
         let [red, green, blue] = self.0.map(|channel| {
             let value = f64::from(channel) / 255.0;
             if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }

@@ -99,11 +99,11 @@ impl TraceLog {
     }
 
     /// Returns the number of frames that arrived too fast to be shown.
-    pub fn dropped(&self) -> u64 {
+    pub fn dropped_count(&self) -> u64 {
         self.dropped
     }
 
-    pub fn time_of(&self, line: &TraceLine) -> Option<Zoned> {
+    pub fn line_time(&self, line: &TraceLine) -> Option<Zoned> {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 use jiff::{SignedDuration, Zoned};
 
 use crate::analysis::history::{Flags, Kind, Part, Value};
-use crate::analysis::{Rates, Time};
+use crate::analysis::{MotionRates, SampleTime};
 use crate::app::closing::MUCH;
-use crate::app::recorder::{self, GroupId, LineId, Recorder};
+use crate::app::recorder::{self, GroupId, Recorder, SeriesId};
 use crate::app::{Recording, Text};
 use crate::units::Moment;
 
@@ -16,7 +16,7 @@ mod follower;
 mod meaning;
 mod watchable;
 
-use follower::Follower;
+use follower::PositionTracker;
 pub use meaning::Meaning;
 pub use watchable::{Watchable, WatchedValue};
 
@@ -52,18 +52,18 @@ pub struct PositionSample {
 
 /// The recorder of a device, with the state required to fill it. `W` is the type of values that can be watched.
 #[derive(Debug)]
-pub struct Track<W> {
+pub struct DeviceRecorder<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
-    lines: [LineId; 3],
+    lines: [SeriesId; 3],
     watched: Vec<Watched<W>>,
     /// Meaning of positions, or `None` before the first position.
-    follower: Option<Follower>,
+    follower: Option<PositionTracker>,
     dropped: u64,
     /// Start of the first session's clock, and the offset of the current session's clock.
     began: Option<Zoned>,
     shift: i64,
-    newest: Option<Time>,
+    newest: Option<SampleTime>,
     /// Last position as received.
     last: i64,
     /// Time in nanoseconds between two positions above which they are not joined.
@@ -74,12 +74,12 @@ pub struct Track<W> {
 struct Watched<W> {
     value: W,
     group: GroupId,
-    line: LineId,
+    line: SeriesId,
     /// Whether the value is being recorded. If not, only its earlier samples are kept.
     active: bool,
 }
 
-impl<W: Watchable> Recording for Track<W> {
+impl<W: Watchable> Recording for DeviceRecorder<W> {
     fn recorder(&self) -> &Recorder {
         &self.recorder
     }
@@ -88,18 +88,18 @@ impl<W: Watchable> Recording for Track<W> {
         &mut self.recorder
     }
 
-    fn dropped(&self) -> u64 {
+    fn dropped_count(&self) -> u64 {
         self.dropped
     }
 
     fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        Track::poll(self, interval, begins);
+        DeviceRecorder::poll(self, interval, begins);
     }
 }
 
 #[derive(Debug, Default)]
 struct Columns {
-    times: Vec<Time>,
+    times: Vec<SampleTime>,
     steps: Vec<i64>,
     speed: Vec<f64>,
     acceleration: Vec<f64>,
@@ -107,7 +107,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn push(&mut self, time: Time, steps: i64, rates: Rates, flags: Flags) {
+    fn push(&mut self, time: SampleTime, steps: i64, rates: MotionRates, flags: Flags) {
         self.times.push(time);
         self.steps.push(steps);
         // An unknown value is NaN, which breaks the line and counts nowhere.
@@ -117,18 +117,18 @@ impl Columns {
     }
 }
 
-impl<W: Watchable> Default for Track<W> {
+impl<W: Watchable> Default for DeviceRecorder<W> {
     fn default() -> Self {
-        Track::about(&Meaning::of_steps(None))
+        DeviceRecorder::about(&Meaning::for_steps(None))
     }
 }
 
-impl<W: Watchable> Track<W> {
+impl<W: Watchable> DeviceRecorder<W> {
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
         let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
         let lines = meaning.lines(positions).map(|line| recorder.add_line(line));
-        Track {
+        DeviceRecorder {
             recorder,
             positions,
             lines,
@@ -167,7 +167,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records that samples were dropped before the next samples.
-    pub fn note_dropped(&mut self, dropped: u64) {
+    pub fn record_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
             self.gap();
@@ -191,7 +191,7 @@ impl<W: Watchable> Track<W> {
     }
 
     fn add_sample(&mut self, sighting: &PositionSample, columns: &mut Columns) {
-        let time = Time::from(sighting.at).plus(self.shift);
+        let time = SampleTime::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
             // A single reading between two samples that are already recorded.
             return;
@@ -202,7 +202,7 @@ impl<W: Watchable> Track<W> {
             if let Some(follower) = &mut self.follower {
                 follower.note_missing_sample();
             }
-            return columns.push(time, self.last, Rates::default(), Flags::BAD);
+            return columns.push(time, self.last, MotionRates::default(), Flags::BAD);
         };
         if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.continues_track(time, self.apart)) {
             self.lose_track();
@@ -211,7 +211,7 @@ impl<W: Watchable> Track<W> {
         let Some(follower) = &mut self.follower else { return };
         let Some((next, rates)) = follower.next(time, word).filter(|_| !sighting.is_bad) else {
             self.lose_track();
-            return columns.push(time, word, Rates::default(), Flags::BAD);
+            return columns.push(time, word, MotionRates::default(), Flags::BAD);
         };
         let mut flags = if next.broken { Flags::BREAK } else { Flags::NONE };
         if sighting.is_warned {
@@ -224,7 +224,7 @@ impl<W: Watchable> Track<W> {
     pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
-            if !own.active || watched.iter().any(|what| own.value.continues(what)) {
+            if !own.active || watched.iter().any(|what| own.value.can_continue_as(what)) {
                 kept.push(own);
             } else if self.recorder.has_samples(own.line) {
                 self.end(own.line);
@@ -241,7 +241,7 @@ impl<W: Watchable> Track<W> {
     }
 
     fn begin_watching(&mut self, what: &W) {
-        let Some(own) = self.watched.iter_mut().find(|own| own.value.continues(what)) else {
+        let Some(own) = self.watched.iter_mut().find(|own| own.value.can_continue_as(what)) else {
             let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
             let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));
             let line = self.recorder.add_line(what.line(group));
@@ -283,7 +283,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Returns the number of samples that arrived too fast to be recorded.
-    pub fn dropped(&self) -> u64 {
+    pub fn dropped_count(&self) -> u64 {
         self.dropped
     }
 
@@ -300,25 +300,25 @@ impl<W: Watchable> Track<W> {
         if self.recorder.unsaved() >= MUCH {
             self.watch(&[]);
             self.watched.clear();
-            self.part(&Meaning::of_steps(None));
+            self.part(&Meaning::for_steps(None));
             self.follower = None;
         } else {
             let (began, shift, apart) = (self.began.take(), self.shift, self.apart);
-            *self = Track { began, shift, apart, ..Track::default() };
+            *self = DeviceRecorder { began, shift, apart, ..DeviceRecorder::default() };
         }
         self.watch(&watched);
     }
 
     /// Decodes the recording again, as far as its words are stored. The times do not change. If not all words are
     /// stored, the old recording is kept as well.
-    pub fn restart_line(&mut self, kept: usize) {
+    pub fn restart_decoding(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
-            self.part(&Meaning::of_steps(None));
+            self.part(&Meaning::for_steps(None));
             (self.follower, self.newest) = (None, None);
             return;
         }
         let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.span());
-        *self = Track { began, shift, apart, ..Track::default() };
+        *self = DeviceRecorder { began, shift, apart, ..DeviceRecorder::default() };
         self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
@@ -334,7 +334,7 @@ impl<W: Watchable> Track<W> {
             return;
         }
         self.part(meaning);
-        self.follower = Some(Follower::new(meaning.clone()));
+        self.follower = Some(PositionTracker::new(meaning.clone()));
     }
 
     /// Replaces the lines with new lines for positions of the given meaning.
@@ -355,14 +355,14 @@ impl<W: Watchable> Track<W> {
         self.positions = group;
     }
 
-    fn end(&mut self, line: LineId) {
+    fn end(&mut self, line: SeriesId) {
         let (name, heading) = self.name_of_ended(line);
         self.recorder.end_line(line, name, heading);
     }
 
     /// Returns the name and heading of a line that ends now.
-    fn name_of_ended(&self, line: LineId) -> (Text, String) {
-        let newest = self.newest.map_or(0, Time::nanoseconds);
+    fn name_of_ended(&self, line: SeriesId) -> (Text, String) {
+        let newest = self.newest.map_or(0, SampleTime::nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
         let until =
             until.map_or_else(|| format!("{:.1} s", newest as f64 / 1e9), |at| at.strftime("%H:%M:%S").to_string());
@@ -384,8 +384,8 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    fn time(&self, at: Moment) -> Time {
-        Time::from(at).plus(self.shift)
+    fn time(&self, at: Moment) -> SampleTime {
+        SampleTime::from(at).plus(self.shift)
     }
 }
 

@@ -8,13 +8,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-pub use act::Do;
+pub use act::ActionArgs;
 pub(super) use build::{Arguments, ParsedCommand, parse_arguments};
-pub use decode::Decode;
+pub use decode::DecodeArgs;
 pub(crate) use decode::{Direction, DirectionOption};
 
 use super::Failure;
-use super::commands::{Commands, OwnOptions};
+use super::commands::{Commands, KindOptions};
 use crate::app::Given;
 use crate::link::LinkUrl;
 
@@ -25,17 +25,17 @@ const COMMON_HEADING: &str = "Common options";
 /// window opens.
 #[derive(Parser)]
 #[command(name = "encoder-studio", version)]
-struct Front {
+struct Cli {
     /// Open this profile in the window.
     #[arg(long, value_name = "FILE")]
     profile: Option<PathBuf>,
     #[command(flatten)]
-    common: Common,
+    common: CommonArgs,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = COMMON_HEADING)]
-pub struct Common {
+pub struct CommonArgs {
     /// Link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
     /// bridge:tcp:HOST:PORT or replay:FILE, followed by ?name=value&… for parameters.
     #[arg(long, global = true, value_name = "URL")]
@@ -51,13 +51,13 @@ pub struct Common {
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
     #[command(flatten)]
-    pub(super) own: OwnOptions,
+    pub(super) own: KindOptions,
     /// Kinds of device that add options to every command. Set by parsing.
     #[arg(skip = Commands::NONE)]
     pub(super) commands: Commands,
 }
 
-impl Common {
+impl CommonArgs {
     /// Returns the values of the options that the kinds of device add.
     pub(super) fn given(&self) -> Result<Given, Failure> {
         self.commands.devices().iter().try_fold(Given::default(), |given, device| device.given(&self.own, given))
@@ -70,7 +70,7 @@ pub enum Command {
     /// List the serial ports of this computer.
     Ports,
     /// Search for devices.
-    Find(Find),
+    Find(FindArgs),
     /// Read the identity of a device.
     Identify(Device),
     /// Read and explain errors and warnings.
@@ -80,21 +80,21 @@ pub enum Command {
     /// Read one value: a data field, a register or a parameter.
     Read(Read),
     /// Save everything that can be restored to a profile.
-    Save(Save),
+    Save(SaveArgs),
     /// Compare two profiles, or a profile with a device.
-    Diff(Diff),
+    Diff(DiffArgs),
     /// Compare a device with a profile; exit status 3 if they differ.
-    Verify(Verify),
+    Verify(VerifyArgs),
     /// Write a profile to a device: only the values that differ.
     Restore(Restore),
     /// Write one value, after showing old and new.
     Write(Write),
     /// Carry out a device-specific action (listed by help do).
-    Do(Do),
+    Do(ActionArgs),
     /// Explain captured bytes without a device.
-    Decode(Decode),
+    Decode(DecodeArgs),
     /// Serve a virtual device on a pseudo-terminal or a TCP port.
-    Simulate(Simulate),
+    Simulate(SimulateArgs),
 }
 
 #[derive(Args)]
@@ -102,15 +102,15 @@ pub struct Device {
     /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
-    pub(super) own: OwnOptions,
+    pub(super) own: KindOptions,
 }
 
 #[derive(Args)]
-pub struct Find {
+pub struct FindArgs {
     /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
@@ -118,7 +118,7 @@ pub struct Status {
     /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
@@ -135,7 +135,7 @@ pub struct Position {
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
@@ -145,11 +145,11 @@ pub struct Read {
     /// Name of the value to read
     pub(crate) item: String,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
-pub struct Save {
+pub struct SaveArgs {
     /// Kind of device.
     pub(super) device: String,
     /// Profile to write.
@@ -162,11 +162,11 @@ pub struct Save {
     #[arg(long)]
     pub(crate) complete: bool,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
-pub struct Diff {
+pub struct DiffArgs {
     /// Profile to compare.
     pub(super) left: PathBuf,
     /// Second profile. Default: the device at --link.
@@ -174,7 +174,7 @@ pub struct Diff {
 }
 
 #[derive(Args)]
-pub struct Verify {
+pub struct VerifyArgs {
     /// Profile to read.
     pub file: PathBuf,
 }
@@ -187,7 +187,7 @@ pub struct Restore {
     #[arg(long)]
     pub dry_run: bool,
     #[command(flatten)]
-    pub consent: Consenting,
+    pub consent: ConsentArgs,
     /// Accept a profile from another serial number of the same type.
     #[arg(long)]
     pub(crate) allow_other_device: bool,
@@ -209,7 +209,7 @@ pub struct Restore {
 }
 
 #[derive(Args)]
-pub struct Consenting {
+pub struct ConsentArgs {
     /// Write without asking.
     #[arg(long)]
     pub yes: bool,
@@ -229,13 +229,13 @@ pub struct Write {
     #[arg(allow_hyphen_values = true)]
     pub(crate) value: String,
     #[command(flatten)]
-    pub consent: Consenting,
+    pub consent: ConsentArgs,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 #[derive(Args)]
-pub struct Simulate {
+pub struct SimulateArgs {
     /// Kind of device.
     pub(super) device: String,
     /// Serve on a pseudo-terminal, with a symbolic link to it at PATH.
@@ -257,5 +257,5 @@ pub struct Simulate {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) settings: Vec<String>,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }

@@ -11,11 +11,11 @@ use crate::link::LineQuality;
 
 /// Prints the results of the check, and returns an error if they include a fault.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
-    show_with(output, lines, None)
+    show_check(output, lines, None)
 }
 
 /// Prints the results of the check like `show`, with the line quality if it was measured.
-pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
+pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
     let (mut list, mut results) = (Vec::new(), Vec::new());

@@ -6,7 +6,7 @@
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 
-use super::args::{Command, Common, Decode, Restore, Simulate};
+use super::args::{Command, CommonArgs, DecodeArgs, Restore, SimulateArgs};
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result};
@@ -112,7 +112,7 @@ pub trait DeviceCommands: ProfileCommands {
     ///
     /// # Errors
     /// A value is invalid.
-    fn given(&self, _options: &OwnOptions, given: Given) -> Result<Given> {
+    fn given(&self, _options: &KindOptions, given: Given) -> Result<Given> {
         Ok(given)
     }
 
@@ -137,7 +137,7 @@ pub trait DeviceCommands: ProfileCommands {
     }
 
     /// Returns the commands that only this kind provides.
-    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+    fn extra_commands(&self) -> &'static [&'static dyn CliCommand] {
         &[]
     }
 
@@ -148,19 +148,19 @@ pub trait DeviceCommands: ProfileCommands {
 
     /// Runs one of the commands find, identify, status, position, read, save, write, do and decode for this kind.
     /// Returns `None` if the kind does not support the command.
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result>;
 
     /// Creates the virtual device to serve.
-    fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
+    fn simulated(&self, output: &Output, simulate: &SimulateArgs) -> Result<Box<dyn Simulated>>;
 }
 
 /// Commands that restore profiles and read a device for comparison.
 pub trait ProfileCommands: Sync {
     /// Writes a profile to a device after review and consent.
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result;
 
     /// Reads a device for comparison. Reads everything, or at least the items in the profile.
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
+    fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Returns a note that applies to every use of a profile.
     fn remark(&self, _profile: &Body) -> Option<Text> {
@@ -168,18 +168,18 @@ pub trait ProfileCommands: Sync {
     }
 
     /// Returns a message if two profiles belong to different devices.
-    fn other_device(&self, _profile: &Body, _device: &Body) -> Option<String> {
+    fn device_mismatch(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
 }
 
 /// A command that belongs to one kind of device or to another part of the program.
-pub trait OwnCommand: Sync {
+pub trait CliCommand: Sync {
     /// Returns the command with its options and help.
     fn command(&self) -> clap::Command;
 
     /// Runs the command with its arguments.
-    fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result;
+    fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result;
 }
 
 /// A protocol that several kinds of device may share, and whose captured bytes `decode` explains.
@@ -194,7 +194,7 @@ pub trait ProtocolDecoder: Sync {
     fn help(&self) -> &'static str;
 
     /// Explains captured bytes.
-    fn decode(&self, output: &Output, decode: &Decode) -> Result;
+    fn decode(&self, output: &Output, decode: &DecodeArgs) -> Result;
 }
 
 /// All commands of the command line, from kinds of device, protocols and other parts of the program.
@@ -202,7 +202,7 @@ pub trait ProtocolDecoder: Sync {
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
     protocols: &'static [&'static dyn ProtocolDecoder],
-    further: &'static [&'static dyn OwnCommand],
+    further: &'static [&'static dyn CliCommand],
 }
 
 impl std::fmt::Debug for Commands {
@@ -219,7 +219,7 @@ impl Commands {
     pub const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
-        further: &'static [&'static dyn OwnCommand],
+        further: &'static [&'static dyn CliCommand],
     ) -> Self {
         Commands { devices, protocols, further }
     }
@@ -244,7 +244,7 @@ impl Commands {
     }
 
     /// Returns a refusal if a given common option does not exist for the chosen kind of device.
-    pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &OwnOptions) -> Option<String> {
+    pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
             given.has(option.get_id().as_str()) && own.iter().all(|other| other.get_id() != option.get_id())
@@ -253,8 +253,8 @@ impl Commands {
     }
 
     /// Returns the commands that do not belong to the core.
-    pub(super) fn own(self) -> impl Iterator<Item = &'static dyn OwnCommand> {
-        let of_devices = self.devices.iter().flat_map(|device| device.own_commands());
+    pub(super) fn own(self) -> impl Iterator<Item = &'static dyn CliCommand> {
+        let of_devices = self.devices.iter().flat_map(|device| device.extra_commands());
         of_devices.chain(self.further).copied()
     }
 
@@ -272,7 +272,7 @@ impl Commands {
     }
 
     /// Returns a refusal if a given option does not exist for the chosen kind of device or protocol.
-    pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &OwnOptions) -> Option<String> {
+    pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
         };
@@ -293,9 +293,9 @@ impl Commands {
 
 /// Values of the options that kinds of device add to a command.
 #[derive(Clone)]
-pub struct OwnOptions(ArgMatches);
+pub struct KindOptions(ArgMatches);
 
-impl OwnOptions {
+impl KindOptions {
     /// Reads the options that a kind of device has added.
     pub(crate) fn read<O: FromArgMatches>(&self) -> Result<O> {
         parse(&self.0)
@@ -319,12 +319,12 @@ pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
 }
 
-pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
+pub(crate) fn enum_values<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
 /// The options are added once the list of kinds is known.
-impl clap::Args for OwnOptions {
+impl clap::Args for KindOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command
     }
@@ -334,13 +334,13 @@ impl clap::Args for OwnOptions {
     }
 }
 
-impl FromArgMatches for OwnOptions {
+impl FromArgMatches for KindOptions {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
-        Ok(OwnOptions(matches.clone()))
+        Ok(KindOptions(matches.clone()))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
-        *self = OwnOptions(matches.clone());
+        *self = KindOptions(matches.clone());
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
 
-use super::args::Consenting;
+use super::args::ConsentArgs;
 use super::output::{Output, say};
 use super::runner::{JobFailure, Runs};
 use super::{Failure, Result};
@@ -13,7 +13,7 @@ use crate::worker::{self, NotBegun};
 
 /// Requires consent. Without a terminal the user cannot be asked, so the command is refused before anything is
 /// opened.
-pub fn require_consent(consent: &Consenting) -> Result<()> {
+pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
     }
@@ -29,7 +29,7 @@ pub(crate) fn can_ask() -> bool {
 /// consented. Returns the approved plan.
 pub fn confirm_plan<P: Planned>(
     output: &Output,
-    consent: &Consenting,
+    consent: &ConsentArgs,
     prepared: P,
     shown: &[&str],
 ) -> Result<ApprovedPlan<P>> {
@@ -45,7 +45,7 @@ pub fn confirm_plan<P: Planned>(
 
 /// Refuses, before consent is requested, a write to a device that has reached its limit of write cycles or whose write
 /// cycles are unknown.
-pub fn check_wear<D>(consent: &Consenting, prepared: &impl Planned) -> Result<()>
+pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
     D::Error: From<NotBegun>,

@@ -21,19 +21,22 @@ use std::path::PathBuf;
 
 use args::{Arguments, ParsedCommand};
 
-pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
-pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProfileCommands, ProtocolDecoder};
+pub use args::{
+    ActionArgs, Command, CommonArgs, ConsentArgs, DecodeArgs, FindArgs, Position, Read, Restore, SaveArgs,
+    SimulateArgs, Status, Write,
+};
+pub use commands::{CliCommand, CommandId, Commands, DeviceCommands, KindOptions, ProfileCommands, ProtocolDecoder};
 pub use consent::{check_wear, confirm_plan, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
-pub use profiles::{UnrestoredItems, restore_options, save_profile, to_restore, write_restore};
+pub use profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
 pub use runner::{JobFailure, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;
 
 use crate::app::Given;
 use crate::link::LinkUrl;
-use crate::profile::Formats;
+use crate::profile::ProfileFormats;
 
 /// Ways in which a command can succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +74,7 @@ pub struct Window {
 
 /// Runs the command given by the arguments of a process, starting with the program name; without a command, requests
 /// the window. `formats` are the readable profiles, and `commands` are the available commands.
-pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Invocation {
+pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -93,11 +96,11 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
 }
 
 /// Prints the reason why the window cannot open, and returns the exit status.
-pub fn no_window(why: &str) -> u8 {
+pub fn report_window_error(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }
 
-fn window(common: Common, profile: Option<PathBuf>) -> Invocation {
+fn window(common: CommonArgs, profile: Option<PathBuf>) -> Invocation {
     if common.only_master {
         return Invocation::Command(end(Err(usage_error("--only-master needs a command; the window asks instead"))));
     }
@@ -133,14 +136,14 @@ fn end(result: Result) -> u8 {
     }
 }
 
-fn call(common: &Common, called: ParsedCommand, output: &Output) -> Result {
+fn call(common: &CommonArgs, called: ParsedCommand, output: &Output) -> Result {
     match called {
         ParsedCommand::Shared(command) => dispatch(common, &command, output),
         ParsedCommand::Own(command, matches) => command.run(common, output, &matches),
     }
 }
 
-fn dispatch(common: &Common, command: &Command, output: &Output) -> Result {
+fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
     let (id, chosen, own) = match command {
         Command::Ports => return ports::ports(output),
         Command::Diff(diff) => return profiles::diff(common, output, diff),

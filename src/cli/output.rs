@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use serde_json::Value;
 
 use super::{Commands, Failure};
-use crate::profile::Formats;
+use crate::profile::ProfileFormats;
 
 pub struct Output {
     json: bool,
-    formats: Formats,
+    formats: ProfileFormats,
     commands: Commands,
 }
 
@@ -30,7 +30,7 @@ impl Lines {
 }
 
 impl Output {
-    pub(super) fn new(json: bool, formats: Formats, commands: Commands) -> Self {
+    pub(super) fn new(json: bool, formats: ProfileFormats, commands: Commands) -> Self {
         Output { json, formats, commands }
     }
 
@@ -38,7 +38,7 @@ impl Output {
         Output { json: false, formats: self.formats, commands: self.commands }
     }
 
-    pub(super) fn formats(&self) -> Formats {
+    pub(super) fn formats(&self) -> ProfileFormats {
         self.formats
     }
 
@@ -60,7 +60,7 @@ impl Output {
     }
 
     /// Prints a result like [`show`](Self::show) after a write. The write must be reported even if the output fails.
-    pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
+    pub(super) fn show_write_result(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
                 let written = "The write to the device was completed and read back.".to_owned();

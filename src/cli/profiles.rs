@@ -7,14 +7,14 @@ use std::path::Path;
 use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
-use super::args::{Common, Diff, Restore};
+use super::args::{CommonArgs, DiffArgs, Restore};
 use super::consent::require_consent;
 use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, PlanReport, WriteSummary};
 use super::runner::failed;
 use super::{Done, Failure, Result};
-use crate::app::{Kinds, explain, review};
-use crate::profile::{Body, Comparison, Document, Profile, RestoreOptions};
+use crate::app::{KindRegistry, explain, review};
+use crate::profile::{Body, Comparison, Profile, ProfileDocument, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
 /// Reads a profile of any kind, for viewing or comparison.
@@ -26,13 +26,14 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
 
 /// Reads a profile that is to be written to a device. Its schema must therefore be fully known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
-    let document =
-        read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))?;
+    let document = read_document(output, path)?
+        .known()
+        .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))?;
     remark(output, path, &document)?;
     Ok(document.body)
 }
 
-fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
+fn remark(output: &Output, path: &Path, document: &ProfileDocument) -> Result<()> {
     explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
     if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
         say(&format!("{}: {}\n", path.display(), words.terminal()));
@@ -40,19 +41,20 @@ fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
     Ok(())
 }
 
-fn read_document(output: &Output, path: &Path) -> Result<Document> {
+fn read_document(output: &Output, path: &Path) -> Result<ProfileDocument> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
-    Document::parse(&text, output.formats()).map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))
+    ProfileDocument::parse(&text, output.formats())
+        .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))
 }
 
 pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    let document = Document::new(second.to_string(), body);
+    let document = ProfileDocument::new(second.to_string(), body);
     write_atomically(path, document.emit().as_bytes()).map_err(|error| failed(&explain::file(&error)))
 }
 
-pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
+pub(super) fn diff(common: &CommonArgs, output: &Output, diff: &DiffArgs) -> Result {
     if diff.right.is_some() == common.link.is_some() {
         return Err(Failure::Usage("diff takes either a second file or --link URL".to_owned()));
     }
@@ -62,36 +64,38 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
         Some(path) => (load(output, path)?, path.as_path()),
         None => (kind.present(common, output, None)?, Path::new("the device")),
     };
-    let comparison = left.compare(&right).map_err(|error| failed(&explain::profile(name, &error, Kinds::NONE)))?;
+    let comparison =
+        left.compare(&right).map_err(|error| failed(&explain::profile(name, &error, KindRegistry::NONE)))?;
     let missing = comparison.missing();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
 
-pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
+pub(super) fn verify(common: &CommonArgs, output: &Output, file: &Path) -> Result {
     let profile = load(output, file)?;
     let kind = output.commands().device(profile.kind())?;
     let device = kind.present(common, output, Some(&profile))?;
     // Comparing two devices is allowed, but is reported.
-    if let Some(words) = kind.other_device(&profile, &device) {
+    if let Some(words) = kind.device_mismatch(&profile, &device) {
         output.remark(&words);
     }
-    let comparison = profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
+    let comparison =
+        profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))?;
     // Items that only the device has are not part of the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
 }
 
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
+pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -> Result {
     let profile = load_to_write(output, &restore.file)?;
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
 /// Returns the profile to restore. If consent cannot be given, the restore is refused before anything is opened.
-pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
+pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))
+    profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, KindRegistry::NONE)))
 }
 
 pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
@@ -221,7 +225,7 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
     if let Some(backup) = &spent.backup {
         lines.add("backup", backup.display());
     }
-    output.show_written(&json, &lines.text())?;
+    output.show_write_result(&json, &lines.text())?;
     // Printed before the write as well, because it lists what remains to be done.
     left.warn(output);
     Ok(Done::Well)
@@ -235,10 +239,10 @@ pub(crate) fn show_changed(
     changes: &str,
     spent: &WriteSummary,
 ) -> Result {
-    print_done(output, item, operations, spent, &[], changes)
+    print_write_result(output, item, operations, spent, &[], changes)
 }
 
-pub(crate) fn print_done(
+pub(crate) fn print_write_result(
     output: &Output,
     item: &str,
     operations: &[Json],
@@ -266,6 +270,6 @@ pub(crate) fn print_done(
             format!("{changes}{}", lines.text())
         }
     };
-    output.show_written(&json, &text)?;
+    output.show_write_result(&json, &text)?;
     Ok(Done::Well)
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::args::Common;
+use super::args::CommonArgs;
 use super::commands::DeviceCommands;
 use super::consent::{answer, can_ask};
 use super::output::say;
@@ -53,7 +53,7 @@ pub trait Runs: Kind {
     }
 
     /// Returns the reply times, if they are measured and the link has a time-out.
-    fn reply_pace(_session: &Session<Self>) -> Option<Pace> {
+    fn reply_times(_session: &Session<Self>) -> Option<Pace> {
         None
     }
 
@@ -94,7 +94,7 @@ impl<D: Runs> Drop for Runner<D> {
 }
 
 impl<D: Runs> Runner<D> {
-    pub fn open(common: &Common) -> Result<Self> {
+    pub fn open(common: &CommonArgs) -> Result<Self> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
         };
@@ -117,7 +117,7 @@ impl<D: Runs> Runner<D> {
         if let Some(path) = &common.trace {
             record(&mut session, path)?;
         }
-        let patience = SlowReplyNotice::begin(D::reply_pace(&session));
+        let patience = SlowReplyNotice::begin(D::reply_times(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("Could not start a thread: {error}.")]))?;
         let stopper = worker.stopper();
@@ -153,7 +153,7 @@ impl<D: Runs> Runner<D> {
         loop {
             let Some(event) = self.next_event()? else {
                 if let Some(words) = self.patience.words() {
-                    bar.print_above(&words);
+                    bar.print_line(&words);
                 }
                 continue;
             };
@@ -161,7 +161,7 @@ impl<D: Runs> Runner<D> {
                 Event::Progress(of, progress) if of == id => {
                     let words = D::announce(&progress.step);
                     if let Some(words) = words.as_ref().filter(|_| words != announced) {
-                        bar.print_above(words);
+                        bar.print_line(words);
                     }
                     announced = words;
                     bar.show(progress.done, progress.total, &D::step(&progress.step));
@@ -265,7 +265,7 @@ pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
 }
 
 /// Asks whether a drive is on the line if the program runs on a terminal and the user has not confirmed yet.
-fn ask_for_other_master(common: &Common) -> Result<()> {
+fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
     if common.only_master || !can_ask() {
         return Ok(());
     }
@@ -318,7 +318,7 @@ impl Bar {
 
 impl Bar {
     /// Prints a line above the bar, or at the future position of the bar.
-    fn print_above(&self, words: &str) {
+    fn print_line(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),
             None if self.0.is_hidden() => {}

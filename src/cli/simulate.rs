@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::args::Simulate;
+use super::args::SimulateArgs;
 use super::output::Output;
 use super::{Done, Failure, Result};
 use crate::link::{Clock, RealClock};
@@ -30,7 +30,7 @@ pub trait Simulated: ByteDevice {
 
     /// Returns a device for another simultaneous client at the given address, or `None` if the device has a single line
     /// and clients are served one after another.
-    fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
     }
 
@@ -39,14 +39,14 @@ pub trait Simulated: ByteDevice {
         None
     }
 
-    fn listens(&self, _at: SocketAddrV4) {}
+    fn on_listening(&self, _at: SocketAddrV4) {}
 
     fn has_ended(&self) -> bool {
         false
     }
 }
 
-pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
+pub(super) fn simulate(output: &Output, arguments: &SimulateArgs) -> Result {
     let kind = output.commands().device(&arguments.device)?;
     let simulated = kind.simulated(output, arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
@@ -62,7 +62,7 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
     Ok(Done::Well)
 }
 
-pub fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
+pub fn settings(output: &Output, arguments: &SimulateArgs) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
         let (name, value) =
@@ -91,18 +91,18 @@ enum ReadOutcome {
 }
 
 impl Device {
-    fn another(&self, peer: SocketAddr) -> Option<Device> {
+    fn duplicate(&self, peer: SocketAddr) -> Option<Device> {
         let address = match peer {
             SocketAddr::V4(peer) => *peer.ip(),
             SocketAddr::V6(peer) => peer.ip().to_ipv4_mapped().unwrap_or(Ipv4Addr::UNSPECIFIED),
         };
-        let simulated = self.simulated.another(address)?;
+        let simulated = self.simulated.duplicate(address)?;
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
     /// Serves a client until it disconnects or the program is interrupted. The baud rate of the client's end is
     /// followed if it can be read.
-    fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
+    fn serve(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
         while !ended.load(Ordering::SeqCst) {
@@ -146,13 +146,13 @@ impl Device {
     }
 }
 
-trait Client {
+trait SimulatorClient {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome>;
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()>;
     fn baud(&self) -> Option<Baud>;
 }
 
-impl Client for TcpStream {
+impl SimulatorClient for TcpStream {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome> {
         if wait >= SHORT {
             self.set_read_timeout(Some(wait))?;
@@ -206,8 +206,8 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     };
     let (listener, packets) = match device.simulated.datagrams() {
         Some(own) => {
-            let (listener, socket, at) = datagrams::bind(address).map_err(cannot)?;
-            device.simulated.listens(at);
+            let (listener, socket, at) = datagrams::bind_tcp_and_udp(address).map_err(cannot)?;
+            device.simulated.on_listening(at);
             (listener, Some(datagrams::Served::new(socket, own, device.clock.clone())))
         }
         None => (TcpListener::bind(address).map_err(cannot)?, None),
@@ -228,7 +228,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
                 std::thread::sleep(PATIENCE);
                 continue;
             };
-            match device.another(peer) {
+            match device.duplicate(peer) {
                 None => attend(device, client, ended),
                 Some(mut own) => {
                     let attended = move || attend(&mut own, client, ended);
@@ -263,7 +263,7 @@ mod terminal {
 
     use serialport::{SerialPort, TTYPort};
 
-    use super::{Client, Clock as _, Device, Failure, PATIENCE, ReadOutcome, Result};
+    use super::{Clock as _, Device, Failure, PATIENCE, ReadOutcome, Result, SimulatorClient};
     use crate::units::Baud;
 
     pub(super) fn serve(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
@@ -275,7 +275,7 @@ mod terminal {
             let _ = slave.set_baud_rate(own.baud.bits_per_second());
         }
         drop(slave);
-        let _link = Link::make(path, Path::new(&name)).map_err(|error| match error.kind() {
+        let _link = SymbolicLink::make(path, Path::new(&name)).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => cannot("the path already exists; remove it, or choose another path".into()),
             ErrorKind::NotFound => cannot("the folder does not exist; create it, or choose another path".into()),
             _ => cannot(error.to_string()),
@@ -289,12 +289,12 @@ mod terminal {
     }
 
     /// A symbolic link that is removed when the program ends.
-    struct Link {
+    struct SymbolicLink {
         path: PathBuf,
         target: PathBuf,
     }
 
-    impl Link {
+    impl SymbolicLink {
         /// Creates the link. A dangling link is left over from an earlier run and is replaced; anything else belongs to
         /// another program and is refused.
         fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
@@ -302,11 +302,11 @@ mod terminal {
                 std::fs::remove_file(path)?;
             }
             symlink(target, path)?;
-            Ok(Link { path: path.to_owned(), target: target.to_owned() })
+            Ok(SymbolicLink { path: path.to_owned(), target: target.to_owned() })
         }
     }
 
-    impl Drop for Link {
+    impl Drop for SymbolicLink {
         fn drop(&mut self) {
             if std::fs::read_link(&self.path).is_ok_and(|target| target == self.target) {
                 // The program's own link; if it cannot be removed, the next run replaces it.
@@ -330,7 +330,7 @@ mod terminal {
         matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)
     }
 
-    impl Client for TTYPort {
+    impl SimulatorClient for TTYPort {
         fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome> {
             self.set_timeout(wait)?;
             match Read::read(self, buffer) {

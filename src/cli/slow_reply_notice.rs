@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::link::Replies;
+use crate::link::ReplyTimes;
 
 /// Time before the first notice.
 const WONDERS: Duration = Duration::from_secs(3);
@@ -12,7 +12,7 @@ const LOOKS: Duration = Duration::from_millis(500);
 const SLOW: Duration = Duration::from_millis(100);
 
 pub struct Pace {
-    pub(crate) replies: Replies,
+    pub(crate) replies: ReplyTimes,
     /// Time-out for a reply, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
     /// The longest `timeout=`.
@@ -52,7 +52,7 @@ impl SlowReplyNotice {
 impl Pace {
     /// Returns the message, including how to allow more time if that may help.
     fn words(&self) -> Option<String> {
-        let (timeout, longest) = (self.timeout, self.replies.longest());
+        let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {
             format!("Set timeout={} in the link to allow more time for a reply.", self.longest.as_millis())
         } else {
@@ -82,7 +82,7 @@ mod tests {
 
     /// Returns the message for a time-out and for reply times, all in milliseconds.
     fn message(timeout: u64, took: &[u64]) -> Option<String> {
-        let replies = Replies::default();
+        let replies = ReplyTimes::default();
         took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));
         Pace { replies, timeout: Duration::from_millis(timeout), longest: Duration::from_secs(2) }.words()
     }
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn the_notice_appears_late_and_only_once() {
-        let replies = Replies::default();
+        let replies = ReplyTimes::default();
         replies.note(Duration::from_millis(300));
         let pace = |replies| Pace { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
         let mut patience = SlowReplyNotice::begin(Some(pace(replies)));

@@ -1,9 +1,9 @@
 //! Kinds of devices and tools, and the assembly of a program from them.
 
-use crate::app::{DeviceKind, Kinds, ToolKind};
+use crate::app::{DeviceKind, KindRegistry, ToolKind};
 use crate::buses::bridge::sim::AttachableKind;
-use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
-use crate::profile::{Formats, ProfileFormat};
+use crate::cli::{CliCommand, Commands, DeviceCommands, ProtocolDecoder};
+use crate::profile::{ProfileFormat, ProfileFormats};
 use crate::ui::{DeviceView, TabViews, ToolView};
 
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ pub struct ToolTab {
 /// The device kinds and tools that make up the program, for use by the studio, the window and the command line.
 #[derive(Clone, Copy)]
 pub struct Program {
-    pub studio: Kinds,
+    pub studio: KindRegistry,
     pub tabs: TabViews,
     pub commands: Commands,
 }
@@ -36,7 +36,7 @@ impl Program {
         kinds: &[Kind],
         tools: &[ToolTab],
         protocols: &'static [&'static dyn ProtocolDecoder],
-        further: &'static [&'static dyn OwnCommand],
+        further: &'static [&'static dyn CliCommand],
     ) -> Self {
         let devices: Vec<&'static dyn DeviceKind> = kinds.iter().map(|kind| kind.view.kind()).collect();
         let formats: Vec<&'static dyn ProfileFormat> = devices.iter().map(|kind| kind.format()).collect();
@@ -45,7 +45,7 @@ impl Program {
         let tool_views: Vec<&'static dyn ToolView> = tools.iter().map(|tool| tool.view).collect();
         let commands: Vec<&'static dyn DeviceCommands> = kinds.iter().map(|kind| kind.commands).collect();
         Program {
-            studio: Kinds::new(Formats::new(formats.leak()), devices.leak(), tool_kinds.leak()),
+            studio: KindRegistry::new(ProfileFormats::new(formats.leak()), devices.leak(), tool_kinds.leak()),
             tabs: TabViews::new(views.leak(), tool_views.leak()),
             commands: Commands::new(commands.leak(), protocols, further),
         }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::program;
-use crate::profile::{Document, ProfileError};
+use crate::profile::{ProfileDocument, ProfileError};
 
 mod adapter;
 mod options;
@@ -66,7 +66,7 @@ fn misspelt_names_in_ready_made_profiles_are_reported() {
             let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
             for slip in slips(&text[begin..end]) {
                 let wrong = format!("{}{slip}{}", &text[..begin], &text[end..]);
-                let error = Document::parse(&wrong, program().studio.formats).map(|_| ()).unwrap_err();
+                let error = ProfileDocument::parse(&wrong, program().studio.formats).map(|_| ()).unwrap_err();
                 let place = format!("line {line}, column {column}: ");
                 assert!(error.to_string().starts_with(&place), "{}: {slip} at {place}{error}", path.display());
                 assert!(error.to_string().contains(&slip), "{}: {error}", path.display());
@@ -86,10 +86,15 @@ fn profiles_of_schema_1_open() {
         program().studio.formats.kinds().count()
     );
     for (path, text) in files {
-        let document = Document::parse(&text, program().studio.formats)
+        let document = ProfileDocument::parse(&text, program().studio.formats)
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert!(document.beyond.is_empty() && !document.is_newer(), "{}", path.display());
-        assert_eq!(Document::parse(&document.emit(), program().studio.formats), Ok(document), "{}", path.display());
+        assert_eq!(
+            ProfileDocument::parse(&document.emit(), program().studio.formats),
+            Ok(document),
+            "{}",
+            path.display()
+        );
     }
 }
 
@@ -100,7 +105,7 @@ fn ready_made_profiles_parse() {
         let mut count = 0;
         for entry in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
-            let document = Document::parse(&text, program().studio.formats).unwrap();
+            let document = ProfileDocument::parse(&text, program().studio.formats).unwrap();
             assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
             count += 1;
         }
@@ -117,7 +122,7 @@ fn ready_made_profiles_parse() {
 
 #[test]
 fn an_unknown_kind_is_reported_with_the_known_ones() {
-    let error = Document::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
+    let error = ProfileDocument::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
     assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
     assert!(matches!(error, ProfileError::Device { found, .. } if found == "sse"));
@@ -128,7 +133,7 @@ fn tabs_are_in_navigation_order() {
     let tabs: Vec<_> = program().tabs.tabs().map(crate::app::Tab::name).collect();
     assert_eq!(tabs, ["Hiperface", "Biss", "Ssi", "Interbus", "Hiperdrive", "Signals"], "devices, then Signals");
     for tab in program().tabs.tabs() {
-        let mut words = program().tabs.page_words(tab);
+        let mut words = program().tabs.page_text_ids(tab);
         let count = words.len();
         words.sort_unstable();
         words.dedup();

@@ -47,7 +47,7 @@ pub trait DatagramPort: Send {
 }
 
 /// A channel for requests to all devices in a network, and for their replies.
-pub trait Broadcast: Send {
+pub trait BroadcastChannel: Send {
     /// Sends a request to all devices.
     ///
     /// # Errors

@@ -23,12 +23,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
-pub use datagram::{Broadcast, DatagramChannel, DatagramPort};
+pub use datagram::{BroadcastChannel, DatagramChannel, DatagramPort};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
 pub use realtime_priority::wake_before_others;
 pub use replay::ReplayLink;
-pub use replies::Replies;
+pub use replies::ReplyTimes;
 pub use serial::{PortInfo, SerialLink, ports};
 pub use sim::{SimLink, SimPort};
 pub use tcp::TcpLink;
@@ -36,7 +36,7 @@ pub use trace::{
     Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header,
 };
 pub use udp::{UdpBroadcast, UdpPort};
-pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
+pub use url::{LinkScheme, LinkUrl, UrlError, UrlQuery, Wire};
 
 use crate::units::{CharacterFormat, Moment};
 
@@ -63,7 +63,7 @@ pub trait ByteLink: Send {
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
     /// not visible here, so a reply through it proves nothing about baud rate and parity.
-    fn sets_format(&self) -> bool {
+    fn can_set_format(&self) -> bool {
         true
     }
 
@@ -76,7 +76,7 @@ pub trait ByteLink: Send {
 
 /// A cancellation flag shared by its clones.
 #[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<CancelState>);
+pub struct CancelToken(Arc<CancelState>);
 
 #[derive(Debug)]
 struct CancelState {
@@ -91,10 +91,10 @@ impl Default for CancelState {
     }
 }
 
-impl Cancel {
+impl CancelToken {
     /// Creates a flag that requests cancellation after the given number of transactions.
     pub fn after(transactions: u64) -> Self {
-        let cancel = Cancel::default();
+        let cancel = CancelToken::default();
         cancel.0.fuse.store(transactions, Ordering::SeqCst);
         cancel
     }
@@ -133,7 +133,7 @@ pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     /// Source of time.
     pub clock: &'a dyn Clock,
     /// Cancellation flag.
-    pub cancel: &'a Cancel,
+    pub cancel: &'a CancelToken,
     /// Trace of the line.
     pub trace: &'a mut Trace,
 }

@@ -6,7 +6,7 @@ use super::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, TraceEntry};
 use crate::bits::{MaskedBytes, hex};
 use crate::units::{CharacterFormat, Moment};
 
-struct Exchange {
+struct RecordedExchange {
     request: MaskedBytes,
     /// Recorded reply, or `None` if it never arrived or was masked.
     reply: Option<Vec<u8>>,
@@ -16,7 +16,7 @@ struct Exchange {
 /// Masked bytes match anything.
 pub struct ReplayLink {
     target: String,
-    exchanges: Vec<Exchange>,
+    exchanges: Vec<RecordedExchange>,
     next: usize,
     waiting: Vec<u8>,
     clock: Arc<dyn Clock>,
@@ -25,10 +25,10 @@ pub struct ReplayLink {
 impl ReplayLink {
     /// Creates the playback of `entries` under the name `target`.
     pub fn new(target: &str, entries: Vec<TraceEntry>, clock: Arc<dyn Clock>) -> Self {
-        let mut exchanges: Vec<Exchange> = Vec::new();
+        let mut exchanges: Vec<RecordedExchange> = Vec::new();
         for entry in entries {
             match (entry.direction, exchanges.last_mut()) {
-                (Direction::Sent, _) => exchanges.push(Exchange { request: entry.bytes, reply: None }),
+                (Direction::Sent, _) => exchanges.push(RecordedExchange { request: entry.bytes, reply: None }),
                 (Direction::Received, Some(exchange)) => {
                     if let Some(bytes) = entry.bytes.to_bytes() {
                         exchange.reply.get_or_insert_default().extend(bytes);
@@ -68,7 +68,7 @@ impl ByteLink for ReplayLink {
         Ok(())
     }
 
-    fn sets_format(&self) -> bool {
+    fn can_set_format(&self) -> bool {
         false
     }
 

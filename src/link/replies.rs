@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// Measured reply times of a session, shared by all clones.
 #[derive(Clone, Debug, Default)]
-pub struct Replies(Arc<Measured>);
+pub struct ReplyTimes(Arc<Measured>);
 
 #[derive(Debug, Default)]
 struct Measured {
@@ -16,7 +16,7 @@ struct Measured {
     longest: AtomicU64,
 }
 
-impl Replies {
+impl ReplyTimes {
     /// Records the time between a request and its reply, even if the reply was late.
     pub(crate) fn note(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
@@ -33,7 +33,7 @@ impl Replies {
     }
 
     /// Returns the longest reply time, or zero before the first reply.
-    pub fn longest(&self) -> Duration {
+    pub fn longest_reply_time(&self) -> Duration {
         Duration::from_micros(self.0.longest.load(Ordering::Relaxed))
     }
 }
@@ -44,10 +44,10 @@ mod tests {
 
     #[test]
     fn reply_times_are_shared_by_all_clones() {
-        let (replies, ms) = (Replies::default(), Duration::from_millis);
+        let (replies, ms) = (ReplyTimes::default(), Duration::from_millis);
         let seen = replies.clone();
-        assert_eq!((seen.usual(), seen.longest()), (None, Duration::ZERO));
+        assert_eq!((seen.usual(), seen.longest_reply_time()), (None, Duration::ZERO));
         [100, 500, 300].into_iter().for_each(|took| replies.note(ms(took)));
-        assert_eq!((seen.usual(), seen.longest()), (Some(ms(300)), ms(500)));
+        assert_eq!((seen.usual(), seen.longest_reply_time()), (Some(ms(300)), ms(500)));
     }
 }

@@ -169,7 +169,7 @@ const NOT_A_TERMINAL: &str = "Not a typewriter";
 fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
     match error.kind {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => LinkErrorKind::NotFound,
-        serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::denied(path),
+        serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::permission_error(path),
         serialport::ErrorKind::NoDevice if platform::exists(path) => LinkErrorKind::Busy,
         serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
         _ if platform::is_no_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
@@ -201,7 +201,7 @@ mod platform {
         std::fs::metadata(path).is_ok_and(|file| !file.file_type().is_char_device())
     }
 
-    pub(super) fn denied(path: &str) -> LinkErrorKind {
+    pub(super) fn permission_error(path: &str) -> LinkErrorKind {
         let group = std::fs::metadata(path).ok().and_then(|file| group_name(file.gid()));
         LinkErrorKind::Permission { group }
     }
@@ -238,7 +238,7 @@ mod platform {
         false
     }
 
-    pub(super) fn denied(_path: &str) -> LinkErrorKind {
+    pub(super) fn permission_error(_path: &str) -> LinkErrorKind {
         LinkErrorKind::Busy
     }
 }

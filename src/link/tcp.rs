@@ -94,7 +94,7 @@ impl ByteLink for TcpLink {
         Ok(())
     }
 
-    fn sets_format(&self) -> bool {
+    fn can_set_format(&self) -> bool {
         false
     }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::{Broadcast, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
+use super::{BroadcastChannel, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
 /// Maximum accepted packet length in bytes; process data are much shorter.
@@ -83,18 +83,18 @@ struct UdpChannel {
     local: Ipv4Addr,
     port: u16,
     socket: Arc<UdpSocket>,
-    listeners: Vec<Listener>,
+    listeners: Vec<SocketListener>,
     sender: Sender<Vec<u8>>,
     heard: Receiver<Vec<u8>>,
     clock: Arc<dyn Clock>,
 }
 
 /// A thread that listens on a socket until the listener is dropped.
-struct Listener {
+struct SocketListener {
     is_stopped: Arc<AtomicBool>,
 }
 
-impl Drop for Listener {
+impl Drop for SocketListener {
     fn drop(&mut self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }
@@ -129,7 +129,7 @@ impl UdpChannel {
             }
         });
         started.map_err(|error| self.fail(&error))?;
-        self.listeners.push(Listener { is_stopped: deaf });
+        self.listeners.push(SocketListener { is_stopped: deaf });
         Ok(())
     }
 }
@@ -187,7 +187,7 @@ impl UdpBroadcast {
     ///
     /// # Errors
     /// The system has no free socket.
-    pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+    pub fn on_all_networks(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(local_networks());
         networks.dedup();
@@ -216,12 +216,12 @@ impl UdpBroadcast {
 
 /// Returns the broadcast addresses of the directly connected networks, if the system lists any.
 fn local_networks() -> Vec<Ipv4Addr> {
-    std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
+    std::fs::read_to_string("/proc/net/route").map(|table| broadcast_addresses(&table)).unwrap_or_default()
 }
 
 /// Returns the broadcast addresses in Linux's routing table, whose columns include interface, destination, gateway,
 /// flags, and, as the eighth, the mask.
-fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
+fn broadcast_addresses(table: &str) -> Vec<Ipv4Addr> {
     let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
     let mut found = Vec::new();
     for line in table.lines().skip(1) {
@@ -236,7 +236,7 @@ fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
     found
 }
 
-impl Broadcast for UdpBroadcast {
+impl BroadcastChannel for UdpBroadcast {
     fn broadcast(&mut self, packet: &[u8]) -> Result<(), LinkError> {
         let mut failed = None;
         let mut sent = false;
@@ -350,6 +350,6 @@ mod tests {
             eth0\t0001A8C0\t00000000\t0001\t0\t0\t100\t00FFFFFF\t0\t0\t0\n\
             eth1\t0000100A\t00000000\t0001\t0\t0\t101\t0000F0FF\t0\t0\t0\n\
             tun0\t0100070A\t00000000\t0005\t0\t0\t50\tFFFFFFFF\t0\t0\t0\nbroken\n";
-        assert_eq!(broadcasts(table), [Ipv4Addr::new(192, 168, 1, 255), Ipv4Addr::new(10, 31, 255, 255)]);
+        assert_eq!(broadcast_addresses(table), [Ipv4Addr::new(192, 168, 1, 255), Ipv4Addr::new(10, 31, 255, 255)]);
     }
 }

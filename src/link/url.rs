@@ -4,12 +4,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::parameter::{Refused, Values};
 
 /// Kind of connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
+pub enum LinkScheme {
     /// A virtual device in this process.
     Sim,
     /// A serial port.
@@ -26,15 +26,15 @@ pub enum Scheme {
     Enip,
 }
 
-impl Scheme {
-    const ALL: [(Scheme, &'static str); 7] = [
-        (Scheme::Sim, "sim"),
-        (Scheme::Serial, "serial"),
-        (Scheme::Tcp, "tcp"),
-        (Scheme::Replay, "replay"),
-        (Scheme::Bridge, "bridge"),
-        (Scheme::Modbus, "modbus"),
-        (Scheme::Enip, "enip"),
+impl LinkScheme {
+    const ALL: [(LinkScheme, &'static str); 7] = [
+        (LinkScheme::Sim, "sim"),
+        (LinkScheme::Serial, "serial"),
+        (LinkScheme::Tcp, "tcp"),
+        (LinkScheme::Replay, "replay"),
+        (LinkScheme::Bridge, "bridge"),
+        (LinkScheme::Modbus, "modbus"),
+        (LinkScheme::Enip, "enip"),
     ];
 
     /// Returns the keyword before the colon.
@@ -45,12 +45,12 @@ impl Scheme {
     /// Returns a description of what has to follow the colon, with an example.
     fn needs(self) -> &'static str {
         match self {
-            Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
-            Scheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
-            Scheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
-            Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
-            Scheme::Replay => "a file, as in replay:capture.trace",
-            Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
+            LinkScheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
+            LinkScheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
+            LinkScheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
+            LinkScheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            LinkScheme::Replay => "a file, as in replay:capture.trace",
+            LinkScheme::Serial | LinkScheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
         }
     }
 }
@@ -59,12 +59,12 @@ impl Scheme {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkUrl {
     /// Kind of connection.
-    pub scheme: Scheme,
+    pub scheme: LinkScheme,
     /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`. For
     /// `modbus:` and `enip:`, the port is always included and defaults to 502 or 44818.
     pub target: String,
     /// Parameters after the question mark.
-    pub query: Query,
+    pub query: UrlQuery,
 }
 
 /// A resource of the computer that a link uses and that several links may share.
@@ -82,7 +82,7 @@ pub enum Wire<'a> {
 
 /// Parameters in the order in which they were written. Names are lower case and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Query(Vec<(String, String)>);
+pub struct UrlQuery(Vec<(String, String)>);
 
 /// Reason why a string is not a link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -102,7 +102,7 @@ pub enum UrlError {
     #[error("{}: needs {}", scheme.word(), scheme.needs())]
     Target {
         /// Kind of connection.
-        scheme: Scheme,
+        scheme: LinkScheme,
     },
     /// The port number is invalid.
     #[error("{scheme}: {port} is not a port from 1 to 65535")]
@@ -136,7 +136,7 @@ pub enum UrlError {
         /// Value as written.
         value: String,
         /// Allowed values.
-        allowed: Expected,
+        allowed: AllowedValues,
     },
 }
 
@@ -154,12 +154,12 @@ impl FromStr for LinkUrl {
         let scheme_error = || UrlError::Scheme(text.to_owned());
         let (word, rest) = text.split_once(':').ok_or_else(scheme_error)?;
         let (scheme, _) =
-            Scheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
+            LinkScheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
         let (target, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut target = target.trim_end().to_owned();
         let port = match scheme {
-            Scheme::Modbus => MODBUS_PORT,
-            Scheme::Enip => ENIP_PORT,
+            LinkScheme::Modbus => MODBUS_PORT,
+            LinkScheme::Enip => ENIP_PORT,
             _ => "",
         };
         if has_no_port(&target) {
@@ -174,23 +174,23 @@ impl FromStr for LinkUrl {
 impl LinkUrl {
     /// Returns the link to the virtual device with default settings.
     pub fn sim() -> Self {
-        LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
+        LinkUrl { scheme: LinkScheme::Sim, target: String::new(), query: UrlQuery::default() }
     }
 
     /// Returns the resource that must be opened for the link.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
-            (Scheme::Sim, _) => Wire::Inside,
-            (Scheme::Replay, _) => Wire::File(target),
-            (Scheme::Tcp | Scheme::Modbus | Scheme::Enip, _) => Wire::Host(target),
-            (Scheme::Bridge, Some(host)) => Wire::Host(host),
-            (Scheme::Serial, _) | (Scheme::Bridge, None) => Wire::Port(target),
+            (LinkScheme::Sim, _) => Wire::Inside,
+            (LinkScheme::Replay, _) => Wire::File(target),
+            (LinkScheme::Tcp | LinkScheme::Modbus | LinkScheme::Enip, _) => Wire::Host(target),
+            (LinkScheme::Bridge, Some(host)) => Wire::Host(host),
+            (LinkScheme::Serial, _) | (LinkScheme::Bridge, None) => Wire::Port(target),
         }
     }
 
     fn check_target(&self) -> Result<(), UrlError> {
-        if self.scheme == Scheme::Sim && !self.target.is_empty() {
+        if self.scheme == LinkScheme::Sim && !self.target.is_empty() {
             return Err(UrlError::Parameter(self.target.clone()));
         }
         let is_there = match self.wire() {
@@ -228,11 +228,11 @@ impl fmt::Display for LinkUrl {
     }
 }
 
-impl FromStr for Query {
+impl FromStr for UrlQuery {
     type Err = UrlError;
 
     fn from_str(text: &str) -> Result<Self, UrlError> {
-        let mut query = Query::default();
+        let mut query = UrlQuery::default();
         for parameter in text.split('&').map(str::trim).filter(|parameter| !parameter.is_empty()) {
             let (name, value) = parameter.split_once('=').ok_or_else(|| UrlError::Parameter(parameter.to_owned()))?;
             let (name, value) = (name.trim_end().to_ascii_lowercase(), value.trim_start());
@@ -245,7 +245,7 @@ impl FromStr for Query {
     }
 }
 
-impl Query {
+impl UrlQuery {
     /// Returns the value of a parameter, if present.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
@@ -302,7 +302,7 @@ mod tests {
             assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), text);
         }
         let url: LinkUrl = "SERIAL:/dev/ttyUSB0?Baud=19200".parse().unwrap();
-        assert_eq!((url.scheme, url.target.as_str()), (Scheme::Serial, "/dev/ttyUSB0"));
+        assert_eq!((url.scheme, url.target.as_str()), (LinkScheme::Serial, "/dev/ttyUSB0"));
         assert_eq!(url.query.get("baud"), Some("19200"));
     }
 
@@ -370,7 +370,7 @@ mod tests {
 
     #[test]
     fn a_bad_value_names_the_allowed_ones() {
-        let query: Query = "baud=fast".parse().unwrap();
+        let query: UrlQuery = "baud=fast".parse().unwrap();
         let speeds = Whole(Quantity::Number, 1..=9);
         let error = query.read("baud", &speeds).unwrap_err();
         assert_eq!(error.to_string(), "baud=fast is not valid (allowed: a number from 1 to 9)");

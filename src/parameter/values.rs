@@ -4,14 +4,14 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use super::Refused;
-use crate::expected::{Expected, Limit, Quantity};
+use crate::expected::{AllowedValues, Limit, Quantity};
 
 pub trait Values {
     type Value;
 
     fn read(&self, text: &str) -> Option<Self::Value>;
 
-    fn allowed(&self) -> Expected;
+    fn allowed(&self) -> AllowedValues;
 
     /// Formats a value if it is short enough to serve as an example.
     fn print(&self, _value: &Self::Value) -> String {
@@ -57,15 +57,15 @@ pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
 
 /// Values in a custom notation, with the function that parses them.
 #[derive(Clone, Debug)]
-pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
+pub struct Checked<T>(pub AllowedValues, pub fn(&str) -> Option<T>);
 
 #[derive(Clone, Debug)]
-pub struct Maybe<V>(pub V);
+pub struct OptionalValue<V>(pub V);
 
 pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
 
 /// Any string. None is refused at this stage, because the meaning depends on other parameters.
-pub const ANY: Checked<String> = Checked(Expected::words(&[]), |text| Some(text.to_owned()));
+pub const ANY: Checked<String> = Checked(AllowedValues::words(&[]), |text| Some(text.to_owned()));
 
 /// Parses a whole number that fits into `T`, in decimal or in hexadecimal after `0x`.
 pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
@@ -94,8 +94,8 @@ impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> Values for Whole<T> {
         number(text).filter(|number| self.1.contains(number))
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::range(self.0, *self.1.start(), *self.1.end())
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::range(self.0, *self.1.start(), *self.1.end())
     }
 
     fn print(&self, value: &T) -> String {
@@ -114,9 +114,9 @@ impl Values for Decimal {
         text.parse().ok().filter(|number| self.1.contains(number))
     }
 
-    fn allowed(&self) -> Expected {
+    fn allowed(&self) -> AllowedValues {
         let limit = |number: &f64| Limit::thousandths((number * 1000.0).round() as i128);
-        Expected::range(self.0, limit(self.1.start()), limit(self.1.end()))
+        AllowedValues::range(self.0, limit(self.1.start()), limit(self.1.end()))
     }
 
     fn print(&self, value: &f64) -> String {
@@ -139,8 +139,8 @@ impl Values for Milliseconds {
         number(text).filter(|ms| self.0.contains(ms)).map(Duration::from_millis)
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::range(Quantity::Milliseconds, *self.0.start(), *self.0.end())
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::range(Quantity::Milliseconds, *self.0.start(), *self.0.end())
     }
 
     fn print(&self, value: &Duration) -> String {
@@ -162,9 +162,9 @@ impl Values for Millivolts {
         fits.then_some(millivolts as u16).filter(|own| self.0.contains(own))
     }
 
-    fn allowed(&self) -> Expected {
+    fn allowed(&self) -> AllowedValues {
         let limit = |millivolts: u16| Limit::thousandths(millivolts.into());
-        Expected::range(Quantity::Volts, limit(*self.0.start()), limit(*self.0.end()))
+        AllowedValues::range(Quantity::Volts, limit(*self.0.start()), limit(*self.0.end()))
     }
 
     fn print(&self, value: &u16) -> String {
@@ -187,8 +187,8 @@ impl<T: Clone + PartialEq> Values for Words<T> {
         self.0.iter().find(|(word, _)| *word == text).map(|(_, meaning)| meaning.clone())
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::Words(self.0.iter().map(|(word, _)| *word).collect())
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::Words(self.0.iter().map(|(word, _)| *word).collect())
     }
 
     fn print(&self, value: &T) -> String {
@@ -203,19 +203,19 @@ impl<T> Values for Checked<T> {
         (self.1)(text)
     }
 
-    fn allowed(&self) -> Expected {
+    fn allowed(&self) -> AllowedValues {
         self.0.clone()
     }
 }
 
-impl<V: Values> Values for Maybe<V> {
+impl<V: Values> Values for OptionalValue<V> {
     type Value = Option<V::Value>;
 
     fn read(&self, text: &str) -> Option<Self::Value> {
         self.0.read(text).map(Some)
     }
 
-    fn allowed(&self) -> Expected {
+    fn allowed(&self) -> AllowedValues {
         self.0.allowed()
     }
 
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn values_parse_print_and_are_refused() {
-        let told = |allowed: Expected| allowed.to_string();
+        let told = |allowed: AllowedValues| allowed.to_string();
         let unit = Whole::<u8>(Quantity::Unit, 1..=247);
         assert_eq!(
             [unit.read("0x10"), unit.read("247"), unit.read("248"), unit.read("")],
@@ -257,7 +257,7 @@ mod tests {
         let warm = Decimal(Quantity::Celsius, -12.5..=40.0);
         assert_eq!([warm.read("-12.5"), warm.read("-12.6"), warm.read("inf")], [Some(-12.5), None, None]);
         assert_eq!(told(warm.allowed()), "a temperature in °C from -12.5 to 40");
-        assert_eq!((Maybe(SWITCH).read("on"), Maybe(SWITCH).read("yes")), (Some(Some(true)), None));
+        assert_eq!((OptionalValue(SWITCH).read("on"), OptionalValue(SWITCH).read("yes")), (Some(Some(true)), None));
         let refused = SWITCH.take("echo", "yes").unwrap_err();
         assert_eq!(
             (refused.key.as_str(), refused.value.as_str(), told(refused.allowed)),

@@ -13,11 +13,11 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Keyword for the kind of device on the command line and in profiles.
     const KIND: &'static str;
 
-    /// Entry of the format in [`Formats`].
-    const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
+    /// Entry of the format in [`ProfileFormats`].
+    const FORMAT: &'static dyn ProfileFormat = &ProfileFormatAdapter::<Self>(PhantomData);
 
     /// Profile formats restricted to this kind, for callers that accept no other kind.
-    const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
+    const FORMATS: ProfileFormats = ProfileFormats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
     ///
@@ -56,7 +56,7 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     fn boxed(&self) -> Box<dyn ProfileBody>;
 
     /// Returns whether this body equals another one.
-    fn equals(&self, other: &dyn ProfileBody) -> bool;
+    fn dyn_eq(&self, other: &dyn ProfileBody) -> bool;
 
     /// Compares this body with another one, or returns `None` if the other is of a different kind of device.
     fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
@@ -75,7 +75,7 @@ impl<P: Profile> ProfileBody for P {
         Box::new(self.clone())
     }
 
-    fn equals(&self, other: &dyn ProfileBody) -> bool {
+    fn dyn_eq(&self, other: &dyn ProfileBody) -> bool {
         let other: &dyn Any = other;
         other.downcast_ref::<P>() == Some(self)
     }
@@ -86,15 +86,15 @@ impl<P: Profile> ProfileBody for P {
     }
 }
 
-struct FormatOf<P>(PhantomData<fn() -> P>);
+struct ProfileFormatAdapter<P>(PhantomData<fn() -> P>);
 
-impl<P: Profile> fmt::Debug for FormatOf<P> {
+impl<P: Profile> fmt::Debug for ProfileFormatAdapter<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(P::KIND)
     }
 }
 
-impl<P: Profile> ProfileFormat for FormatOf<P> {
+impl<P: Profile> ProfileFormat for ProfileFormatAdapter<P> {
     fn kind(&self) -> &'static str {
         P::KIND
     }
@@ -172,18 +172,18 @@ impl fmt::Debug for Body {
 
 impl PartialEq for Body {
     fn eq(&self, other: &Self) -> bool {
-        self.0.equals(other.0.as_ref())
+        self.0.dyn_eq(other.0.as_ref())
     }
 }
 
 /// Readable profile formats, in the order in which messages list them.
 #[derive(Clone, Copy, Debug)]
-pub struct Formats(&'static [&'static dyn ProfileFormat]);
+pub struct ProfileFormats(&'static [&'static dyn ProfileFormat]);
 
-impl Formats {
+impl ProfileFormats {
     /// Creates a list of formats.
     pub const fn new(formats: &'static [&'static dyn ProfileFormat]) -> Self {
-        Formats(formats)
+        ProfileFormats(formats)
     }
 
     /// Returns the keywords for the kinds of devices.

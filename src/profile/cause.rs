@@ -6,19 +6,19 @@ use std::fmt;
 
 /// The device-specific reason why a profile entry is refused. Displays like the wrapped error and compares equal to
 /// that error.
-pub struct Cause(Box<dyn BoxedFact>);
+pub struct Cause(Box<dyn DynCause>);
 
-trait BoxedFact: Any + Error + Send + Sync {
-    fn boxed(&self) -> Box<dyn BoxedFact>;
-    fn equals(&self, other: &dyn BoxedFact) -> bool;
+trait DynCause: Any + Error + Send + Sync {
+    fn boxed(&self) -> Box<dyn DynCause>;
+    fn dyn_eq(&self, other: &dyn DynCause) -> bool;
 }
 
-impl<E: Error + Clone + Eq + Send + Sync + 'static> BoxedFact for E {
-    fn boxed(&self) -> Box<dyn BoxedFact> {
+impl<E: Error + Clone + Eq + Send + Sync + 'static> DynCause for E {
+    fn boxed(&self) -> Box<dyn DynCause> {
         Box::new(self.clone())
     }
 
-    fn equals(&self, other: &dyn BoxedFact) -> bool {
+    fn dyn_eq(&self, other: &dyn DynCause) -> bool {
         let other: &dyn Any = other;
         other.downcast_ref::<E>() == Some(self)
     }
@@ -57,7 +57,7 @@ impl fmt::Display for Cause {
 
 impl PartialEq for Cause {
     fn eq(&self, other: &Self) -> bool {
-        self.0.equals(other.0.as_ref())
+        self.0.dyn_eq(other.0.as_ref())
     }
 }
 

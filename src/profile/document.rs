@@ -6,20 +6,20 @@ use std::rc::Rc;
 use ron::Value;
 use ron::error::SpannedError;
 
-use super::body::{Body, Formats};
-use super::error::{ProfileError, SyntaxProblem};
+use super::body::{Body, ProfileFormats};
+use super::error::{ProfileError, SyntaxErrorKind};
 use super::misspelt::Reading;
-use super::place::place_of;
+use super::place::location_of;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::unique_names::UniqueNames;
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// Version of the profile schema that this program writes.
 pub const SCHEMA: u32 = 1;
 
 /// A profile document as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Document {
+pub struct ProfileDocument {
     /// Time at which the profile was read from a device, RFC 3339.
     pub saved: Option<String>,
     /// Note of the user.
@@ -34,26 +34,33 @@ pub struct Document {
     pub beyond: Vec<String>,
 }
 
-impl Document {
+impl ProfileDocument {
     /// Creates a document with the given time at which the profile was read.
     pub fn new(saved: String, body: Body) -> Self {
-        Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
+        ProfileDocument {
+            saved: Some(saved),
+            note: None,
+            body,
+            unknown: Unknown::new(),
+            schema: SCHEMA,
+            beyond: Vec::new(),
+        }
     }
 
     /// Parses a profile using one of the formats in `formats`.
     ///
     /// # Errors
     /// Returns line and column if the file is not valid RON, otherwise the invalid entry.
-    pub fn parse(text: &str, formats: Formats) -> Result<Self, ProfileError> {
+    pub fn parse(text: &str, formats: ProfileFormats) -> Result<Self, ProfileError> {
         let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
             line: error.span.start.line,
             column: error.span.start.col,
             what: match (error.code, twice.take()) {
-                (_, Some(name)) => SyntaxProblem::Twice(name),
+                (_, Some(name)) => SyntaxErrorKind::Twice(name),
                 // The messages of the crate are written for programmers.
-                (ron::Error::ExceededRecursionLimit, None) => SyntaxProblem::TooDeep,
-                (code, None) => SyntaxProblem::Parser(code.to_string()),
+                (ron::Error::ExceededRecursionLimit, None) => SyntaxErrorKind::TooDeep,
+                (code, None) => SyntaxErrorKind::Parser(code.to_string()),
             },
         };
         let value: Value = ron::from_str(text).map_err(syntax)?;
@@ -61,28 +68,28 @@ impl Document {
         let reading = Rc::new(Reading::default());
         Self::read(value, &reading, formats).map_err(|error| match reading.reported_error(error) {
             ProfileError::Misspelt { path, intended, .. } => {
-                let (line, column) = place_of(text, &path).unwrap_or((1, 1));
+                let (line, column) = location_of(text, &path).unwrap_or((1, 1));
                 ProfileError::Misspelt { line, column, path, intended }
             }
             error => error,
         })
     }
 
-    fn read(value: Value, reading: &Rc<Reading>, formats: Formats) -> Result<Self, ProfileError> {
+    fn read(value: Value, reading: &Rc<Reading>, formats: ProfileFormats) -> Result<Self, ProfileError> {
         let mut entries = Entries::open("", value, reading)?;
-        let schema: u32 = entries.required("schema", Expected::Whole)?;
+        let schema: u32 = entries.required("schema", AllowedValues::Whole)?;
         if schema == 0 {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
         }
         if schema > SCHEMA {
             reading.set_newer_schema(schema);
         }
-        let device: String = entries.required("device", Expected::Text)?;
-        let saved = entries.optional("saved", Expected::Text)?;
-        let note = entries.optional("note", Expected::Text)?;
+        let device: String = entries.required("device", AllowedValues::Text)?;
+        let saved = entries.optional("saved", AllowedValues::Text)?;
+        let note = entries.optional("note", AllowedValues::Text)?;
         let body = formats.parse(device, &mut entries)?;
         let unknown = entries.rest()?;
-        Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
+        Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
     /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared, but neither saved

@@ -2,7 +2,7 @@
 
 use super::Cause;
 use crate::bits::HexError;
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// The reason why a file is not a valid profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum ProfileError {
         /// Column number, starting at 1.
         column: usize,
         /// Description of the problem.
-        what: SyntaxProblem,
+        what: SyntaxErrorKind,
     },
     /// The name of an entry is unknown, and an entry with a similar name is missing.
     #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
@@ -65,7 +65,7 @@ pub enum ProfileError {
         /// Path of the entry.
         path: String,
         /// Expected value.
-        expected: Expected,
+        expected: AllowedValues,
     },
     /// An entry does not contain valid bytes.
     #[error("{path}: {problem}")]
@@ -87,7 +87,7 @@ pub enum ProfileError {
 
 /// A violation of the RON syntax or of the rules for RON in profiles.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SyntaxProblem {
+pub enum SyntaxErrorKind {
     /// Structures are nested too deeply.
     #[error("nested too deeply")]
     TooDeep,

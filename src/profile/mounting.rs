@@ -4,7 +4,7 @@ use std::error::Error;
 
 use super::ProfileError;
 use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// A mark on a value that is valid for one device on one machine only.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ impl<Item> MountingMark<Item> {
     /// `expected` describes the form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
-        expected: Expected,
+        expected: AllowedValues,
         item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Vec<Self>, ProfileError> {
         entries.structures(ENTRY)?.into_iter().map(|entries| Self::read(entries, expected.clone(), &item)).collect()
@@ -32,13 +32,13 @@ impl<Item> MountingMark<Item> {
 
     fn read<E: Error + Clone + Eq + Send + Sync + 'static>(
         mut entries: Entries,
-        expected: Expected,
+        expected: AllowedValues,
         item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Self, ProfileError> {
         let path = entries.path_of("item");
         let text: String = entries.required("item", expected)?;
         let item = item(&text).map_err(|error| ProfileError::refused(path, error))?;
-        let meaning = entries.optional("meaning", Expected::Text)?.unwrap_or_default();
+        let meaning = entries.optional("meaning", AllowedValues::Text)?.unwrap_or_default();
         Ok(MountingMark { item, meaning, unknown: entries.rest()? })
     }
 }

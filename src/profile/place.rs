@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 /// Returns the line and column of an entry's name, counted from 1, or `None` if there is no entry at the path (such
 /// as `fields[2].status`).
-pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
+pub(super) fn location_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
     if found.code != ron::Error::Message(FOUND.to_owned()) {
@@ -138,8 +138,8 @@ mod tests {
             ("d", None),
         ];
         for (path, place) in cases {
-            assert_eq!(place_of(text, path), place, "{path}");
+            assert_eq!(location_of(text, path), place, "{path}");
         }
-        assert_eq!(place_of("(a: ", "b"), None);
+        assert_eq!(location_of("(a: ", "b"), None);
     }
 }

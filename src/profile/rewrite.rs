@@ -1,16 +1,16 @@
 //! Saving a profile over a file edited by a user, and merging the profiles of two users.
 
-use super::source::{Carried, Change, applied, carry, changes, lost};
-use super::{Document, Formats, ProfileError};
+use super::source::{Carried, Change, apply_all, carry, changes, lost};
+use super::{ProfileDocument, ProfileError, ProfileFormats};
 
-impl Document {
+impl ProfileDocument {
     /// Returns `text` updated to the content of the document. Unchanged entries remain as written, with comments, order
     /// and line endings.
-    pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
+    pub fn emit_over(&self, text: &str, formats: ProfileFormats) -> Carried {
         let own = self.emit();
-        let before = Document::parse(text, formats).map(|before| before.emit());
+        let before = ProfileDocument::parse(text, formats).map(|before| before.emit());
         let carried = before.as_ref().ok().and_then(|before| carry(text, before, &own));
-        let says_the_same = |text: &str| Document::parse(text, formats).is_ok_and(|read| read.emit() == own);
+        let says_the_same = |text: &str| ProfileDocument::parse(text, formats).is_ok_and(|read| read.emit() == own);
         match carried {
             Some(carried) if says_the_same(&carried.text) => carried,
             _ => {
@@ -22,7 +22,7 @@ impl Document {
     }
 
     /// Returns the changes that turn this document into `other`, entry by entry.
-    pub fn changes_to(&self, other: &Document) -> Vec<Change> {
+    pub fn changes_to(&self, other: &ProfileDocument) -> Vec<Change> {
         changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
 
@@ -30,14 +30,18 @@ impl Document {
     ///
     /// # Errors
     /// Returns the error if the result is not a valid profile, or `None` if a change does not apply.
-    pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
-        Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
+    pub fn changed(
+        &self,
+        changes: &[Change],
+        formats: ProfileFormats,
+    ) -> Result<ProfileDocument, Option<ProfileError>> {
+        ProfileDocument::parse(&apply_all(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }
 }
 
 /// The side that has changed an entry since both sides had the same profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Changed {
+pub enum ChangedSide {
     /// Only the other side.
     There,
     /// Only this side.
@@ -47,16 +51,20 @@ pub enum Changed {
 }
 
 /// Returns the changes that turn `theirs` into `mine`, and the side that made each of them.
-pub fn divergence(base: &Document, theirs: &Document, mine: &Document) -> Vec<(Change, Changed)> {
+pub fn diverging_changes(
+    base: &ProfileDocument,
+    theirs: &ProfileDocument,
+    mine: &ProfileDocument,
+) -> Vec<(Change, ChangedSide)> {
     let (there, here) = (base.changes_to(theirs), base.changes_to(mine));
     let touches = |own: &[Change], change: &Change| {
         let shares = |other: &Change| other.path.iter().zip(&change.path).all(|(one, other)| one == other);
         own.iter().any(shares)
     };
     let changed = |change: &Change| match (touches(&there, change), touches(&here, change)) {
-        (true, false) => Changed::There,
-        (false, true) => Changed::Here,
-        _ => Changed::Both,
+        (true, false) => ChangedSide::There,
+        (false, true) => ChangedSide::Here,
+        _ => ChangedSide::Both,
     };
     theirs
         .changes_to(mine)

@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use super::ProfileError;
 use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// Unknown entries by name, which are either the user's own or part of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
@@ -36,13 +36,13 @@ impl Entries {
             Value::Unit => ron::Map::new(),
             Value::Seq(values) if values.is_empty() => ron::Map::new(),
             _ => {
-                return Err(ProfileError::Shape { path: path.to_owned(), expected: Expected::Structure });
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: AllowedValues::Structure });
             }
         };
         let mut entries = BTreeMap::new();
         for (key, value) in map {
             let Value::String(name) = key else {
-                return Err(ProfileError::Shape { path: path.to_owned(), expected: Expected::Names });
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: AllowedValues::Names });
             };
             entries.insert(name, value);
         }
@@ -83,7 +83,11 @@ impl Entries {
     }
 
     /// Takes a plain value, or returns `None` if the value is missing.
-    pub fn optional<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<Option<T>, ProfileError> {
+    pub fn optional<T: DeserializeOwned>(
+        &mut self,
+        name: &str,
+        expected: AllowedValues,
+    ) -> Result<Option<T>, ProfileError> {
         let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
             return Ok(None);
@@ -95,7 +99,7 @@ impl Entries {
     }
 
     /// Takes a required plain value.
-    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<T, ProfileError> {
+    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: AllowedValues) -> Result<T, ProfileError> {
         self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
@@ -118,12 +122,12 @@ impl Entries {
     /// Takes bytes, given as one hex string or a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.path_of(name);
-        let Some(value) = self.optional::<Value>(name, Expected::HexLines)? else { return Ok(None) };
+        let Some(value) = self.optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
         let lines = match value {
             Value::String(line) => vec![line],
             value => value
                 .into_rust::<Vec<String>>()
-                .map_err(|_| ProfileError::Shape { path: path.clone(), expected: Expected::HexLines })?,
+                .map_err(|_| ProfileError::Shape { path: path.clone(), expected: AllowedValues::HexLines })?,
         };
         let bytes = lines.iter().map(|line| parse_pairs(line)).collect::<Result<Vec<_>, _>>();
         bytes.map(|rows| Some(rows.concat())).map_err(|problem| ProfileError::Bytes { path, problem })
@@ -148,7 +152,7 @@ impl Entries {
                 .enumerate()
                 .map(|(at, value)| Entries::open(&format!("{path}[{at}]"), value, &self.reading))
                 .collect(),
-            Some(_) => Err(ProfileError::Shape { path, expected: Expected::List }),
+            Some(_) => Err(ProfileError::Shape { path, expected: AllowedValues::List }),
         }
     }
 
@@ -157,7 +161,7 @@ impl Entries {
         match self.take(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
-            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: Expected::Map }),
+            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: AllowedValues::Map }),
         }
     }
 
@@ -169,7 +173,7 @@ impl Entries {
     pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
-            self.report_unknown(&left);
+            self.report_unknown_entries(&left);
             return Ok(left);
         }
         self.entries = left;
@@ -181,7 +185,7 @@ impl Entries {
             None => Unknown::new(),
             Some(value) => std::mem::take(&mut Entries::open(&self.path_of(EXTRA), value, &self.reading)?.entries),
         };
-        self.report_unknown(&left);
+        self.report_unknown_entries(&left);
         for (name, value) in left {
             own.entry(name).or_insert(value);
         }
@@ -193,7 +197,7 @@ impl Entries {
         self.reading.is_beyond(path);
     }
 
-    fn report_unknown(&self, left: &Unknown) {
+    fn report_unknown_entries(&self, left: &Unknown) {
         left.keys().for_each(|name| self.reading.is_beyond(self.path_of(name)));
     }
 }

@@ -1,13 +1,16 @@
 //! Helpers for profile tests of any kind of device.
 
-use super::{Carried, Document, Profile};
+use super::{Carried, Profile, ProfileDocument};
 
 /// Edits a profile and its note, and saves the profile over the text from which the profile was read.
-pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<String>, &mut P)) -> (Document, Carried) {
-    let mut document = Document::parse(text, P::FORMATS).unwrap();
+pub(crate) fn edited<P: Profile>(
+    text: &str,
+    edit: impl FnOnce(&mut Option<String>, &mut P),
+) -> (ProfileDocument, Carried) {
+    let mut document = ProfileDocument::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());
     let carried = document.emit_over(text, P::FORMATS);
-    assert_eq!(Document::parse(&carried.text, P::FORMATS).unwrap().emit(), document.emit());
+    assert_eq!(ProfileDocument::parse(&carried.text, P::FORMATS).unwrap().emit(), document.emit());
     (document, carried)
 }
 

@@ -2,7 +2,7 @@
 
 use super::testing::{changed_in_place, edited};
 use super::*;
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// A light that is switched in steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,10 +15,10 @@ impl Profile for Lamp {
     const KIND: &'static str = "lamp";
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let colour = entries.required("colour", Expected::Text)?;
+        let colour = entries.required("colour", AllowedValues::Text)?;
         let mut steps = Vec::new();
         for mut entries in entries.structures("steps")? {
-            steps.push((entries.required("level", Expected::between(0, 255))?, entries.rest()?));
+            steps.push((entries.required("level", AllowedValues::between(0, 255))?, entries.rest()?));
         }
         Ok(Lamp { colour, steps })
     }
@@ -60,7 +60,7 @@ impl Profile for Fan {
     }
 }
 
-const FORMATS: Formats = Formats::new(&[Lamp::FORMAT, Fan::FORMAT]);
+const FORMATS: ProfileFormats = ProfileFormats::new(&[Lamp::FORMAT, Fan::FORMAT]);
 
 const TEXT: &str = r#"// hall 2
 (schema: 1, device: "lamp", // ours
@@ -71,8 +71,8 @@ const TEXT: &str = r#"// hall 2
     colour: "red")
 "#;
 
-fn parse(text: &str) -> Result<Document, ProfileError> {
-    Document::parse(text, FORMATS)
+fn parse(text: &str) -> Result<ProfileDocument, ProfileError> {
+    ProfileDocument::parse(text, FORMATS)
 }
 
 fn lamp(colour: &str) -> Body {
@@ -102,8 +102,8 @@ fn bodies_are_equal_if_kind_and_content_are() {
 
 #[test]
 fn an_unknown_kind_is_reported_with_the_known_ones() {
-    let told = |formats| Document::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
-    let three = Formats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
+    let told = |formats| ProfileDocument::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
+    let three = ProfileFormats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
     assert_eq!(told(Lamp::FORMATS), "device \"tap\"; this program knows \"lamp\"");
     assert_eq!(told(FORMATS), "device \"tap\"; this program knows \"lamp\" and \"fan\"");
     assert_eq!(told(three), "device \"tap\"; this program knows \"lamp\", \"fan\" and \"lamp\"");
@@ -143,13 +143,14 @@ fn a_document_is_merged_into_text_and_with_another() {
     let base = parse(TEXT).unwrap();
     let theirs = parse(&TEXT.replace("red", "blue")).unwrap();
     let mine = parse(&TEXT.replace("level: 10", "level: 20")).unwrap();
-    let found = divergence(&base, &theirs, &mine);
-    let who: Vec<Changed> = found.iter().map(|(_, who)| *who).collect();
+    let found = diverging_changes(&base, &theirs, &mine);
+    let who: Vec<ChangedSide> = found.iter().map(|(_, who)| *who).collect();
     assert!(
-        who.contains(&Changed::There) && who.contains(&Changed::Here) && !who.contains(&Changed::Both),
+        who.contains(&ChangedSide::There) && who.contains(&ChangedSide::Here) && !who.contains(&ChangedSide::Both),
         "{found:?}"
     );
-    let here: Vec<Change> = found.into_iter().filter(|(_, who)| *who == Changed::Here).map(|(own, _)| own).collect();
+    let here: Vec<Change> =
+        found.into_iter().filter(|(_, who)| *who == ChangedSide::Here).map(|(own, _)| own).collect();
     let merged = theirs.changed(&here, FORMATS).unwrap();
     assert_eq!(merged, parse(&TEXT.replace("red", "blue").replace("level: 10", "level: 20")).unwrap());
 }

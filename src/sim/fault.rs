@@ -8,7 +8,7 @@ use fastrand::Rng;
 
 /// Faults of a virtual device. The default is no faults.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Faults {
+pub struct SimulatedFaults {
     drop: f64,
     flip: f64,
     garbage: f64,
@@ -18,18 +18,18 @@ pub struct Faults {
 }
 
 /// Valid values of a fault setting.
-pub const FAULTS: FaultList = FaultList;
+pub const FAULTS: FaultParser = FaultParser;
 
 /// A parser for faults. See [`FAULTS`].
 #[derive(Clone, Copy, Debug)]
-pub struct FaultList;
+pub struct FaultParser;
 
-impl FaultList {
+impl FaultParser {
     /// Parses the faults of a setting.
     ///
     /// # Errors
     /// Returns the first invalid fault.
-    pub fn take(&self, _key: &str, value: &str) -> Result<Faults, FaultError> {
+    pub fn take(&self, _key: &str, value: &str) -> Result<SimulatedFaults, FaultError> {
         value.parse()
     }
 
@@ -76,7 +76,7 @@ pub enum FaultError {
 
 /// The result of passing a byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BytePassage {
+pub struct ByteTransfer {
     /// Noise byte inserted before the byte, if any.
     pub inserted: Option<u8>,
     /// The transmitted byte, or `None` if it was lost.
@@ -92,11 +92,11 @@ pub struct Carried {
     pub flipped: bool,
 }
 
-impl Faults {
+impl SimulatedFaults {
     const MAX_DELAY_MS: u32 = 60_000;
 
     /// Returns the delay added before each reply.
-    pub fn delay(&self) -> Duration {
+    pub fn reply_delay(&self) -> Duration {
         self.delay
     }
 
@@ -111,13 +111,13 @@ impl Faults {
     }
 
     /// Passes a byte over the noisy line.
-    pub fn passage(&self, rng: &mut Rng, byte: u8) -> BytePassage {
+    pub fn passage(&self, rng: &mut Rng, byte: u8) -> ByteTransfer {
         let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
         let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {
             true => Carried { byte: byte ^ 1 << rng.u8(..8), flipped: true },
             false => Carried { byte, flipped: false },
         });
-        BytePassage { inserted, carried }
+        ByteTransfer { inserted, carried }
     }
 }
 
@@ -126,13 +126,13 @@ fn happens(probability: f64, rng: &mut Rng) -> bool {
     rng.f64() < probability
 }
 
-impl FromStr for Faults {
+impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
     /// Parses a list such as `drop:0.01,delay:5`. If an item is given twice, the last one counts, and an empty string
     /// means no fault.
     fn from_str(text: &str) -> Result<Self, FaultError> {
-        let mut faults = Faults::default();
+        let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
             let unknown = || FaultError::Unknown { item: item.to_owned() };
             let (name, value) = item.split_once(':').ok_or_else(unknown)?;
@@ -175,11 +175,12 @@ mod tests {
 
     #[test]
     fn a_specification_parses() {
-        let faults: Faults = "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
+        let faults: SimulatedFaults =
+            "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
         assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
-        assert_eq!(faults.delay(), Duration::from_millis(25));
+        assert_eq!(faults.reply_delay(), Duration::from_millis(25));
         assert_eq!((faults.silent_after(), faults.die_in_store()), (Some(0), Some(2)));
-        assert_eq!("".parse(), Ok(Faults::default()));
+        assert_eq!("".parse(), Ok(SimulatedFaults::default()));
     }
 
     #[test]
@@ -197,20 +198,20 @@ mod tests {
             ),
         ];
         for (text, sentence) in cases {
-            assert_eq!(text.parse::<Faults>().unwrap_err().to_string(), sentence);
+            assert_eq!(text.parse::<SimulatedFaults>().unwrap_err().to_string(), sentence);
         }
-        assert!(matches!("drop".parse::<Faults>(), Err(FaultError::Unknown { .. })));
+        assert!(matches!("drop".parse::<SimulatedFaults>(), Err(FaultError::Unknown { .. })));
     }
 
     #[test]
     fn probability_one_always_happens_and_zero_never_does() {
         let mut rng = Rng::with_seed(1);
-        let quiet = Faults::default();
-        let lossy: Faults = "drop:1".parse().unwrap();
-        let noisy: Faults = "flip:1,garbage:1".parse().unwrap();
+        let quiet = SimulatedFaults::default();
+        let lossy: SimulatedFaults = "drop:1".parse().unwrap();
+        let noisy: SimulatedFaults = "flip:1,garbage:1".parse().unwrap();
         for byte in 0..=255 {
             let whole = Some(Carried { byte, flipped: false });
-            assert_eq!(quiet.passage(&mut rng, byte), BytePassage { inserted: None, carried: whole });
+            assert_eq!(quiet.passage(&mut rng, byte), ByteTransfer { inserted: None, carried: whole });
             assert_eq!(lossy.passage(&mut rng, byte).carried, None);
             let passage = noisy.passage(&mut rng, byte);
             assert!(passage.inserted.is_some());
@@ -221,7 +222,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_panics(text in "[a-z:0-9,.-]*") {
-            let _ = text.parse::<Faults>();
+            let _ = text.parse::<SimulatedFaults>();
         }
     }
 }

@@ -7,20 +7,20 @@ use std::time::Duration;
 
 use fastrand::Rng;
 
-use super::{ByteDevice, Faults};
+use super::{ByteDevice, SimulatedFaults};
 use crate::units::{CharacterFormat, Moment};
 
 /// Items in transit, ordered by time and, for equal times, by insertion.
 #[derive(Clone, Debug)]
-pub(crate) struct Queue<T>(VecDeque<(Moment, T)>);
+pub(crate) struct TransitQueue<T>(VecDeque<(Moment, T)>);
 
-impl<T> Default for Queue<T> {
+impl<T> Default for TransitQueue<T> {
     fn default() -> Self {
-        Queue(VecDeque::new())
+        TransitQueue(VecDeque::new())
     }
 }
 
-impl<T> Queue<T> {
+impl<T> TransitQueue<T> {
     pub(crate) fn insert(&mut self, at: Moment, item: T) {
         let place = self.0.partition_point(|(other, _)| *other <= at);
         self.0.insert(place, (at, item));
@@ -50,7 +50,7 @@ impl<T> Queue<T> {
 
 /// A character on the line, from its start bit to the end of its stop bit.
 #[derive(Clone, Copy)]
-pub(crate) struct Character {
+pub(crate) struct SerialCharacter {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
@@ -58,17 +58,17 @@ pub(crate) struct Character {
     pub(crate) flipped: bool,
 }
 
-pub(crate) struct Sent {
-    pub(crate) heard: Vec<Character>,
+pub(crate) struct SentCharacters {
+    pub(crate) heard: Vec<SerialCharacter>,
     /// Characters as sent. An echoing converter returns them without line noise.
-    pub(crate) own: Vec<Character>,
+    pub(crate) own: Vec<SerialCharacter>,
     pub(crate) end: Moment,
 }
 
 /// Components common to all lines, created with a device's settings.
 #[derive(Clone)]
 pub(crate) struct Wires {
-    pub(crate) faults: Faults,
+    pub(crate) faults: SimulatedFaults,
     pub(crate) rng: Rng,
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
@@ -80,7 +80,7 @@ pub(crate) struct Wires {
 }
 
 impl Wires {
-    pub(crate) fn new(faults: &Faults, seed: u64, host: CharacterFormat) -> Self {
+    pub(crate) fn new(faults: &SimulatedFaults, seed: u64, host: CharacterFormat) -> Self {
         Wires {
             faults: faults.clone(),
             rng: Rng::with_seed(seed),
@@ -104,11 +104,11 @@ impl Wires {
     }
 
     /// Sends bytes over the noisy line, starting at `start`. Each byte takes one character time.
-    pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
-        let mut sent = Sent { heard: Vec::new(), own: Vec::new(), end: start };
+    pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> SentCharacters {
+        let mut sent = SentCharacters { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
             let passage = self.faults.passage(&mut self.rng, *byte);
-            let next = |start: Moment, byte, flipped| Character { start, end: start + character, byte, flipped };
+            let next = |start: Moment, byte, flipped| SerialCharacter { start, end: start + character, byte, flipped };
             if let Some(extra) = passage.inserted {
                 let extra = next(sent.end, extra, false);
                 sent.heard.push(extra);

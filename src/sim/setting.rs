@@ -2,7 +2,7 @@
 //! defines its keys.
 
 use super::FaultError;
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::parameter::{Checked, Parameters, Refused, Values, number};
 
 /// The reason why settings are invalid.
@@ -26,7 +26,7 @@ pub enum ConfigError {
         /// Value as written.
         value: String,
         /// Allowed values.
-        allowed: Expected,
+        allowed: AllowedValues,
     },
     /// The value of `fault` is invalid.
     #[error(transparent)]
@@ -81,7 +81,7 @@ pub fn read<P: Parameters<Error = ConfigError>>(
 }
 
 /// Seed of the noise, which can be any number.
-pub const SEED: Checked<u64> = Checked(Expected::Whole, number);
+pub const SEED: Checked<u64> = Checked(AllowedValues::Whole, number);
 
 /// Speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
@@ -102,8 +102,8 @@ impl Values for Rpm {
         text.parse().ok().filter(|rpm| (-most..=most).contains(rpm))
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::Speed { most: Self::MAX }
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::Speed { most: Self::MAX }
     }
 
     fn print(&self, value: &f64) -> String {

@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use jiff::civil::DateTime;
 use jiff::tz::TimeZone;
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, write_new};
 
@@ -46,11 +46,11 @@ impl Backups {
         for number in 1..=MOST_IN_A_SECOND {
             let path = folder.join(file_name(&time, number));
             match write_new(&path, text.as_bytes()) {
-                Err(FileError { problem: FileProblem::Exists, .. }) => {}
+                Err(FileError { problem: FileErrorKind::Exists, .. }) => {}
                 result => return result.map(|()| path),
             }
         }
-        Err(FileProblem::Exists.of(FileTask::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
+        Err(FileErrorKind::Exists.of(FileOperation::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
     }
 
     /// Returns the backups of a device, newest first. Files whose names do not match the backup format are ignored.
@@ -59,7 +59,7 @@ impl Backups {
     /// Returns an error if the folder exists but cannot be read.
     pub fn list(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
         let folder = self.folder_of(device, serial_number);
-        let failed = |error: std::io::Error| FileProblem::from(error).of(FileTask::List, &folder);
+        let failed = |error: std::io::Error| FileErrorKind::from(error).of(FileOperation::List, &folder);
         let entries = match fs::read_dir(&folder) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
             entries => entries.map_err(failed)?,
@@ -202,7 +202,7 @@ mod tests {
         let (root, backups) = backups();
         fs::write(root.path().join("data"), "x").unwrap();
         let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
-        assert_eq!((error.task, error.problem), (FileTask::CreateFolder, FileProblem::NotFolder));
+        assert_eq!((error.task, error.problem), (FileOperation::CreateFolder, FileErrorKind::NotFolder));
         assert!(backups.list("hiperface", "1").is_err());
     }
 }

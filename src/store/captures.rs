@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, TableHints};
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,8 +37,8 @@ pub fn read_capture(
 ) -> Result<(Layout, Capture), ReadCaptureError> {
     let failed = |error: io::Error| {
         // Windows calls it "permission denied".
-        let problem = if path.is_dir() { FileProblem::IsFolder } else { error.into() };
-        problem.of(FileTask::Read, path)
+        let problem = if path.is_dir() { FileErrorKind::IsFolder } else { error.into() };
+        problem.of(FileOperation::Read, path)
     };
     let mut file = File::open(path).map_err(failed)?;
     let total = file.metadata().map(|data| if data.is_file() { data.len() } else { 0 }).unwrap_or(0);
@@ -75,7 +75,7 @@ pub fn read_capture(
 /// # Errors
 /// Returns a [`FileError`] if the file cannot be read.
 pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
-    let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Read, path);
+    let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Read, path);
     let mut head = Vec::new();
     if std::fs::metadata(path).map_err(failed)?.is_file() {
         File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head)).map_err(failed)?;
@@ -113,7 +113,7 @@ mod tests {
     fn the_head_is_the_start_of_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
-        assert_eq!(capture_head(&path).unwrap_err().problem, FileProblem::NotFound);
+        assert_eq!(capture_head(&path).unwrap_err().problem, FileErrorKind::NotFound);
         assert_eq!(capture_head(folder.path()), Ok(Vec::new()), "a folder is told by who reads it");
         fs::write(&path, "0,1,2\n".repeat(20_000)).unwrap();
         let head = capture_head(&path).unwrap();
@@ -127,8 +127,8 @@ mod tests {
             Err(ReadCaptureError::File(error)) => error.problem,
             other => panic!("{other:?}"),
         };
-        assert_eq!(problem(folder.path()), FileProblem::IsFolder);
-        assert_eq!(problem(&folder.path().join("none.csv")), FileProblem::NotFound);
+        assert_eq!(problem(folder.path()), FileErrorKind::IsFolder);
+        assert_eq!(problem(&folder.path().join("none.csv")), FileErrorKind::NotFound);
         let empty = folder.path().join("empty.csv");
         fs::write(&empty, "").unwrap();
         assert_eq!(read(&empty, false).0, Err(ReadCaptureError::Capture(CaptureError::Empty)));

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::read_file;
 
 /// Returns the paths and contents of a folder's files with the given extension, ordered by name, and the errors of
@@ -20,13 +20,13 @@ pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<F
                 }
             }
         }
-        Err(FileProblem::NotFound) => {}
-        Err(problem) => errors.push(problem.of(FileTask::List, folder)),
+        Err(FileErrorKind::NotFound) => {}
+        Err(problem) => errors.push(problem.of(FileOperation::List, folder)),
     }
     (texts, errors)
 }
 
-fn list(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FileProblem> {
+fn list(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FileErrorKind> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

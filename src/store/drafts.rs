@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_lock::FileLock;
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, read_text, write_atomically};
@@ -43,7 +43,7 @@ impl Drafts {
     pub fn load(&self, device: &str, key: &str) -> Result<Option<String>, FileError> {
         match read_text(&self.path_of(device, key)) {
             Ok(text) => Ok(Some(text)),
-            Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
+            Err(FileError { problem: FileErrorKind::NotFound, .. }) => Ok(None),
             Err(error) => Err(error),
         }
     }
@@ -61,7 +61,7 @@ impl Drafts {
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));
-        Ok(FileLock::try_at(&path)?.map(|lock| Claim { _lock: lock }))
+        Ok(FileLock::try_lock_at(&path)?.map(|lock| Claim { _lock: lock }))
     }
 
     /// Removes a draft, if it exists.
@@ -70,9 +70,9 @@ impl Drafts {
     /// Returns an error if the draft cannot be removed.
     pub fn remove(&self, device: &str, key: &str) -> Result<(), FileError> {
         let path = self.path_of(device, key);
-        match fs::remove_file(&path).map_err(FileProblem::from) {
-            Ok(()) | Err(FileProblem::NotFound) => Ok(()),
-            Err(problem) => Err(problem.of(FileTask::Remove, &path)),
+        match fs::remove_file(&path).map_err(FileErrorKind::from) {
+            Ok(()) | Err(FileErrorKind::NotFound) => Ok(()),
+            Err(problem) => Err(problem.of(FileOperation::Remove, &path)),
         }
     }
 
@@ -145,11 +145,11 @@ mod tests {
         let path = root.path().join("data/drafts/hiperface/1.ron");
         fs::create_dir_all(&path).unwrap();
         let task = |result: Result<(), FileError>| result.unwrap_err().task;
-        assert_eq!(task(drafts.load("hiperface", "1").map(drop)), FileTask::Read);
-        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileTask::Write);
-        assert_eq!(task(drafts.remove("hiperface", "1")), FileTask::Remove);
+        assert_eq!(task(drafts.load("hiperface", "1").map(drop)), FileOperation::Read);
+        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileOperation::Write);
+        assert_eq!(task(drafts.remove("hiperface", "1")), FileOperation::Remove);
         fs::remove_dir_all(root.path().join("data")).unwrap();
         fs::write(root.path().join("data"), "x").unwrap();
-        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileTask::CreateFolder);
+        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileOperation::CreateFolder);
     }
 }

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 #[error("cannot {task} {}: {problem}", path.display())]
 pub struct FileError {
     pub path: PathBuf,
-    pub task: FileTask,
-    pub problem: FileProblem,
+    pub task: FileOperation,
+    pub problem: FileErrorKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileTask {
+pub enum FileOperation {
     Read,
     Write,
     List,
@@ -21,20 +21,20 @@ pub enum FileTask {
     Remove,
 }
 
-impl fmt::Display for FileTask {
+impl fmt::Display for FileOperation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            FileTask::Read => "read",
-            FileTask::Write => "write",
-            FileTask::List => "list",
-            FileTask::CreateFolder => "create",
-            FileTask::Remove => "remove",
+            FileOperation::Read => "read",
+            FileOperation::Write => "write",
+            FileOperation::List => "list",
+            FileOperation::CreateFolder => "create",
+            FileOperation::Remove => "remove",
         })
     }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FileProblem {
+pub enum FileErrorKind {
     #[error("it does not exist")]
     NotFound,
     /// The folder of the new file does not exist.
@@ -78,32 +78,32 @@ pub enum FileProblem {
     Other { kind: io::ErrorKind, what: String },
 }
 
-impl From<io::Error> for FileProblem {
+impl From<io::Error> for FileErrorKind {
     fn from(error: io::Error) -> Self {
         use io::ErrorKind as Kind;
         match error.kind() {
-            Kind::NotFound => FileProblem::NotFound,
-            Kind::NotADirectory => FileProblem::NotFolder,
-            Kind::IsADirectory => FileProblem::IsFolder,
-            Kind::AlreadyExists => FileProblem::Exists,
-            Kind::PermissionDenied => FileProblem::PermissionDenied,
-            Kind::ReadOnlyFilesystem => FileProblem::WriteProtected,
-            Kind::StorageFull | Kind::QuotaExceeded => FileProblem::DiskFull,
-            kind => FileProblem::Other { kind, what: error.to_string() },
+            Kind::NotFound => FileErrorKind::NotFound,
+            Kind::NotADirectory => FileErrorKind::NotFolder,
+            Kind::IsADirectory => FileErrorKind::IsFolder,
+            Kind::AlreadyExists => FileErrorKind::Exists,
+            Kind::PermissionDenied => FileErrorKind::PermissionDenied,
+            Kind::ReadOnlyFilesystem => FileErrorKind::WriteProtected,
+            Kind::StorageFull | Kind::QuotaExceeded => FileErrorKind::DiskFull,
+            kind => FileErrorKind::Other { kind, what: error.to_string() },
         }
     }
 }
 
-impl FileProblem {
-    pub(super) fn of(self, task: FileTask, path: &Path) -> FileError {
+impl FileErrorKind {
+    pub(super) fn of(self, task: FileOperation, path: &Path) -> FileError {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
     /// Returns the problem for a failure to create a new file. The new file cannot be missing, so a missing folder is
     /// reported instead.
-    pub(super) fn while_creating(error: io::Error) -> Self {
+    pub(super) fn from_create_error(error: io::Error) -> Self {
         match error.into() {
-            FileProblem::NotFound => FileProblem::NoFolder,
+            FileErrorKind::NotFound => FileErrorKind::NoFolder,
             problem => problem,
         }
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::{create_folder, read_text, write_atomically};
 
 /// Maximum time to wait for another program that is reading and writing a file.
@@ -22,8 +22,8 @@ pub(super) struct FileLock {
 impl FileLock {
     /// Acquires a lock file, creating it if missing. Returns `None` if the lock is held by this or another
     /// program.
-    pub(super) fn try_at(path: &Path) -> Result<Option<Self>, FileError> {
-        let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Write, path);
+    pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
+        let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(FileLock { _locked: file })),
@@ -50,7 +50,7 @@ fn open(path: &Path) -> io::Result<File> {
 /// [`write_atomically`], in a folder that is created if missing.
 ///
 /// # Errors
-/// Returns [`FileProblem::InUse`] if another program keeps the lock, and the errors of [`write_atomically`] and `make`.
+/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, and the errors of [`write_atomically`] and `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
@@ -71,10 +71,10 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let began = Instant::now();
     loop {
         // The message names the file that the user knows, not the lock file.
-        let tried = FileLock::try_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
+        let tried = FileLock::try_lock_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),
-            None if began.elapsed() > PATIENCE => return Err(FileProblem::InUse.of(FileTask::Write, path)),
+            None if began.elapsed() > PATIENCE => return Err(FileErrorKind::InUse.of(FileOperation::Write, path)),
             None => thread::sleep(RETRY),
         }
     }
@@ -94,7 +94,7 @@ mod tests {
 
     fn appended(text: Result<String, FileError>, more: &str) -> Result<(Option<String>, usize), FileError> {
         let text = text.or_else(|error| match error.problem {
-            FileProblem::NotFound => Ok(String::new()),
+            FileErrorKind::NotFound => Ok(String::new()),
             _ => Err(error),
         })?;
         Ok((Some(text.clone() + more), text.len()))
@@ -125,10 +125,10 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::write(&path, "old").unwrap();
-        let lock = FileLock::try_at(&lock_path(&path)).unwrap();
-        assert!(lock.is_some() && FileLock::try_at(&lock_path(&path)).unwrap().is_none());
+        let lock = FileLock::try_lock_at(&lock_path(&path)).unwrap();
+        assert!(lock.is_some() && FileLock::try_lock_at(&lock_path(&path)).unwrap().is_none());
         let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
-        assert_eq!((&error.path, error.problem), (&path, FileProblem::InUse));
+        assert_eq!((&error.path, error.problem), (&path, FileErrorKind::InUse));
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         drop(lock);
         assert_eq!(update_text(&path, |text| appended(text, "x")), Ok(3));
@@ -140,7 +140,7 @@ mod tests {
         let path = root.path().join("a.ron");
         fs::create_dir_all(lock_path(&path)).unwrap();
         let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
-        assert_eq!((error.path, error.problem), (path, FileProblem::IsFolder));
+        assert_eq!((error.path, error.problem), (path, FileErrorKind::IsFolder));
     }
 
     #[cfg(unix)]
@@ -151,7 +151,7 @@ mod tests {
         let path = root.path().join("a.ron.lock");
         fs::write(&path, "").unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
-        let lock = FileLock::try_at(&path).unwrap();
-        assert!(lock.is_some() && FileLock::try_at(&path).unwrap().is_none());
+        let lock = FileLock::try_lock_at(&path).unwrap();
+        assert!(lock.is_some() && FileLock::try_lock_at(&path).unwrap().is_none());
     }
 }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
-use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::leftovers;
 
 /// Maximum number of bytes read by [`read_text`], 16 MiB. The largest profile is a hundredth of that size.
@@ -29,7 +29,8 @@ const MARK: &str = "\u{FEFF}";
 /// write-protected, or the disk is full.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
-        return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
+        return write_directly(path, content)
+            .map_err(|error| FileErrorKind::from(error).of(FileOperation::Write, path));
     }
     write_with(path, |file| file.write_all(content))
 }
@@ -51,19 +52,19 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
 /// # Errors
 /// Returns the errors of [`write_atomically`] and of `write`; a device or a pipe is refused.
 pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
-    let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
+    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
     let permissions = match fs::metadata(path) {
-        Ok(target) if target.is_dir() => return Err(failed(FileProblem::IsFolder)),
-        Ok(target) if !target.is_file() => return Err(failed(FileProblem::NotAFile)),
+        Ok(target) if target.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
+        Ok(target) if !target.is_file() => return Err(failed(FileErrorKind::NotAFile)),
         // Renaming would ignore the protection of the file.
-        Ok(target) if target.permissions().readonly() => return Err(failed(FileProblem::WriteProtected)),
+        Ok(target) if target.permissions().readonly() => return Err(failed(FileErrorKind::WriteProtected)),
         Ok(target) => Some(target.permissions()),
         Err(_) => None,
     };
     let target = resolve_links(path).map_err(|e| failed(e.into()))?;
-    let failed = |problem: FileProblem| problem.of(FileTask::Write, &target);
+    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, &target);
     let folder = folder_of(&target).map_err(failed)?;
-    let staged = stage(folder, write, permissions).map_err(|e| failed(FileProblem::while_creating(e)))?;
+    let staged = stage(folder, write, permissions).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist(&target).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -72,12 +73,12 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
 /// at the same time.
 ///
 /// # Errors
-/// Returns [`FileProblem::Exists`] if the file exists.
+/// Returns [`FileErrorKind::Exists`] if the file exists.
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
-    let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
+    let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
     let folder = folder_of(path).map_err(failed)?;
     let staged =
-        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileProblem::while_creating(e)))?;
+        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -85,8 +86,8 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
         // A folder that exists is no error: this is a file, or a link that leads nowhere.
-        FileProblem::Exists => FileProblem::NotFolder.of(FileTask::CreateFolder, path),
-        problem => problem.of(FileTask::CreateFolder, path),
+        FileErrorKind::Exists => FileErrorKind::NotFolder.of(FileOperation::CreateFolder, path),
+        problem => problem.of(FileOperation::CreateFolder, path),
     })
 }
 
@@ -107,7 +108,7 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
 /// Returns the errors of [`read_text`], and an error for a pipe or a device.
 pub fn read_file(path: &Path) -> Result<String, FileError> {
     match fs::metadata(path) {
-        Ok(found) if !found.is_file() && !found.is_dir() => Err(FileProblem::NotAFile.of(FileTask::Read, path)),
+        Ok(found) if !found.is_file() && !found.is_dir() => Err(FileErrorKind::NotAFile.of(FileOperation::Read, path)),
         _ => read_text(path),
     }
 }
@@ -117,18 +118,18 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
 /// # Errors
 /// Returns an error if the file is missing, a folder, too large or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
-    let failed = |problem: FileProblem| problem.of(FileTask::Read, path);
+    let failed = |problem: FileErrorKind| problem.of(FileOperation::Read, path);
     let bytes = match read_at_most(path, MAX_TEXT + 1) {
         Ok(bytes) => bytes,
         // Windows calls it "permission denied".
-        Err(_) if path.is_dir() => return Err(failed(FileProblem::IsFolder)),
+        Err(_) if path.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Err(error) => return Err(failed(error.into())),
     };
     if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_TEXT) {
-        return Err(failed(FileProblem::TooLarge { limit: MAX_TEXT }));
+        return Err(failed(FileErrorKind::TooLarge { limit: MAX_TEXT }));
     }
     let text = String::from_utf8(bytes)
-        .map_err(|error| failed(FileProblem::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
+        .map_err(|error| failed(FileErrorKind::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
     Ok(text.strip_prefix(MARK).map(str::to_owned).unwrap_or(text))
 }
 
@@ -166,12 +167,12 @@ fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     fs::metadata(path).map(|_| target)
 }
 
-fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
+fn folder_of(path: &Path) -> Result<&Path, FileErrorKind> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
         (Some(folder), Some(_)) => Ok(folder),
         // "/" and "..".
-        _ => Err(FileProblem::IsFolder),
+        _ => Err(FileErrorKind::IsFolder),
     }
 }
 
@@ -181,7 +182,7 @@ fn stage(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     permissions: Option<Permissions>,
 ) -> io::Result<NamedTempFile> {
-    leftovers::remove_from(folder);
+    leftovers::remove_in_folder(folder);
     let mut builder = tempfile::Builder::new();
     builder.prefix(leftovers::PREFIX).suffix(leftovers::SUFFIX);
     if permissions.is_none() {
@@ -237,7 +238,7 @@ mod platform {
 mod tests {
     use super::*;
 
-    fn problem(result: Result<impl std::fmt::Debug, FileError>) -> FileProblem {
+    fn problem(result: Result<impl std::fmt::Debug, FileError>) -> FileErrorKind {
         result.unwrap_err().problem
     }
 
@@ -262,15 +263,15 @@ mod tests {
         let file = folder.path().join("file");
         fs::write(&file, "x").unwrap();
         let cases = [
-            ("missing folder", folder.path().join("no/a.ron"), FileProblem::NoFolder),
-            ("a file for a folder", file.join("a.ron"), FileProblem::NotFolder),
-            ("a folder", folder.path().to_owned(), FileProblem::IsFolder),
-            ("the folder above", folder.path().join(".."), FileProblem::IsFolder),
-            ("no name", PathBuf::new(), FileProblem::IsFolder),
+            ("missing folder", folder.path().join("no/a.ron"), FileErrorKind::NoFolder),
+            ("a file for a folder", file.join("a.ron"), FileErrorKind::NotFolder),
+            ("a folder", folder.path().to_owned(), FileErrorKind::IsFolder),
+            ("the folder above", folder.path().join(".."), FileErrorKind::IsFolder),
+            ("no name", PathBuf::new(), FileErrorKind::IsFolder),
         ];
         for (label, path, expected) in cases {
             let error = write_atomically(&path, b"new").unwrap_err();
-            assert_eq!((error.task, error.problem), (FileTask::Write, expected), "{label}");
+            assert_eq!((error.task, error.problem), (FileOperation::Write, expected), "{label}");
         }
         assert_eq!(names(folder.path()), ["file"]);
     }
@@ -280,12 +281,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         write_new(&path, b"old").unwrap();
-        assert_eq!(problem(write_new(&path, b"new")), FileProblem::Exists);
+        assert_eq!(problem(write_new(&path, b"new")), FileErrorKind::Exists);
 
         let mut permissions = fs::metadata(&path).unwrap().permissions();
         permissions.set_readonly(true);
         fs::set_permissions(&path, permissions).unwrap();
-        assert_eq!(problem(write_atomically(&path, b"new")), FileProblem::WriteProtected);
+        assert_eq!(problem(write_atomically(&path, b"new")), FileErrorKind::WriteProtected);
 
         assert_eq!(read_text(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["a.ron"]);
@@ -295,16 +296,16 @@ mod tests {
     fn files_that_are_not_text_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
-        assert_eq!(problem(read_text(&path)), FileProblem::NotFound);
-        assert_eq!(problem(read_text(folder.path())), FileProblem::IsFolder);
+        assert_eq!(problem(read_text(&path)), FileErrorKind::NotFound);
+        assert_eq!(problem(read_text(folder.path())), FileErrorKind::IsFolder);
         fs::write(&path, b"\xEF\xBB\xBFab\xFFc").unwrap();
-        assert_eq!(problem(read_text(&path)), FileProblem::NotUtf8 { offset: 5 });
+        assert_eq!(problem(read_text(&path)), FileErrorKind::NotUtf8 { offset: 5 });
         fs::write(&path, b"\xEF\xBB\xBFab").unwrap();
         assert_eq!(read_text(&path).unwrap(), "ab");
         File::create(&path).unwrap().set_len(MAX_TEXT).unwrap();
         assert_eq!(read_text(&path).unwrap().len() as u64, MAX_TEXT);
         File::create(&path).unwrap().set_len(MAX_TEXT + 1).unwrap();
-        assert_eq!(problem(read_text(&path)), FileProblem::TooLarge { limit: MAX_TEXT });
+        assert_eq!(problem(read_text(&path)), FileErrorKind::TooLarge { limit: MAX_TEXT });
     }
 
     #[test]
@@ -314,8 +315,8 @@ mod tests {
         create_folder(&deep).unwrap();
         create_folder(&deep).unwrap();
         fs::write(deep.join("file"), "x").unwrap();
-        assert_eq!(problem(create_folder(&deep.join("file"))), FileProblem::NotFolder);
-        assert_eq!(problem(create_folder(&deep.join("file/c"))), FileProblem::NotFolder);
+        assert_eq!(problem(create_folder(&deep.join("file"))), FileErrorKind::NotFolder);
+        assert_eq!(problem(create_folder(&deep.join("file/c"))), FileErrorKind::NotFolder);
     }
 
     #[cfg(unix)]
@@ -362,7 +363,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let link = folder.path().join("link");
             symlink("link", &link).unwrap();
-            assert!(matches!(problem(write_atomically(&link, b"x")), FileProblem::Other { .. }));
+            assert!(matches!(problem(write_atomically(&link, b"x")), FileErrorKind::Other { .. }));
             assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         }
 
@@ -372,7 +373,7 @@ mod tests {
             use std::os::unix::fs::FileTypeExt;
             write_atomically(Path::new("/dev/null"), b"x").unwrap();
             assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
-            assert_eq!(problem(write_atomically(Path::new("/dev/full"), b"x")), FileProblem::DiskFull);
+            assert_eq!(problem(write_atomically(Path::new("/dev/full"), b"x")), FileErrorKind::DiskFull);
         }
     }
 }

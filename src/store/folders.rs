@@ -6,20 +6,20 @@ use std::path::{Component, Path, PathBuf};
 use directories::UserDirs;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Folders {
+pub struct BaseFolders {
     working: Option<PathBuf>,
     home: Option<PathBuf>,
 }
 
-impl Folders {
+impl BaseFolders {
     /// Returns the working directory in which the program was started and the user's home folder.
-    pub fn of_user() -> Self {
+    pub fn for_current_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
-        Folders { working: std::env::current_dir().ok(), home }
+        BaseFolders { working: std::env::current_dir().ok(), home }
     }
 
     pub fn at(working: &Path, home: &Path) -> Self {
-        Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
+        BaseFolders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
     /// Returns the folder that relative paths start from, or `None` if the system does not report it.
@@ -28,13 +28,13 @@ impl Folders {
     }
 
     /// Returns the user's home folder, or `None` if the system does not report it.
-    pub fn home(&self) -> Option<&Path> {
+    pub fn home_folder(&self) -> Option<&Path> {
         self.home.as_deref()
     }
 
     /// Returns an absolute path to the given file. A leading `~` is the user's home folder, and other relative paths
     /// start from the folder in which the program was started.
-    pub fn absolute(&self, path: &Path) -> PathBuf {
+    pub fn absolute_path(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
         match (&self.home, &self.working) {
@@ -55,7 +55,7 @@ mod tests {
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();
         let (working, home) = (root.join("work"), root.join("home"));
-        let folders = Folders::at(&working, &home);
+        let folders = BaseFolders::at(&working, &home);
         let elsewhere = root.join("elsewhere.ron");
         let cases = [
             ("a.ron", working.join("a.ron")),
@@ -68,10 +68,10 @@ mod tests {
             ("sub/~/a.ron", working.join("sub/~/a.ron")),
         ];
         for (given, expected) in cases {
-            assert_eq!(folders.absolute(Path::new(given)), expected, "{given}");
+            assert_eq!(folders.absolute_path(Path::new(given)), expected, "{given}");
         }
-        assert_eq!(folders.absolute(&elsewhere), elsewhere);
-        assert_eq!(folders.absolute(Path::new("")), PathBuf::new());
-        assert_eq!(Folders::default().absolute(Path::new("~/a.ron")), PathBuf::from("~/a.ron"));
+        assert_eq!(folders.absolute_path(&elsewhere), elsewhere);
+        assert_eq!(folders.absolute_path(Path::new("")), PathBuf::new());
+        assert_eq!(BaseFolders::default().absolute_path(Path::new("~/a.ron")), PathBuf::from("~/a.ron"));
     }
 }

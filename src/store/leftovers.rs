@@ -15,19 +15,19 @@ const LEFT: Duration = Duration::from_secs(3600);
 const DEPTH: usize = 3;
 
 /// Removes the files left behind in one folder. Files that cannot be removed do no harm and stay.
-pub(super) fn remove_from(folder: &Path) {
+pub(super) fn remove_in_folder(folder: &Path) {
     entries(folder).filter(is_left).for_each(remove);
 }
 
 /// Removes the files left behind in a folder of the program and the folders below.
-pub(super) fn remove_below(folder: &Path) {
-    remove_to(folder, DEPTH);
+pub(super) fn remove_recursively(folder: &Path) {
+    remove_to_depth(folder, DEPTH);
 }
 
-fn remove_to(folder: &Path, depth: usize) {
+fn remove_to_depth(folder: &Path, depth: usize) {
     for entry in entries(folder) {
         match entry.file_type() {
-            Ok(kind) if kind.is_dir() && depth > 0 => remove_to(&entry.path(), depth - 1),
+            Ok(kind) if kind.is_dir() && depth > 0 => remove_to_depth(&entry.path(), depth - 1),
             Ok(kind) if kind.is_file() && is_left(&entry) => remove(entry),
             _ => {}
         }

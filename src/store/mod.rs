@@ -22,12 +22,14 @@ pub use backups::{Backup, Backups};
 pub use captures::{OnProgress, ReadCaptureError, capture_head, read_capture};
 pub use device_files::read_folder;
 pub use drafts::{Claim, Drafts};
-pub use file_error::{FileError, FileProblem, FileTask};
+pub use file_error::{FileError, FileErrorKind, FileOperation};
 pub use file_lock::update_text;
 pub use files::{MAX_TEXT, overwrite_text, read_file, read_text, write_atomically, write_in_folder, write_with};
-pub use folders::Folders;
+pub use folders::BaseFolders;
 pub use log_file::LogFile;
-pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome, StatusEntry};
+pub use logbook::{
+    DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookErrorKind, Outcome, StatusEntry, WriteResult,
+};
 
 use crate::profile::Cause;
 
@@ -69,8 +71,8 @@ impl Store {
 
     /// Removes temporary files that were left behind in the program's folders by a program that was killed.
     pub fn remove_leftovers(&self) {
-        leftovers::remove_below(&self.data);
-        leftovers::remove_below(&self.config);
+        leftovers::remove_recursively(&self.data);
+        leftovers::remove_recursively(&self.config);
     }
 
     pub fn backups(&self) -> Backups {

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::controls::{button, card, empty, enabled_button, paragraph};
+use super::controls::{button, card, empty_placeholder, enabled_button, paragraph};
 use super::{Theme, icons};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand};
@@ -52,13 +52,13 @@ fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
 fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     card(ui, theme, "backups_card.title", |ui| match device.backups() {
         None => {
-            empty(ui, theme, &theme.say("backups_card.none"), None);
+            empty_placeholder(ui, theme, &theme.say("backups_card.none"), None);
         }
         Some(Err(why)) => {
             ui.label(RichText::new(theme.words(why)).color(theme.palette.warn));
         }
         Some(Ok(backups)) if backups.is_empty() => {
-            empty(ui, theme, &theme.say("backups_card.none"), None);
+            empty_placeholder(ui, theme, &theme.say("backups_card.none"), None);
         }
         Some(Ok(backups)) => {
             paragraph(ui, theme.label(theme.say("backups_card.words")));

@@ -31,10 +31,10 @@ pub(super) struct Command {
     /// Whether the shortcut is left to text editing while the user is typing.
     pub(super) yields_to_typing: bool,
     pub(super) is_enabled: bool,
-    pub(super) effect: Effect,
+    pub(super) effect: CommandEffect,
 }
 
-pub(super) enum Effect {
+pub(super) enum CommandEffect {
     Act(Action),
     Page(SessionId, usize),
     ToolPage(Tab, usize),
@@ -52,7 +52,7 @@ pub struct NamedAction {
 
 /// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, since they would otherwise be
 /// mistaken for those with fewer.
-pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = of_program(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
         let has_undo_keys = views.tabs.device(device.tab()).is_some_and(DeviceView::has_undo_keys);
@@ -72,7 +72,7 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
             let own = view.named_actions(theme, device).into_iter();
             commands.extend(own.map(|NamedAction { name, is_enabled, action }| Command {
                 is_enabled,
-                ..Command::new(device.name(), name, Effect::Act(action))
+                ..Command::new(device.name(), name, CommandEffect::Act(action))
             }));
         }
         commands.extend(backups(theme, device));
@@ -81,13 +81,17 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
     for device in studio.devices() {
         let pages = views.tabs.pages(device.tab()).into_iter().enumerate();
         commands.extend(
-            pages.map(|(at, page)| Command::new(device.name(), theme.say(page.word), Effect::Page(device.id(), at))),
+            pages.map(|(at, page)| {
+                Command::new(device.name(), theme.say(page.word), CommandEffect::Page(device.id(), at))
+            }),
         );
     }
     for tool in views.tabs.tools() {
         let (tab, title) = (tool.kind().tab(), theme.say(tool.title()));
         let pages = tool.pages().into_iter().enumerate();
-        commands.extend(pages.map(|(at, page)| Command::new(&title, theme.say(page.word), Effect::ToolPage(tab, at))));
+        commands.extend(
+            pages.map(|(at, page)| Command::new(&title, theme.say(page.word), CommandEffect::ToolPage(tab, at))),
+        );
     }
     commands.extend(of_program(theme, studio, views));
     commands
@@ -96,16 +100,16 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
 /// Returns the commands that do not require a device.
 fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
-    let act = |word: &'static str, action| command(word, Effect::Act(action));
+    let act = |word: &'static str, action| command(word, CommandEffect::Act(action));
     let mut commands = vec![
         act("shell.open", Action::AskOpen).by(COMMAND, Key::O),
         act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
         act("shell.virtual_device", Action::OpenVirtual),
-        act("shell.stop", Action::Stop).only_if(studio.moves() || studio.can_stop() || studio.is_in_control()),
+        act("shell.stop", Action::Stop).enabled_if(studio.moves() || studio.can_stop() || studio.is_in_control()),
     ];
     let keys = TAB_KEYS.into_iter().map(Some).chain(std::iter::repeat_with(|| None));
     commands.extend(views.tabs.tabs().zip(keys).map(|(tab, key)| {
-        let shown = Command::new("", views.tabs.title(theme, tab), Effect::Act(Action::ShowTab(tab)));
+        let shown = Command::new("", views.tabs.title(theme, tab), CommandEffect::Act(Action::ShowTab(tab)));
         Command { shortcut: key.map(|key| KeyboardShortcut::new(COMMAND, key)), ..shown }
     }));
     let settings = &studio.settings;
@@ -119,39 +123,47 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     });
     let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
     commands.push(act(word, Action::OpenLowerPanel(opens)).by(COMMAND, Key::T));
-    commands.push(command("shell.help", Effect::ToggleHelp).by(Modifiers::NONE, HELP_KEY));
-    commands.push(command("shell.about", Effect::About));
-    commands.push(command("shell.reset_layout", Effect::ResetLayout));
+    commands.push(command("shell.help", CommandEffect::ToggleHelp).by(Modifiers::NONE, HELP_KEY));
+    commands.push(command("shell.about", CommandEffect::About));
+    commands.push(command("shell.reset_layout", CommandEffect::ResetLayout));
     commands
 }
 
 fn common_device_commands(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
-    let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), Effect::Act(action));
+    let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), CommandEffect::Act(action));
     let ask = |word: &'static str, command| act(word, device.command(command));
     let is_offline = *device.phase() == Phase::Offline;
     let live = if device.is_polling() {
         ask("palette.live_pause", DeviceCommand::Poll(None))
     } else {
         let every = Duration::from_micros(views.rate);
-        ask("palette.live_start", DeviceCommand::Poll(Some(every))).only_if(device.is_ready())
+        ask("palette.live_start", DeviceCommand::Poll(Some(every))).enabled_if(device.is_ready())
     };
     vec![
-        ask("palette.read_again", DeviceCommand::Read).by(Modifiers::NONE, Key::F5).only_if(device.is_readable()),
-        ask("memory.review", DeviceCommand::Review).by(COMMAND, Key::Enter).only_if(!is_offline && device.is_dirty()),
-        act("shell.save", Action::Save(device.id())).by(COMMAND, Key::S).only_if(device.is_savable()),
-        ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).only_if(device.is_savable()),
-        ask("shell.restore", DeviceCommand::AskRestore).only_if(device.is_ready() && device.has_memory()),
-        ask("shell.compare", DeviceCommand::AskCompare).only_if(device.is_comparable()),
-        ask("memory.undo", DeviceCommand::Undo).by(COMMAND, Key::Z).disable_while_typing().only_if(device.can_undo()),
+        ask("palette.read_again", DeviceCommand::Read).by(Modifiers::NONE, Key::F5).enabled_if(device.is_readable()),
+        ask("memory.review", DeviceCommand::Review)
+            .by(COMMAND, Key::Enter)
+            .enabled_if(!is_offline && device.is_dirty()),
+        act("shell.save", Action::Save(device.id())).by(COMMAND, Key::S).enabled_if(device.is_savable()),
+        ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).enabled_if(device.is_savable()),
+        ask("shell.restore", DeviceCommand::AskRestore).enabled_if(device.is_ready() && device.has_memory()),
+        ask("shell.compare", DeviceCommand::AskCompare).enabled_if(device.is_comparable()),
+        ask("memory.undo", DeviceCommand::Undo)
+            .by(COMMAND, Key::Z)
+            .disable_while_typing()
+            .enabled_if(device.can_undo()),
         ask("memory.redo", DeviceCommand::Redo)
             .by(COMMAND_SHIFT, Key::Z)
             .disable_while_typing()
-            .only_if(device.can_redo()),
-        ask("memory.redo", DeviceCommand::Redo).by(COMMAND, Key::Y).disable_while_typing().only_if(device.can_redo()),
-        ask("memory.revert", DeviceCommand::RevertAll).only_if(device.is_dirty()),
-        ask("live.once", DeviceCommand::ReadPosition).only_if(device.is_ready()),
+            .enabled_if(device.can_redo()),
+        ask("memory.redo", DeviceCommand::Redo)
+            .by(COMMAND, Key::Y)
+            .disable_while_typing()
+            .enabled_if(device.can_redo()),
+        ask("memory.revert", DeviceCommand::RevertAll).enabled_if(device.is_dirty()),
+        ask("live.once", DeviceCommand::ReadPosition).enabled_if(device.is_ready()),
         live,
-        ask("shell.reconnect", DeviceCommand::Reconnect).only_if(!is_offline && !device.is_writing()),
+        ask("shell.reconnect", DeviceCommand::Reconnect).enabled_if(!is_offline && !device.is_writing()),
         act("shell.close_session", Action::CloseSession(device.id())),
     ]
 }
@@ -161,7 +173,7 @@ fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     let restore = |backup: &Backup| {
         let text = Text::new("palette.restore_backup").with("time", time(backup.taken));
         let action = device.command(DeviceCommand::Restore(backup.path.clone()));
-        Command::new(device.name(), theme.words(&text), Effect::Act(action)).only_if(device.is_ready())
+        Command::new(device.name(), theme.words(&text), CommandEffect::Act(action)).enabled_if(device.is_ready())
     };
     backups.iter().map(restore).collect()
 }
@@ -172,7 +184,7 @@ fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
     let write = |target: &AnyDevice| {
         let text = Text::new("palette.write_into").with("device", target.name());
         let action = device.command(DeviceCommand::WriteInto(target.id()));
-        Command::new(device.name(), theme.words(&text), Effect::Act(action)).only_if(target.is_ready())
+        Command::new(device.name(), theme.words(&text), CommandEffect::Act(action)).enabled_if(target.is_ready())
     };
     let is_profile = *device.phase() == Phase::Offline;
     studio.devices().iter().map(Box::as_ref).filter(is_target).filter(|_| is_profile).map(write).collect()
@@ -186,7 +198,7 @@ impl NamedAction {
 }
 
 impl Command {
-    fn new(about: impl Into<String>, name: String, effect: Effect) -> Self {
+    fn new(about: impl Into<String>, name: String, effect: CommandEffect) -> Self {
         let about = about.into();
         Command { about, name, shortcut: None, yields_to_typing: false, is_enabled: true, effect }
     }
@@ -199,7 +211,7 @@ impl Command {
         Command { yields_to_typing: true, ..self }
     }
 
-    fn only_if(self, is_enabled: bool) -> Self {
+    fn enabled_if(self, is_enabled: bool) -> Self {
         Command { is_enabled, ..self }
     }
 }

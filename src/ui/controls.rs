@@ -37,30 +37,30 @@ pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::T
 
 /// Draws the reason why entries are invalid, below them. The space is always reserved, so that nothing further down
 /// moves when a message appears.
-pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
+pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_size(vec2(0.0, size.y));
         if let Some(problem) = problem {
-            two_lines(ui, theme, theme.words(problem), theme.palette.bad.into());
+            message_label(ui, theme, theme.words(problem), theme.palette.bad.into());
         }
     });
 }
 
 /// Draws the reason why an entry is invalid to its right, so that nothing moves when a message appears.
-pub(crate) fn problem_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
+pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
     let (words, ink) = (theme.words(problem), theme.palette.bad);
     if ui.available_width() < BESIDE {
         ui.label(RichText::new(icons::WARNING_CIRCLE).color(ink)).on_hover_text(words);
     } else {
-        two_lines(ui, theme, words, ink.into());
+        message_label(ui, theme, words, ink.into());
     }
 }
 
 /// Draws a message on one line, or on two lines in a smaller font, with a total height of one button so that nothing
 /// below moves. A longer message is shown in full in a tooltip.
-pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
+pub(crate) fn message_label(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
     let font = |size: f32| egui::FontId::proportional(size);
     let whole = ui.painter().layout_no_wrap(words.clone(), font(theme.sizes.body), ink);
@@ -163,7 +163,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
 }
 
 /// Draws a placeholder for empty content, with the one action that adds content.
-pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
+pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
         theme.gap(ui);
@@ -350,7 +350,7 @@ pub(crate) fn split<C>(
 }
 
 /// Draws a connection dot, which is filled if connected and hollow otherwise.
-pub(crate) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
+pub(crate) fn connection_dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();
     if filled {

@@ -309,7 +309,7 @@ impl TabViews {
     }
 
     /// Returns the text ids of a tab's pages in navigation order.
-    pub fn page_words(self, tab: Tab) -> Vec<&'static str> {
+    pub fn page_text_ids(self, tab: Tab) -> Vec<&'static str> {
         self.pages(tab).into_iter().map(|page| page.word).collect()
     }
 
@@ -319,7 +319,7 @@ impl TabViews {
     }
 
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
-        self.of_devices().chain(self.tools.iter().map(|view| view.kind().tab()))
+        self.device_tabs().chain(self.tools.iter().map(|view| view.kind().tab()))
     }
 
     pub(crate) fn title(self, theme: &Theme, tab: Tab) -> String {
@@ -327,7 +327,7 @@ impl TabViews {
         title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
     }
 
-    pub(crate) fn of_devices(self) -> impl Iterator<Item = Tab> {
+    pub(crate) fn device_tabs(self) -> impl Iterator<Item = Tab> {
         self.devices.iter().map(|view| view.kind().tab())
     }
 

@@ -63,7 +63,7 @@ impl Docks {
         self.fit_live(studio.settings.values_alone, ui.available_width());
         let hidden = if studio.settings.lower_open { Vec::new() } else { self.lower_tiles() };
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, false));
-        let mut behaviour = Behaviour { theme, studio, views, actions, edited: false };
+        let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
         self.edited |= behaviour.edited;
         // The layout that is remembered has all of them in their places.
@@ -148,7 +148,7 @@ fn first_layout() -> Tree<Pane> {
     Tree::new(egui::Id::unique("docks"), root, tiles)
 }
 
-struct Behaviour<'a> {
+struct DockBehaviour<'a> {
     theme: &'a Theme,
     studio: &'a Studio,
     views: &'a mut Views,
@@ -156,7 +156,7 @@ struct Behaviour<'a> {
     edited: bool,
 }
 
-impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
+impl egui_tiles::Behavior<Pane> for DockBehaviour<'_> {
     fn pane_ui(&mut self, ui: &mut egui::Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
         let (theme, studio) = (self.theme, self.studio);
         let margin = if *pane == Pane::Workspace { 0 } else { 8 };

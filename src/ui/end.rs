@@ -5,19 +5,19 @@ use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use crate::app::{Action, Brakes, Mailbox, Studio};
+use crate::app::{Action, DriveStopHandles, Mailbox, Studio};
 
 const ANSWERS: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal, which is 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
 /// Guard that releases the drives when its thread ends or when that thread ends the program.
-struct ReleaseOnDrop(Brakes);
+struct ReleaseOnDrop(DriveStopHandles);
 
 impl Drop for ReleaseOnDrop {
     fn drop(&mut self) {
         self.0.begin();
-        self.0.wait(Brakes::PATIENCE);
+        self.0.wait(DriveStopHandles::PATIENCE);
     }
 }
 
@@ -44,9 +44,9 @@ pub(super) fn prepare(studio: &Studio) {
 }
 
 /// Ends the drives first, then closes the window without asking any questions. Returns whether the window closes.
-fn end(brakes: &Brakes, mailbox: &Mailbox) -> bool {
+fn end(brakes: &DriveStopHandles, mailbox: &Mailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);
-    brakes.wait(Brakes::PATIENCE);
+    brakes.wait(DriveStopHandles::PATIENCE);
     brakes.wait_for_window(ANSWERS)
 }

@@ -2,9 +2,9 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, button, dot, enabled_button, icon_button, name};
+use super::controls::{badge, button, connection_dot, enabled_button, icon_button, name};
 use super::page::apart;
-use super::stop_debounce::{goes_down, means_motion, pressed_at};
+use super::stop_debounce::{goes_down, means_motion, press_time};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
@@ -176,7 +176,7 @@ fn phase_dot_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
         Phase::Lost(_) | Phase::Silent(_) => (false, palette.bad),
         Phase::Offline => (false, palette.muted),
     };
-    dot(ui, filled, colour);
+    connection_dot(ui, filled, colour);
 }
 
 /// Draws the status as one word: *virtual*, *offline*, *connected*, *moving* or *lost*.
@@ -237,12 +237,12 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     };
     let width = if moves { STOP * 2.0 } else { STOP };
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
-    ui.data_mut(|data| data.insert_temp(stop_place(), response.rect.min));
+    ui.data_mut(|data| data.insert_temp(stop_button_id(), response.rect.min));
     let pressed = goes_down(ui, &response);
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
         // The display of a drive continues while it is stopped, and so does everything else that runs.
-        let motion = means_motion(ui.ctx(), by_hand, pressed_at(ui, pressed));
+        let motion = means_motion(ui.ctx(), by_hand, press_time(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }
@@ -257,11 +257,11 @@ pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studi
     if !shows_wide_stop(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
     }
-    let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };
+    let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_button_id())) else { return };
     let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
     area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, theme, studio, actions)));
 }
 
-fn stop_place() -> egui::Id {
+fn stop_button_id() -> egui::Id {
     egui::Id::unique("place of stop")
 }

@@ -6,12 +6,12 @@ use egui::{Event, Key};
 
 /// Input events held back for a later frame.
 #[derive(Debug, Default)]
-pub(super) struct HeldInput(Vec<Event>);
+pub(super) struct DeferredInput(Vec<Event>);
 
-impl HeldInput {
+impl DeferredInput {
     /// Reduces `events` to those of the current frame, which ends at the first event that may move the keyboard focus
     /// if typing follows. With `at_once`, nothing is held back. Returns whether the next frame is due immediately.
-    pub(super) fn divide(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
+    pub(super) fn split_frame_events(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);
         let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);
         let is_followed = self.0.iter().skip(after_first).any(is_typed);
@@ -53,8 +53,8 @@ mod tests {
 
     /// Divides events into frames until no event is held back.
     fn frames(mut events: Vec<Event>) -> Vec<Vec<Event>> {
-        let (mut held, mut frames) = (HeldInput::default(), Vec::new());
-        while held.divide(&mut events, false) || !events.is_empty() {
+        let (mut held, mut frames) = (DeferredInput::default(), Vec::new());
+        while held.split_frame_events(&mut events, false) || !events.is_empty() {
             frames.push(std::mem::take(&mut events));
         }
         frames
@@ -74,18 +74,18 @@ mod tests {
     #[test]
     fn without_text_after_it_everything_is_in_one_frame() {
         let events = vec![text("1"), key(Key::Enter, true), key(Key::Enter, false), button(true), button(false)];
-        let (mut held, mut now) = (HeldInput::default(), events.clone());
-        assert!(!held.divide(&mut now, false));
+        let (mut held, mut now) = (DeferredInput::default(), events.clone());
+        assert!(!held.split_frame_events(&mut now, false));
         assert_eq!(now, events);
     }
 
     #[test]
     fn at_once_nothing_is_held_back() {
-        let (mut held, mut now) = (HeldInput::default(), vec![button(false), text("1")]);
-        assert!(held.divide(&mut now, false));
+        let (mut held, mut now) = (DeferredInput::default(), vec![button(false), text("1")]);
+        assert!(held.split_frame_events(&mut now, false));
         assert_eq!(now, [button(false)]);
         let mut now = vec![key(Key::Space, false)];
-        assert!(!held.divide(&mut now, true));
+        assert!(!held.split_frame_events(&mut now, true));
         assert_eq!(now, [text("1"), key(Key::Space, false)], "in the order in which they came");
     }
 }

@@ -6,17 +6,17 @@ use egui::{Context, Event, Key};
 
 use super::stop_debounce;
 use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
-use crate::app::{FreshKeys, PressKey};
+use crate::app::{KeyStates, PressKey};
 
-pub(super) struct Keys {
-    fresh: FreshKeys,
+pub(super) struct KeyboardFilter {
+    fresh: KeyStates,
     /// Whether consent was being requested in the previous frame.
     asked: bool,
 }
 
-impl Keys {
+impl KeyboardFilter {
     pub(super) fn new() -> Self {
-        Keys { fresh: FreshKeys::UP, asked: false }
+        KeyboardFilter { fresh: KeyStates::UP, asked: false }
     }
 
     /// Removes the events that no widget may see from the current frame and returns whether all motion must stop.

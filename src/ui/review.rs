@@ -9,7 +9,7 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
 use super::{Theme, icons};
-use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, Question, ReviewSheet, Stage, Toggle};
+use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, PermitToggle, Question, ReviewSheet, Stage};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the review dialog if a write is under review.
@@ -289,7 +289,7 @@ fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewShee
     for question in &sheet.questions {
         question_ui(ui, theme, device, question, actions);
     }
-    for Toggle { permit, mut is_on } in sheet.toggles.iter().copied() {
+    for PermitToggle { permit, mut is_on } in sheet.toggles.iter().copied() {
         let mut response = ui.checkbox(&mut is_on, theme.say(permit.word()));
         if let Some(hint) = permit.hint() {
             response = response.on_hover_text(theme.say(hint));

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::live_pace::processor_time;
 use super::{TabViews, Window, end, install_fonts};
-use crate::app::{Environment, Kinds, Studio, ThemeData, Wake, explain};
+use crate::app::{Environment, KindRegistry, Studio, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
@@ -14,7 +14,7 @@ use crate::store::{LogFile, Store};
 ///
 /// # Errors
 /// Returns a one-line reason if the window could not be opened.
-pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
+pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());

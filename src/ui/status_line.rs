@@ -138,10 +138,10 @@ fn reconnect_buttons_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions:
 fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice) {
     let (icon, colour) = severity(theme, notice.severity);
     ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
-    message(ui, theme, notice_words(theme, notice), theme.palette.text.into());
+    message(ui, theme, notice_text(theme, notice), theme.palette.text.into());
 }
 
-fn notice_words(theme: &Theme, notice: &Notice) -> String {
+fn notice_text(theme: &Theme, notice: &Notice) -> String {
     let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
     format!("{}{}", notice.prefix(|text| theme.words(text)), words.join(" "))
 }
@@ -164,7 +164,7 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
 /// Draws the last frame of the displayed device, or the last message if it is newer.
 fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
-    let frame = frame.and_then(|(trace, line)| Some((trace.time_of(line)?, line)));
+    let frame = frame.and_then(|(trace, line)| Some((trace.line_time(line)?, line)));
     let message = studio.services.log.notices().next_back();
     match (frame, message) {
         (Some((at, line)), message) if message.is_none_or(|message| message.at <= at) => {
@@ -175,7 +175,7 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
             let time = notice.at.strftime(TIME).to_string();
             ui.label(theme.mono(time).size(theme.sizes.caption).color(theme.palette.muted));
             ui.label(RichText::new(icon).color(colour));
-            let words = theme.label(notice_words(theme, notice));
+            let words = theme.label(notice_text(theme, notice));
             ui.add(egui::Label::new(words).truncate());
         }
         (_, None) => {

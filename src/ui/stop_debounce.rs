@@ -31,9 +31,9 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
 }
 
 /// Returns the time at which the stop button press that counts in this frame began.
-pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
+pub(crate) fn press_time(ui: &Ui, goes_down: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
-    with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))
+    with(ui.ctx(), |presses| presses.press_time(goes_down || released, now))
 }
 
 /// Returns whether Esc is newly pressed in this frame. Repeats of a held key do not count.

@@ -4,12 +4,12 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers, Panel, Ui};
 
-use super::commands::{self, Effect};
+use super::commands::{self, CommandEffect};
 use super::device_view::TabViews;
 use super::dialogs::{self, FileView, PaletteUiState};
 use super::docks::Docks;
-use super::input_order::HeldInput;
-use super::keys::Keys;
+use super::input_order::DeferredInput;
+use super::keys::KeyboardFilter;
 use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
 use super::page::apart;
@@ -21,8 +21,8 @@ pub struct Window {
     studio: Studio,
     views: Views,
     docks: Docks,
-    keys: Keys,
-    held_input: HeldInput,
+    keys: KeyboardFilter,
+    held_input: DeferredInput,
     /// Whether the request to close the window has already been handled in the current frame.
     close_heard: bool,
     look: &'static ThemeData,
@@ -41,8 +41,8 @@ impl Window {
             studio,
             views,
             docks,
-            keys: Keys::new(),
-            held_input: HeldInput::default(),
+            keys: KeyboardFilter::new(),
+            held_input: DeferredInput::default(),
             close_heard: false,
             look,
             dressed: None,
@@ -66,7 +66,7 @@ impl Window {
     /// drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.is_in_control();
-        if self.held_input.divide(&mut input.events, at_once) {
+        if self.held_input.split_frame_events(&mut input.events, at_once) {
             ctx.request_repaint();
         }
     }
@@ -96,12 +96,12 @@ impl Window {
             dialogs::ask(question, &theme, self.studio.mailbox());
         }
         if let Some(question) = self.studio.take_path_question() {
-            self.type_path(question);
+            self.show_path_entry(question);
         }
         self.follow_up(&ctx);
     }
 
-    fn type_path(&mut self, question: crate::app::FileQuestion) {
+    fn show_path_entry(&mut self, question: crate::app::FileQuestion) {
         self.views.file = Some(FileView::new(question, self.studio.folders()));
     }
 
@@ -258,7 +258,7 @@ impl Window {
             return;
         }
         let typing = ctx.text_edit_focused();
-        for command in commands::with_keys(theme, &self.studio, &self.views) {
+        for command in commands::shortcut_commands(theme, &self.studio, &self.views) {
             let keys = command.shortcut.filter(|_| !typing || !command.yields_to_typing);
             if keys.is_some_and(|keys| pressed(keys.modifiers, keys.logical_key)) {
                 self.carry_out(command.effect, actions);
@@ -267,32 +267,32 @@ impl Window {
     }
 
     /// Carries out a command chosen by its shortcut or in the command palette.
-    fn carry_out(&mut self, effect: Effect, actions: &mut Vec<Action>) {
+    fn carry_out(&mut self, effect: CommandEffect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {
-            Effect::Act(action) => {
+            CommandEffect::Act(action) => {
                 if matches!(action, Action::ShowTab(_)) {
                     views.plot.restore_size();
                 }
                 actions.push(action);
             }
-            Effect::Page(session, page) => {
+            CommandEffect::Page(session, page) => {
                 if let Some(view) = studio.device(session).and_then(|device| views.session(device)) {
                     view.open(page);
                     views.plot.restore_size();
                     actions.push(Action::Select(session));
                 }
             }
-            Effect::ToolPage(tab, page) => {
+            CommandEffect::ToolPage(tab, page) => {
                 if let Some(tool) = views.tool(tab) {
                     tool.open(page);
                     views.plot.restore_size();
                     actions.push(Action::ShowTab(tab));
                 }
             }
-            Effect::ToggleHelp => views.help = !views.help,
-            Effect::About => views.about = true,
-            Effect::ResetLayout => docks.reset(),
+            CommandEffect::ToggleHelp => views.help = !views.help,
+            CommandEffect::About => views.about = true,
+            CommandEffect::ResetLayout => docks.reset(),
         }
     }
 

@@ -12,7 +12,7 @@ use jiff::Timestamp;
 
 use super::{JobError, Progress};
 use crate::profile::{
-    Body, Confirmed, Consent, Document, InterruptedWrite, Operation, OperationError, Plan, Write, WriteRecord,
+    Body, Confirmed, Consent, InterruptedWrite, Operation, OperationError, Plan, ProfileDocument, Write, WriteRecord,
 };
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
@@ -163,7 +163,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
         Ok(written) => (Outcome::Done, written.write_cycles()),
         Err(own) => (own.reason().map_or(Outcome::Cancelled, Outcome::Failed), own.done.write_cycles()),
     };
-    let (backup, logbook_warning) = intended.conclude(outcome, spent);
+    let (backup, logbook_warning) = intended.record_outcome(outcome, spent);
     match ended {
         Ok(written) => Ok(Committed { written, backup: Some(backup), logbook_warning }),
         Err(interrupted) => {
@@ -176,8 +176,8 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
 }
 
 /// Creates the profile to be saved before a write.
-pub fn backup_of(body: Body) -> Document {
-    let mut document = Document::new(Timestamp::now().to_string(), body);
+pub fn backup_of(body: Body) -> ProfileDocument {
+    let mut document = ProfileDocument::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
 }
@@ -236,9 +236,9 @@ impl WriteIntent {
     }
 
     /// Records the end of the write. Returns the path of the before-image and any logbook error.
-    fn conclude(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
+    fn record_outcome(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
         let warning = match self.entry {
-            Ok((mut logbook, id)) => logbook.conclude(id, Timestamp::now(), outcome, spent).err(),
+            Ok((mut logbook, id)) => logbook.record_outcome(id, Timestamp::now(), outcome, spent).err(),
             Err(error) => Some(error),
         };
         (self.backup, warning)

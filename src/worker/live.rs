@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use crate::link::Cancel;
+use crate::link::CancelToken;
 
 /// Maximum interval. Longer intervals are shortened to this value.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
@@ -15,14 +15,14 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 #[derive(Clone)]
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
-    sampling: Cancel,
+    sampling: CancelToken,
     /// Channel that wakes the thread. If the channel is full, a wake-up is already pending.
     changed: Sender<()>,
 }
 
 struct PollRequests {
     /// Cancellation token of the running job, or of the last one.
-    job: Cancel,
+    job: CancelToken,
     interval: Option<Duration>,
     /// Number of the polling request, so that a failure ends only the request to which it belongs.
     number: u64,
@@ -32,12 +32,12 @@ impl Live {
     /// Creates an empty request list and the receiver that notifies the thread of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
-        let requests = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
-        (Live { requests, sampling: Cancel::default(), changed }, changes)
+        let requests = Arc::new(Mutex::new(PollRequests { job: CancelToken::default(), interval: None, number: 0 }));
+        (Live { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
     /// Directs later stops to the given job.
-    pub(super) fn next_job(&self, cancel: Cancel) {
+    pub(super) fn next_job(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
 
@@ -83,12 +83,12 @@ impl Live {
         self.sampling.request();
     }
 
-    pub(super) fn sampling(&self) -> &Cancel {
+    pub(super) fn sampling(&self) -> &CancelToken {
         &self.sampling
     }
 
-    pub(super) fn stopper(&self) -> Stopper {
-        Stopper(self.clone())
+    pub(super) fn stopper(&self) -> WorkerStopHandle {
+        WorkerStopHandle(self.clone())
     }
 
     fn wake(&self) {
@@ -102,12 +102,12 @@ impl Live {
 }
 
 /// Values watched between samples while polling, shared by all clones.
-pub(super) struct Watches<W> {
-    list: Arc<Mutex<List<W>>>,
+pub(super) struct WatchList<W> {
+    list: Arc<Mutex<WatchEntries<W>>>,
     live: Live,
 }
 
-struct List<W> {
+struct WatchEntries<W> {
     entries: Vec<Entry<W>>,
     number: u64,
 }
@@ -119,10 +119,10 @@ struct Entry<W> {
     refused: bool,
 }
 
-impl<W: Clone + PartialEq> Watches<W> {
+impl<W: Clone + PartialEq> WatchList<W> {
     /// Creates an empty watch list. The thread is notified of changes through `live`.
     pub(super) fn new(live: Live) -> Self {
-        Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
+        WatchList { list: Arc::new(Mutex::new(WatchEntries { entries: Vec::new(), number: 0 })), live }
     }
 
     /// Sets the values to watch. If a value is listed more than once, the first entry counts.
@@ -165,29 +165,29 @@ impl<W: Clone + PartialEq> Watches<W> {
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, List<W>> {
+    fn lock(&self) -> MutexGuard<'_, WatchEntries<W>> {
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl<W: Clone> List<W> {
+impl<W: Clone> WatchEntries<W> {
     fn asked_for(&self) -> Vec<(W, Duration)> {
         let asked = self.entries.iter().filter(|entry| !entry.refused);
         asked.map(|entry| (entry.value.clone(), entry.interval)).collect()
     }
 }
 
-impl<W> Clone for Watches<W> {
+impl<W> Clone for WatchList<W> {
     fn clone(&self) -> Self {
-        Watches { list: self.list.clone(), live: self.live.clone() }
+        WatchList { list: self.list.clone(), live: self.live.clone() }
     }
 }
 
 /// A handle that stops a worker from code that does not own the worker. Clones stop the same worker.
 #[derive(Clone)]
-pub struct Stopper(Live);
+pub struct WorkerStopHandle(Live);
 
-impl Stopper {
+impl WorkerStopHandle {
     /// Ends polling and stops the running job at the next possible point. Jobs submitted later are not affected.
     pub fn stop(&self) {
         self.0.stop();
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn a_refused_watch_is_requested_again_after_removal() {
         let second = Duration::from_secs(1);
-        let watches = Watches::new(Live::new().0);
+        let watches = WatchList::new(Live::new().0);
         let mut known = 0;
         assert_eq!(watches.changed_entries(&mut known), None);
         watches.set_entries(vec![("a", second), ("b", second), ("a", second * 2)]);

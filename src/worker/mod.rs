@@ -31,16 +31,16 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounde
 
 pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
 pub use interruption::{JobError, JobInterruption};
-pub use live::Stopper;
+pub use live::WorkerStopHandle;
 pub use open::OpenError;
 pub use ring::Ring;
 pub use session::{Session, SessionContext};
 
 use event_sender::{CAPACITY, EventSender};
-use live::{Live, Watches};
+use live::{Live, WatchList};
 use thread::{Bench, Never, Order};
 
-use crate::link::{Cancel, LinkError};
+use crate::link::{CancelToken, LinkError};
 
 /// A kind of device in a session, with its connection, known data and jobs.
 pub trait Device: Send + 'static {
@@ -202,7 +202,7 @@ pub struct Worker<D: Device> {
     events: Receiver<Event<D>>,
     samples: Ring<D::Sample>,
     live: Live,
-    watches: Watches<D::Watch>,
+    watches: WatchList<D::Watch>,
     busy: Arc<AtomicBool>,
     ended: Receiver<Never>,
     next: u64,
@@ -221,7 +221,7 @@ impl<D: Device> Worker<D> {
         let (outgoing, events) = bounded(CAPACITY);
         let (alive, ended) = bounded(0);
         let (live, changes) = Live::new();
-        let watches = Watches::new(live.clone());
+        let watches = WatchList::new(live.clone());
         let samples = Ring::new(SAMPLES);
         let busy = Arc::new(AtomicBool::new(false));
         let bench = Bench {
@@ -252,7 +252,7 @@ impl<D: Device> Worker<D> {
         let id = JobId(self.next);
         self.next += 1;
         // Each job has its own cancellation, so that an earlier one does not affect it, and none is reset.
-        let cancel = Cancel::default();
+        let cancel = CancelToken::default();
         self.live.next_job(cancel.clone());
         if self.orders.try_send(Order { id, job, cancel }).is_err() {
             self.busy.store(false, Ordering::SeqCst);
@@ -268,7 +268,7 @@ impl<D: Device> Worker<D> {
     }
 
     /// Returns a handle that can [`stop`](Self::stop) without owning the worker.
-    pub fn stopper(&self) -> Stopper {
+    pub fn stopper(&self) -> WorkerStopHandle {
         self.live.stopper()
     }
 

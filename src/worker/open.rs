@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::link::{
-    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, SimLink, TcpLink, TraceEntry,
-    TraceFileError, UrlError, Wire, read_trace,
+    ByteLink, Clock, LinkError, LinkScheme, LinkUrl, ReplayLink, SerialLink, SimLink, TcpLink, TraceEntry,
+    TraceFileError, UrlError, UrlQuery, Wire, read_trace,
 };
 use crate::sim::{ByteDevice, ConfigError};
 use crate::store::{FileError, StoreError, read_text};
@@ -42,11 +42,11 @@ pub enum OpenError {
 
 /// Returns the reply delay to allow beyond the protocol's worst case for a kind of connection. USB adapters deliver
 /// data in packets, device servers reply over a network, and even a thread has to be woken up.
-pub(crate) const fn margin(scheme: Scheme) -> Duration {
+pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
     match scheme {
-        Scheme::Serial => Duration::from_millis(50),
-        Scheme::Tcp | Scheme::Bridge | Scheme::Modbus | Scheme::Enip => Duration::from_millis(100),
-        Scheme::Sim | Scheme::Replay => Duration::from_millis(20),
+        LinkScheme::Serial => Duration::from_millis(50),
+        LinkScheme::Tcp | LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip => Duration::from_millis(100),
+        LinkScheme::Sim | LinkScheme::Replay => Duration::from_millis(20),
     }
 }
 
@@ -62,7 +62,7 @@ pub fn open_bytes(
 ) -> Result<Box<dyn ByteLink>, OpenError> {
     Ok(match url.wire() {
         Wire::Inside => simulated()?,
-        Wire::Port(path) if url.scheme == Scheme::Bridge => {
+        Wire::Port(path) if url.scheme == LinkScheme::Bridge => {
             Box::new(SerialLink::open_adapter(path, format, clock.clone())?)
         }
         Wire::Port(path) => Box::new(SerialLink::open(path, format, clock.clone())?),
@@ -77,7 +77,7 @@ pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<
 }
 
 /// Creates the error for a link whose scheme does not lead to a device. `known` lists the schemes that do.
-pub fn wrong_target_error(scheme: Scheme, known: &'static str) -> OpenError {
+pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
@@ -94,7 +94,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 ///
 /// # Errors
 /// [`UrlError::Unknown`].
-pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
+pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) -> Result<(), UrlError> {
     match query.pairs().iter().find(|(name, _)| !known.contains(&name.as_str())) {
         None => Ok(()),
         Some((name, _)) => {
@@ -109,7 +109,7 @@ pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result
 /// # Errors
 /// [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
 pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
-    if url.scheme != Scheme::Sim {
+    if url.scheme != LinkScheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;
         return Ok(Vec::new());
     }

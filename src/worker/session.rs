@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{Device, Event, JobId, JobInterruption as _, JobReport, Watched};
-use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
+use crate::link::{CancelToken, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
 /// The context of a job for any kind of device, with time, cancellation, trace and folders.
 pub struct SessionContext {
     /// Clock of the session.
     pub clock: Arc<dyn Clock>,
-    pub(super) cancel: Cancel,
+    pub(super) cancel: CancelToken,
     pub(super) trace: Trace,
     /// Folders for backups and the logbook.
     pub store: Store,
@@ -35,17 +35,17 @@ pub struct Session<D> {
 impl<D: Device> Session<D> {
     /// Creates a session with a device.
     pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
-        let (cancel, trace) = (Cancel::default(), Trace::default());
+        let (cancel, trace) = (CancelToken::default(), Trace::default());
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
 
     /// Returns the cancellation flag of the running job.
-    pub fn cancel(&self) -> Cancel {
+    pub fn cancel(&self) -> CancelToken {
         self.context.cancel.clone()
     }
 
     /// Replaces the cancellation flag, for tests that cancel automatically.
-    pub fn set_cancel(&mut self, cancel: Cancel) {
+    pub fn set_cancel(&mut self, cancel: CancelToken) {
         self.context.cancel = cancel;
     }
 

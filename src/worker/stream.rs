@@ -14,11 +14,11 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-pub use analogue::{Analogue, StaleSettings};
+pub use analogue::{AnalogueSource, StaleSettings};
 
 use super::has_ended;
 use super::thread::Never;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
@@ -33,7 +33,7 @@ pub struct Batch<S> {
     /// Number of the first sample, counted by the source from 0.
     pub first: u64,
     /// Time at which the first sample was taken.
-    pub time: Time,
+    pub time: SampleTime,
     /// Interval between samples in nanoseconds.
     pub period_ns: i64,
     /// Number of samples lost between the previous batch and this one, either at the source or because they were not

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
 use super::event_sender::EventSender;
-use super::live::{Live, Watches};
+use super::live::{Live, WatchList};
 use super::poll_scheduler::{DueRequest, PollScheduler};
 use super::{Device, Event, JobId, JobInterruption as _, Ring, Session, Watched};
-use crate::link::Cancel;
+use crate::link::CancelToken;
 
 /// Interval between attempts to send to a full channel.
 const RETRY: Duration = Duration::from_millis(5);
@@ -20,7 +20,7 @@ const RETRY: Duration = Duration::from_millis(5);
 pub(super) struct Order<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
-    pub(super) cancel: Cancel,
+    pub(super) cancel: CancelToken,
 }
 
 /// A type without values. Its channel only signals the end of the thread by closing.
@@ -32,7 +32,7 @@ pub(super) struct Bench<D: Device> {
     pub(super) orders: Receiver<Order<D>>,
     pub(super) changes: Receiver<()>,
     pub(super) live: Live,
-    pub(super) watches: Watches<D::Watch>,
+    pub(super) watches: WatchList<D::Watch>,
     pub(super) samples: Ring<D::Sample>,
     pub(super) events: EventSender<D>,
     pub(super) busy: Arc<AtomicBool>,

@@ -271,7 +271,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
         let mut logbook = Logbook::open(&log).unwrap();
         let spent = cycles - logbook.write_cycles(&device).unwrap();
         let id = logbook.intend(Timestamp::now(), &device, "long ago", spent, None).unwrap();
-        logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
+        logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     };
     wear_to(798);
     write(&[]).assert_stderr(&["at least 800 of the 1000"]);

@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperdrive::procedures::{
 };
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
-use encoder_studio::link::{Cancel, RealClock, UdpBroadcast};
+use encoder_studio::link::{CancelToken, RealClock, UdpBroadcast};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Session, Watched};
@@ -134,7 +134,7 @@ fn devices_are_found_by_broadcast() {
     let address = |foreign: &Foreign| foreign.place.parse::<SocketAddrV4>().unwrap();
     let clock = Arc::new(RealClock::start());
     let mut shout = UdpBroadcast::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
-    let found = discover(&mut shout, &*clock, &Cancel::default()).unwrap();
+    let found = discover(&mut shout, &*clock, &CancelToken::default()).unwrap();
     let of = |foreign: &Foreign| -> &DiscoveredDevice {
         found.iter().find(|found| found.port == address(foreign).port()).unwrap()
     };

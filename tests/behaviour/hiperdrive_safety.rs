@@ -11,9 +11,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
-use encoder_studio::devices::hiperdrive::procedures::cyclic::CyclicLost;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest};
-use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Percent, State};
+use encoder_studio::devices::hiperdrive::procedures::cyclic::ConnectionLoss;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest, SpeedTorque};
+use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, Percent, State};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, Session, Worker};
 
@@ -28,7 +28,7 @@ const FROZEN: Duration = Duration::from_millis(300);
 const RPI: &str = "rpi=50";
 /// Eight intervals, and the braking distance.
 const WATCHDOG: Duration = Duration::from_millis(500);
-const FAST: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+const FAST: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
 /// A drive with an observer.
@@ -47,7 +47,7 @@ impl Drive {
         Drive { bench, simulated, observer }
     }
 
-    fn actual(&mut self) -> Actual {
+    fn actual(&mut self) -> ActualValues {
         match self.observer.run_inline(HiperdriveJob::Position(DriveNumber::FIRST)).unwrap() {
             HiperdriveOutput::Position(reading) => reading.actual,
             other => panic!("{other:?}"),
@@ -190,7 +190,7 @@ fn a_cut_parameter_connection_stops_the_drive() {
     });
     drive.stops_within(Duration::from_millis(500) + WATCHDOG);
     held.join().unwrap();
-    assert_eq!(host.motion.view().lost, Some(CyclicLost::Session));
+    assert_eq!(host.motion.view().lost, Some(ConnectionLoss::Session));
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn cut_packet_wires_stop_the_drive() {
             assert!(Instant::now() < until, "{ways:?}: the loss is not noticed");
             sleep(Duration::from_millis(10));
         }
-        assert!(matches!(host.motion.view().lost, Some(CyclicLost::Silent { .. })), "{ways:?}");
+        assert!(matches!(host.motion.view().lost, Some(ConnectionLoss::Silent { .. })), "{ways:?}");
         // Restored: it remains stopped, even if the button is held.
         ways.iter().for_each(|way| wires.restore(*way));
         let stood = drive.actual().position;

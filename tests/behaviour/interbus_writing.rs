@@ -276,7 +276,7 @@ fn the_stores_of_an_eeprom_are_counted() {
         let mut logbook = Logbook::open(&log).unwrap();
         let spent = stores - logbook.write_cycles(&device).unwrap();
         let id = logbook.intend(Timestamp::now(), &device, "long ago", spent, None).unwrap();
-        logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
+        logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     };
     wear_to(148);
     assert!(!write(&[]).err.contains("is limited"));

@@ -1,6 +1,6 @@
 //! The virtual sine/cosine source with the analysis: the settings of one are the results of the other.
 
-use encoder_studio::analysis::Time;
+use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
 use encoder_studio::analysis::nonlinearity::nonlinearity;
 use encoder_studio::analysis::position_error::Samples;
@@ -12,8 +12,8 @@ use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 /// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
-    let source = Source::new(settings.checked().unwrap(), Time::ORIGIN);
-    let time = (0..75_000).map(|at| source.time(at).unwrap().seconds_since(Time::ORIGIN)).collect();
+    let source = Source::new(settings.checked().unwrap(), SampleTime::ORIGIN);
+    let time = (0..75_000).map(|at| source.time(at).unwrap().seconds_since(SampleTime::ORIGIN)).collect();
     (time, source.samples(0, 75_000).unwrap())
 }
 

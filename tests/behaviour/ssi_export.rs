@@ -5,7 +5,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
-    Code, Coded, Descriptor, ErrorBit, Families, FrameReading, Layout, Meaning, Parity, Range, Repeat, Settings,
+    Code, Descriptor, ErrorBit, Families, FrameReading, GrayCoverage, Layout, Meaning, Parity, Range, Repeat, Settings,
     TooWideError, c99, scl, structured_text, structured_text_32,
 };
 
@@ -37,7 +37,7 @@ fn unusual_step_cost() -> Layout {
     Layout::new(Descriptor {
         clocks: 51,
         code: Code::Gray,
-        coded: Coded::AreaAndErrors,
+        coded: GrayCoverage::AreaAndErrors,
         area: 22,
         lead: 1,
         between: 1,

@@ -72,7 +72,7 @@ fn ubicom_frames() {
 #[test]
 fn ethernet_ip_packets() {
     use ethernet_ip::protocol::{
-        ForwardClose, ForwardOpen, Frame, Identity, InterfaceConfiguration, IoPacket, Items, Path, RealTimeFormat,
+        EPath, ForwardClose, ForwardOpen, Frame, Identity, InterfaceConfiguration, IoPacket, ItemList, RealTimeFormat,
         Receiver, Reply, Request,
     };
     fuzz("ethernet_ip", &hex_lines(include_str!("corpus/ethernet_ip.txt")), |bytes| {
@@ -81,7 +81,7 @@ fn ethernet_ip_packets() {
         if let Ok(frame) = Frame::parse(bytes) {
             let _ = frame.body();
         }
-        let _ = (Items::parse(bytes), Request::parse(bytes), Reply::parse(bytes), Path::parse(bytes));
+        let _ = (ItemList::parse(bytes), Request::parse(bytes), Reply::parse(bytes), EPath::parse(bytes));
         let _ = (ForwardOpen::parse(bytes), ForwardClose::parse(bytes), Identity::parse_all(bytes));
         let _ = InterfaceConfiguration::parse(bytes);
         for format in [RealTimeFormat::Modeless, RealTimeFormat::Header] {

@@ -38,7 +38,7 @@ fn virtual_devices() {
     let examples = [lines.map(hex_lines).concat(), hex_lines(&vectors.join("\n"))].concat();
     fuzz("virtual devices", &examples, |bytes| {
         let mut bus = hiperface::sim::Bus::new(&hiperface::sim::Config::from_pairs(&[]).unwrap());
-        let mut port = biss::sim::Port::new(&biss::sim::Config::from_pairs(&[]).unwrap());
+        let mut port = biss::sim::UbicomPort::new(&biss::sim::Config::from_pairs(&[]).unwrap());
         let mut adapter = Adapter::from_pairs(&[], at_adapter()).unwrap();
         let gateway = interbus::sim::Gateway::new(&interbus::sim::Config::from_pairs(&[]).unwrap());
         let target = hiperdrive::sim::Target::new(&hiperdrive::sim::Config::from_pairs(&[]).unwrap());

@@ -7,7 +7,7 @@ use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::ssi::protocol::{Family, parse_frame};
 use encoder_studio::kinds::program;
 use encoder_studio::link::LinkUrl;
-use encoder_studio::profile::Document;
+use encoder_studio::profile::ProfileDocument;
 
 use crate::fuzz;
 
@@ -35,10 +35,10 @@ fn profiles() {
     fuzz("profiles", &files("profiles"), |bytes| {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         // A document of a newer schema is kept as it is.
-        if let Ok(document) = Document::parse(text, formats)
+        if let Ok(document) = ProfileDocument::parse(text, formats)
             && !document.is_newer()
         {
-            let again = Document::parse(&document.emit(), formats);
+            let again = ProfileDocument::parse(&document.emit(), formats);
             assert_eq!(again.unwrap().emit(), document.emit());
         }
     });

@@ -12,7 +12,7 @@ use encoder_studio::app::{
     Action as StudioAction, DeviceCommand, DeviceModel, Language, ReviewAction, Severity, Text, ThemeData,
 };
 use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
-use encoder_studio::profile::{Body, Document};
+use encoder_studio::profile::{Body, ProfileDocument};
 use encoder_studio::store::Store;
 use encoder_studio::ui::{Window, install_fonts};
 use std::time::Duration;
@@ -27,7 +27,7 @@ const DELIVERED: Values = [0, 3, 0, 65535];
 
 #[test]
 fn the_kind_is_offered_and_connects_from_the_dialog() {
-    assert_eq!(program().tabs.page_words(Encoder::TAB), ["page.values", "page.backups"]);
+    assert_eq!(program().tabs.page_text_ids(Encoder::TAB), ["page.values", "page.backups"]);
     let mut desk = Desk::new();
     let actions = [
         Connect::Open,
@@ -133,7 +133,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     let Stage::Done { backup: Some(backup), .. } = desk.write() else { panic!("no backup") };
     desk.until_ready();
     let text = std::fs::read_to_string(&backup).unwrap();
-    let before = Document::parse(&text, program().studio.formats).unwrap().body;
+    let before = ProfileDocument::parse(&text, program().studio.formats).unwrap().body;
     assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
     assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535], "read back");
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());

@@ -5,7 +5,7 @@ use std::time::Duration;
 use encoder_studio::devices::hiperface::jobs::{DeviceMessage, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
 use encoder_studio::devices::hiperface::protocol::LineSettings;
-use encoder_studio::link::{Cancel, Clock};
+use encoder_studio::link::{CancelToken, Clock};
 use encoder_studio::units::CharacterFormat;
 use encoder_studio::worker::{Event, JobId};
 
@@ -124,7 +124,7 @@ fn an_interrupted_search_reports_its_findings() {
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();
-        desk.session.set_cancel(Cancel::after(questions));
+        desk.session.set_cancel(CancelToken::after(questions));
         let SearchFindings::Searched { found, complete } = find(&mut desk, FindOptions::default()) else { panic!() };
         assert!(!complete);
         assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), expected, "{questions}");

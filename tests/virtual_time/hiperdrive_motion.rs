@@ -7,18 +7,18 @@ mod model;
 mod watch;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Effort, Ended, Goal, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal,
+    Ended, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal, SpeedTorque, TargetState,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
 use encoder_studio::devices::hiperdrive::sim::SpindleLoad;
 
 use bench::Bench;
 
-const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 const TURN: i32 = 65_536;
 
 fn jog(direction: Direction) -> MotionRequest {
-    MotionRequest::Jog { direction, effort: Effort::JOG, outward: false }
+    MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward: false }
 }
 
 fn run_endless() -> MotionRequest {
@@ -50,7 +50,7 @@ fn the_published_words_move_to_a_target() {
     assert_eq!(bench.until_over(), Ended::Arrived);
     assert_eq!(words(&mut bench), "0449 0479 0439 0409");
     assert_eq!(bench.position(), 163_840 - TURN);
-    bench.act(MotionRequest::Lead(Goal::Off));
+    bench.act(MotionRequest::Lead(TargetState::Off));
     assert_eq!(bench.until_over(), Ended::Done);
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
@@ -59,7 +59,7 @@ fn the_published_words_move_to_a_target() {
 #[test]
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
-    bench.act(MotionRequest::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.until_over(), Ended::Done);
     words(&mut bench);
     for (direction, sent, sign) in [
@@ -148,7 +148,7 @@ fn a_job_can_be_paused_and_resumed() {
 /// A request that is refused here never reaches the drive.
 #[test]
 fn invalid_requests_are_refused() {
-    let none = Effort { speed: Percent::NONE, ..FULL };
+    let none = SpeedTorque { speed: Percent::NONE, ..FULL };
     let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), ..Permit::within(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
     let outside = |target| Refusal::Outside { target, low: -TURN, high: TURN };
@@ -198,7 +198,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     let stood = bench.position();
     bench.act(to(0));
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
-    bench.act(MotionRequest::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
     words(&mut bench);
     bench.act(MotionRequest::Acknowledge);

@@ -6,7 +6,7 @@ use encoder_studio::devices::hiperface::procedures::Error;
 use encoder_studio::devices::hiperface::procedures::write::Interrupted;
 use encoder_studio::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile, Op};
 use encoder_studio::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
-use encoder_studio::link::Cancel;
+use encoder_studio::link::CancelToken;
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
@@ -201,7 +201,7 @@ fn cancelling_at_any_transaction_ends_cleanly() {
     while !disturbed(
         &scene,
         format!("cancelled after {steps}"),
-        |desk| desk.session.set_cancel(Cancel::after(steps)),
+        |desk| desk.session.set_cancel(CancelToken::after(steps)),
         |ending, told| ending.assert_cancelled_cleanly(told),
     ) {
         steps += 1;
@@ -216,7 +216,7 @@ fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
         for steps in 0.. {
             let warn = |desk: &mut Desk| {
-                desk.session.set_cancel(Cancel::after(steps));
+                desk.session.set_cancel(CancelToken::after(steps));
                 for _ in 0..4 {
                     desk.bus().encoder_mut(0).unwrap().report(code);
                 }
@@ -239,7 +239,7 @@ fn a_warning_during_a_write_hides_no_operation() {
             desk.remember_code(2, 0x66);
             let (before, worn_before) = (desk.memory(), desk.wear());
             let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-            desk.session.set_cancel(Cancel::after(steps));
+            desk.session.set_cancel(CancelToken::after(steps));
             let (bus, mut stores) = (desk.bus.clone(), 0);
             let mut raised = false;
             // The trace receives a request before it is sent.

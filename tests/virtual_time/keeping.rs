@@ -4,7 +4,7 @@ use std::fs;
 
 use encoder_studio::devices::hiperface::jobs::{Change, JobError};
 use encoder_studio::devices::hiperface::profile::FieldRange;
-use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
 use encoder_studio::store::Store;
 use encoder_studio::worker::NotBegun;
 
@@ -79,9 +79,9 @@ fn no_access_code_is_stored() {
     desk.remember_code(0, 0x9D);
     desk.remember_code(2, 0x66);
     desk.change(store_byte(0xEE)).unwrap();
-    let number = CodeNumber::new(2).unwrap();
+    let number = AccessCodeNumber::new(2).unwrap();
     desk.change(Change::ChangeCode { number, new: AccessCode::new(0xC3) }).unwrap();
-    desk.change(Change::ChangeCode { number: CodeNumber::ZERO, new: AccessCode::new(0xC3) }).unwrap();
+    desk.change(Change::ChangeCode { number: AccessCodeNumber::ZERO, new: AccessCode::new(0xC3) }).unwrap();
     let sent = desk.tap().sent.len();
     desk.tap().deaf_from = Some(sent + 12);
     let _ = desk.change(store_byte(0x11));

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use encoder_studio::devices::hiperface::jobs::{Change, DeviceMessage, HiperfaceJob, HiperfaceOutput};
-use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DeviceAddress, StatusCode};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, Command, DeviceAddress, StatusCode};
 use encoder_studio::link::Clock;
 use encoder_studio::worker::{Event, JobId};
 
@@ -60,7 +60,7 @@ fn the_counter_is_cleared_despite_lost_replies() {
 
 #[test]
 fn a_changed_access_code_is_used_afterwards() {
-    let zero = CodeNumber::ZERO;
+    let zero = AccessCodeNumber::ZERO;
     let change = Change::ChangeCode { number: zero, new: AccessCode::new(0xC3) };
     robbed(
         "codes=0:9D",

@@ -3,7 +3,7 @@
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
-use encoder_studio::sim::Faults;
+use encoder_studio::sim::SimulatedFaults;
 
 use crate::support::{Desk, backup, bytes, exchanges, xor};
 
@@ -26,7 +26,7 @@ fn noisy_desk(seed: u8, noise: &str) -> Desk {
 }
 
 fn set_noise(desk: &Desk, noise: &str) {
-    desk.bus().set_faults(&noise.parse::<Faults>().unwrap());
+    desk.bus().set_faults(&noise.parse::<SimulatedFaults>().unwrap());
 }
 
 /// Returns whether the bytes are a valid 42h reply with this position.

@@ -1,13 +1,13 @@
 //! The shaft at rest: position, sine and cosine read together, only at standstill.
 
 use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, JobError};
-use encoder_studio::devices::hiperface::procedures::{Error, Rest, Signals};
+use encoder_studio::devices::hiperface::procedures::{Error, RestPosition, Signals};
 use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::link::Clock;
 
 use crate::support::Desk;
 
-fn rest(desk: &mut Desk) -> Result<Rest, JobError> {
+fn rest(desk: &mut Desk) -> Result<RestPosition, JobError> {
     match desk.run(HiperfaceJob::Rest)? {
         HiperfaceOutput::Rest(rest) => Ok(rest),
         other => panic!("{other:?}"),
@@ -18,7 +18,7 @@ fn rest(desk: &mut Desk) -> Result<Rest, JobError> {
 #[test]
 fn both_channels_are_read_between_two_position_readings() {
     let mut desk = Desk::new("position=3224");
-    let Rest { raw, valid, signals } = rest(&mut desk).unwrap();
+    let RestPosition { raw, valid, signals } = rest(&mut desk).unwrap();
     assert_eq!((raw, valid), (3224, true));
     let Signals { sine_v, cosine_v } = signals.unwrap();
     assert!((sine_v + 0.500_978).abs() < 1e-6 && (cosine_v + 0.002_444).abs() < 1e-6, "{sine_v} {cosine_v}");

@@ -10,13 +10,13 @@ use encoder_studio::devices::hiperface::jobs::{
 };
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{HiperfaceProfile, RestoreOptions};
-use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, Command, EncoderTypes, MAX_TRANSFER};
 use encoder_studio::devices::hiperface::sim::{Bus, Config};
 use encoder_studio::kinds::program;
 use encoder_studio::link::{
-    ByteLink, Cancel, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
+    ByteLink, CancelToken, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
 };
-use encoder_studio::profile::{Consent, Document};
+use encoder_studio::profile::{Consent, ProfileDocument};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
@@ -51,7 +51,7 @@ pub(crate) struct Tap {
     /// Whether the link reports on request that it is lost.
     pub(crate) unplugged: bool,
     /// The frame at which the job is cancelled.
-    pub(crate) cancel_at: Option<(usize, Cancel)>,
+    pub(crate) cancel_at: Option<(usize, CancelToken)>,
 }
 
 impl Tap {
@@ -138,10 +138,10 @@ impl ByteLink for TestLink {
     }
 
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
-        if self.sets_format() { self.line.set_format(format) } else { Ok(()) }
+        if self.can_set_format() { self.line.set_format(format) } else { Ok(()) }
     }
 
-    fn sets_format(&self) -> bool {
+    fn can_set_format(&self) -> bool {
         !self.tap.lock().unwrap().formatless
     }
 
@@ -232,7 +232,7 @@ impl Desk {
     }
 
     pub(crate) fn remember_code(&mut self, number: u8, code: u8) {
-        self.session.codes_mut().set(CodeNumber::new(number).unwrap(), AccessCode::new(code));
+        self.session.codes_mut().set(AccessCodeNumber::new(number).unwrap(), AccessCode::new(code));
     }
 
     pub(crate) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput, JobError> {
@@ -304,7 +304,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
 
 /// Returns the profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
-    Document::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
+    ProfileDocument::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
 
 /// Returns the bytes that repeat themselves late and differ for different seeds.

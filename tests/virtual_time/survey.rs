@@ -4,7 +4,9 @@ use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};
-use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
+use encoder_studio::devices::hiperface::protocol::{
+    AccessCode, AccessCodeNumber, Command, DataFieldStatus, StatusCode,
+};
 use encoder_studio::store::{DeviceKey, Logbook, Store};
 
 use crate::support::Desk;
@@ -46,7 +48,7 @@ fn a_temporarily_unavailable_value_is_no_error() {
 #[test]
 fn a_noted_access_code_is_neither_sent_nor_printed() {
     let mut desk = Desk::new("codes=0:66");
-    let number = CodeNumber::ZERO;
+    let number = AccessCodeNumber::ZERO;
     let locked = survey(&mut desk);
     let closed = locked.fields.iter().filter(|field| field.status.code() == number && field.bytes.is_none()).count();
     assert!(closed > 0, "{:?}", locked.fields);

@@ -6,7 +6,7 @@ use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
 use encoder_studio::devices::biss::jobs::Change;
-use encoder_studio::devices::biss::protocol::Filter;
+use encoder_studio::devices::biss::protocol::PositionFilter;
 use encoder_studio::devices::biss::state::BissAction as Biss;
 use encoder_studio::signals::state::{SignalsAction as Signals, SourceAction};
 
@@ -51,7 +51,7 @@ fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
     served.exchange("serial=2");
-    ask(&mut desk, Biss::Plan(Box::new(Change::SelectFilter(Filter::Dynamic))));
+    ask(&mut desk, Biss::Plan(Box::new(Change::SelectFilter(PositionFilter::Dynamic))));
     desk.until("the other one is read", |studio| {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
     });

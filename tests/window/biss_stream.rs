@@ -40,7 +40,7 @@ fn check(encoder: &Encoder, seconds: f64) {
     assert!(streamed.windows(2).all(|pair| (pair[1].0 - pair[0].0 - 50_000).abs() <= 5_000));
     assert!(streamed.windows(2).all(|pair| (32..=33).contains(&(pair[1].1 - pair[0].1))));
     assert!(breaks <= 2, "{breaks}");
-    assert_eq!((encoder.record.dropped(), encoder.record.crc_errors()), (0, 0));
+    assert_eq!((encoder.record.dropped_count(), encoder.record.crc_errors()), (0, 0));
     let expected = seconds * 20_000.0;
     assert!((streamed.len() as f64 - expected).abs() < 0.2 * expected, "{} frames in {seconds} s", streamed.len());
 }
@@ -71,7 +71,7 @@ fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     desk.until("it goes on", |studio| {
         studio.biss().is_some_and(|own| own.session.is_ready() && own.record.positions() > before + 2_000)
     });
-    assert_eq!(desk.studio.biss().unwrap().record.dropped(), 0);
+    assert_eq!(desk.studio.biss().unwrap().record.dropped_count(), 0);
     assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
@@ -87,12 +87,12 @@ fn the_window_shows_a_stream_without_loss() {
     screen.act(action);
     screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
-    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::BISS) {
+    for page in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::BISS) {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));
     assert!(screen.shows("Stream: 20000 frames/s at 2.0 MHz"));
-    assert_eq!(screen.studio().biss().unwrap().record.dropped(), 0);
+    assert_eq!(screen.studio().biss().unwrap().record.dropped_count(), 0);
     let action = poll(screen.studio(), None);
     screen.act(action);
     check(screen.studio().biss().unwrap(), began.elapsed().as_secs_f64());

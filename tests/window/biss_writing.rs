@@ -9,8 +9,8 @@ use encoder_studio::analysis::check::Verdict;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio};
 use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
-use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, Op, PresetParts};
-use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
+use encoder_studio::devices::biss::profile::{MotorSource, MountingSteps, Op, PresetParts};
+use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
 use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, End, Reached, ReviewState};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
@@ -95,16 +95,16 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
 #[test]
 fn another_filter_is_selected_after_a_review() {
     let mut desk = open("sim:?bridge=on");
-    plan(&mut desk, Change::SelectFilter(Filter::Dynamic));
+    plan(&mut desk, Change::SelectFilter(PositionFilter::Dynamic));
     write(&mut desk);
     desk.until("it is in force", |studio| {
         let status = studio.biss().and_then(|own| own.status.as_ref());
-        is_read(studio) && status.is_some_and(|status| status.filter == Some(Filter::Dynamic))
+        is_read(studio) && status.is_some_and(|status| status.filter == Some(PositionFilter::Dynamic))
     });
 }
 
 fn calibration() -> Change {
-    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     Change::Guided { run, motor: MotorSource::Other }
 }
 
@@ -199,7 +199,7 @@ fn the_live_panel_shows_that_it_waits_for_a_job() {
 #[test]
 fn a_motor_that_needs_this_encoder_is_refused() {
     let mut desk = open("sim:?bridge=on");
-    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     ask(&mut desk, Biss::Plan(Box::new(Change::Guided { run, motor: MotorSource::ThisEncoder })));
     desk.until("it is refused", |studio| {
         let review = studio.biss().and_then(|own| own.session.review.as_ref());

@@ -2,7 +2,7 @@
 
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::ConnectAction as Connect;
-use encoder_studio::app::{Action, JobEnd, PendingEdits};
+use encoder_studio::app::{Action, JobState, PendingEdits};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 
@@ -82,7 +82,7 @@ fn closing_the_review_cancels_planning() {
     desk.wire().release();
     desk.until_ready();
     assert!(desk.encoder().session.review.is_none());
-    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Cancelled);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn closing_a_reading_session_ends_its_job() {
     desk.act(Action::CloseSession(id));
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_busy");
     desk.act(Action::Confirm);
-    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Cancelled);
     desk.wire().release();
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.can_close());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::app::connect::form::FormModel;
-use encoder_studio::app::connect::{Connect as Dialog, ConnectAction as Connect, is_missing};
+use encoder_studio::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, is_missing};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language};
 use encoder_studio::devices::biss::state::BissLinkKind;

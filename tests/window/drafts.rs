@@ -167,8 +167,8 @@ fn two_paths_to_a_file_open_one_session() {
     std::os::unix::fs::symlink(&path, &other).unwrap();
     for path in [path, other] {
         desk.act(Action::Open(path.clone()));
-        assert_eq!(desk.studio.opening_files(), [path]);
-        desk.until("it is open", |studio| studio.opening_files().is_empty());
+        assert_eq!(desk.studio.files_being_opened(), [path]);
+        desk.until("it is open", |studio| studio.files_being_opened().is_empty());
     }
     assert_eq!(desk.studio.devices().len(), 2);
 }

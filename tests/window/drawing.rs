@@ -115,7 +115,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
         screen.act(Action::ShowTab(tab));
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_text_ids(tab) {
                 if screen.has_button(page) {
                     screen.click(page);
                 }
@@ -133,7 +133,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     let kinds: [(Tab, &str, Ready); 3] = [
         (crate::tabs::BISS, "sim:?bridge=on", |studio| studio.biss().is_some_and(|own| own.survey.is_some())),
         (crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", |studio| {
-            studio.interbus().is_some_and(|own| own.programs_read() == 8)
+            studio.interbus().is_some_and(|own| own.known_program_count() == 8)
         }),
         (crate::tabs::HIPERDRIVE, "sim:", |studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some())),
     ];
@@ -146,7 +146,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
         }
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_text_ids(tab) {
                 screen.click(page);
                 settle(&mut screen);
                 assert_eq!(pictures(&mut screen), 0, "{tab:?}, {page}, {focused}");

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use crate::tabs::with_novo;
 use encoder_studio::app::connect::form::FormModel;
-use encoder_studio::app::connect::{Connect as Dialog, ConnectAction as Connect};
+use encoder_studio::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, AnyDevice, DeviceCommand, JobEnd, Language, ReviewAction, Severity, Studio, Tab};
+use encoder_studio::app::{Action, AnyDevice, DeviceCommand, JobState, Language, ReviewAction, Severity, Studio, Tab};
 use encoder_studio::devices::biss::state::BissAction as Biss;
 use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
 use encoder_studio::devices::hiperdrive::state::{Edit as Set, HiperdriveAction as Hiperdrive};
@@ -17,7 +17,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
-use encoder_studio::profile::{Body, Comparison, Document, PlanId};
+use encoder_studio::profile::{Body, Comparison, PlanId, ProfileDocument};
 
 use crate::novo::state::Action as Novo;
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, NOVO_PORT, PORT};
@@ -383,8 +383,8 @@ fn a_write_ends_at_a_safe_point_before_the_window_closes() {
         assert!(!desk.studio.can_close(), "it still writes");
         wire.release();
         desk.until("it may close", |studio| studio.can_close());
-        let ends: Vec<&JobEnd> = desk.studio.services.jobs().map(|job| &job.end).collect();
-        assert!(matches!(ends.last().unwrap(), JobEnd::Cancelled | JobEnd::Done), "{ends:?}");
+        let ends: Vec<&JobState> = desk.studio.services.jobs().map(|job| &job.end).collect();
+        assert!(matches!(ends.last().unwrap(), JobState::Cancelled | JobState::Done), "{ends:?}");
     }
 }
 
@@ -401,7 +401,7 @@ fn escape_stops_a_running_job_before_closing_anything() {
         assert!(desk.studio.connect.is_some());
         wire.release();
         desk.until("it has stopped", |studio| shown(studio).unwrap().is_ready());
-        assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+        assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Cancelled);
         desk.act(Action::Escape);
         assert!(desk.studio.connect.is_none());
     }
@@ -539,7 +539,8 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
                     let texts = told(&desk.studio, "session.saved_as_read").unwrap();
                     assert!(texts.iter().any(|text| text.id() == "session.saved_without"), "{texts:?}");
                     let read = |path: &Path| {
-                        Document::parse(&std::fs::read_to_string(path).unwrap(), with_novo().studio.formats).unwrap()
+                        ProfileDocument::parse(&std::fs::read_to_string(path).unwrap(), with_novo().studio.formats)
+                            .unwrap()
                     };
                     let lost = read(&path);
                     assert!(lost.note.is_some_and(|note| note.contains("did not answer")));

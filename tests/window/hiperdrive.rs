@@ -6,12 +6,12 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::devices::hiperdrive::procedures::DiscoveredDevice;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
 };
 use encoder_studio::devices::hiperdrive::state::{
-    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Mark, Measure, Motor, Unit,
+    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Mark, Motor, PositionUnit, Unit,
 };
 
 use crate::support::Desk;
@@ -191,7 +191,7 @@ fn pitch_and_unit_are_remembered() {
     assert_eq!(unit(&desk).ruler(ONE).measures().count(), 3, "no millimetres without a spindle");
     let pitch = Length { nanometres: 4_000_000 };
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
-    act(&mut desk, Hiperdrive::SetMeasure(Measure::Millimetres));
+    act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
     // 2.5 turns of 65536 steps on 4 mm.
     let place = unit(&desk).place(ONE, 163_840).words(encoder_studio::app::Language::English);
     assert_eq!(place, "10.00000 mm");
@@ -203,7 +203,7 @@ fn pitch_and_unit_are_remembered() {
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
-    assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), Measure::Millimetres));
+    assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), PositionUnit::Millimetres));
     assert!(desk.notice_ids(Severity::Warning).is_empty(), "that is no edit");
 }
 
@@ -235,7 +235,7 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
 #[test]
 fn without_control_no_motion_is_requested() {
     let mut desk = read("sim:");
-    for motor in [Motor::Lead(Goal::Enabled), Motor::Move { target: 64 }, Motor::Step { by: 64 }] {
+    for motor in [Motor::Lead(TargetState::Enabled), Motor::Move { target: 64 }, Motor::Step { by: 64 }] {
         drive(&mut desk, motor);
         assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
     }

@@ -9,16 +9,16 @@ use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Settings, Severity};
 use encoder_studio::devices::hiperdrive::jobs::Change;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Effort;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::SpeedTorque;
 use encoder_studio::devices::hiperdrive::profile::Service;
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    AxisAction as Run, AxisStep, Button, End, Power, Reached, Restart, TestTarget, words,
+    AxisAction as Run, AxisButton, AxisStep, End, Power, Reached, RestartEvidence, TestTarget, words,
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
-use encoder_studio::sim::Faults;
+use encoder_studio::sim::SimulatedFaults;
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive_acts::act_until;
@@ -31,11 +31,11 @@ fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
     let mut desk = until_saved(FRESH, 1);
     assert_eq!(unit(&desk).session.cycles, Some(1));
     let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
-    run(&mut desk, Run::Press(Button::Give));
+    run(&mut desk, Run::Press(AxisButton::Give));
     desk.until("without control", |studio| {
         studio.hiperdrive().is_some_and(|own| !own.moves.is_open() && own.session.is_ready())
     });
-    run(&mut desk, Run::Press(Button::PowerCycle));
+    run(&mut desk, Run::Press(AxisButton::PowerCycle));
     desk.until("it is back", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().survived() && own.session.is_ready()
@@ -67,19 +67,19 @@ fn nothing_moves_before_the_limits_are_confirmed() {
 #[test]
 fn limits_changed_since_they_were_shown_are_not_confirmed() {
     let mut desk = until_jog();
-    run(&mut desk, Run::Press(Button::Confirm));
+    run(&mut desk, Run::Press(AxisButton::Confirm));
     // Again from the beginning, so that no lock blocks it.
     run(&mut desk, Run::Begin);
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
     next(&mut desk, AxisStep::Confirm);
-    run(&mut desk, Run::Press(Button::Take));
+    run(&mut desk, Run::Press(AxisButton::Take));
     desk.until("control", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.session.is_ready() && own.may_move(DriveNumber::FIRST).is_ok()
     });
     // Another master, while the window is not updated.
-    let upper = ParameterNumber::of_drive(160, DriveNumber::FIRST).unwrap();
+    let upper = ParameterNumber::for_drive(160, DriveNumber::FIRST).unwrap();
     let target = unit(&desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
     let motion = unit(&desk).moves.motion().unwrap().clone();
@@ -88,14 +88,14 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
         assert!(began.elapsed() < crate::support::LONG, "nobody looks at the limits");
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
-    run(&mut desk, Run::Press(Button::Confirm));
+    run(&mut desk, Run::Press(AxisButton::Confirm));
     desk.until("they are read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.limits(DriveNumber::FIRST) == Some((-204_400, 1000))
     });
     let axis = axis(&desk);
     assert_eq!(axis.check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.needs_confirm");
-    run(&mut desk, Run::Press(Button::Confirm));
+    run(&mut desk, Run::Press(AxisButton::Confirm));
     next(&mut desk, AxisStep::Jog);
 }
 
@@ -109,7 +109,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     let own = axis(&desk);
     assert_eq!((own.end(), own.is_saved(), own.changes().len()), (Some(End::Cancelled), false, 5));
     // Everything is written back, and read: the drive is no longer requested.
-    run(&mut desk, Run::Press(Button::Recall));
+    run(&mut desk, Run::Press(AxisButton::Recall));
     write(&mut desk);
     assert!(axis(&desk).changes().is_empty());
     let turned = 33_488_896;
@@ -143,10 +143,10 @@ fn a_recall_does_not_change_the_drive() {
 fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = new_form("sim:");
     let percent = |value| Percent::new(value).unwrap();
-    let chosen = Effort { speed: percent(80), torque: percent(100) };
+    let chosen = SpeedTorque { speed: percent(80), torque: percent(100) };
     act(&mut desk, Hiperdrive::Drive(Motor::JogEffort(chosen)));
     run(&mut desk, Run::Begin);
-    run(&mut desk, Run::Press(Button::Take));
+    run(&mut desk, Run::Press(AxisButton::Take));
     desk.until("control", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.session.is_ready() && own.may_move(own.drive()).is_ok()
@@ -216,7 +216,7 @@ fn a_reconnection_is_not_a_power_cycle() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
     step_with_write(&mut desk);
     assert_eq!(number(&desk, 182), 1001);
-    run(&mut desk, Run::Press(Button::Give));
+    run(&mut desk, Run::Press(AxisButton::Give));
     desk.until("without control", |studio| {
         studio.hiperdrive().is_some_and(|own| !own.moves.is_open() && own.session.is_ready())
     });
@@ -226,7 +226,7 @@ fn a_reconnection_is_not_a_power_cycle() {
     desk.until("it is silent", |studio| {
         matches!(studio.hiperdrive().unwrap().axis().unwrap().power(), Some(Power::Gone(_)))
     });
-    target.set_faults(&Faults::default());
+    target.set_faults(&SimulatedFaults::default());
     desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is back", |studio| {
@@ -242,7 +242,7 @@ fn a_reconnection_is_not_a_power_cycle() {
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
     assert!(axis(&desk).survived(), "{:?}", axis(&desk).power());
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
-    assert_eq!(restart, Restart::Read);
+    assert_eq!(restart, RestartEvidence::Read);
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
 }
@@ -259,20 +259,20 @@ fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
         let own = studio.hiperdrive().unwrap();
         words::fault(&own.seen(own.drive())).is_some_and(|text| text.words(Language::English).starts_with("Fault 8301"))
     });
-    assert_eq!(axis(&desk).ask(Button::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
+    assert_eq!(axis(&desk).ask(AxisButton::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
     assert!(axis(&desk).outcome(TestTarget::Lower).is_some_and(|own| !own.is_good()));
     desk.until("it can be acknowledged", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().ask(Button::Acknowledge, &own.seen(own.drive())).is_ok()
+        own.axis().unwrap().ask(AxisButton::Acknowledge, &own.seen(own.drive())).is_ok()
     });
     act_until(
         &mut desk,
-        |_| Hiperdrive::Axis(Run::Press(Button::Acknowledge)),
+        |_| Hiperdrive::Axis(Run::Press(AxisButton::Acknowledge)),
         "it is over",
         |studio| {
             let own = studio.hiperdrive().unwrap();
             let seen = own.seen(own.drive());
-            !seen.has_failed() && own.axis().unwrap().ask(Button::Go(TestTarget::Lower), &seen).is_ok()
+            !seen.has_failed() && own.axis().unwrap().ask(AxisButton::Go(TestTarget::Lower), &seen).is_ok()
         },
     );
     assert!(words::fault(&seen(&desk)).is_none());
@@ -291,7 +291,7 @@ fn the_result_is_saved_as_a_report() {
     desk.until("it is refused", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     run(&mut desk, Run::AskReport);
     let question = desk.studio.take_file_question().unwrap();
-    assert_eq!(question.endings(), ["txt"]);
+    assert_eq!(question.file_extensions(), ["txt"]);
     let path = desk.outside.path("axis.txt");
     desk.act(Action::Chosen(question, path.clone()));
     desk.until("it is saved", |studio| {
@@ -324,13 +324,13 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     // The connection was lost after the write had arrived: it is read, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
-    assert_eq!(axis(&desk).ask(Button::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis(&desk).ask(AxisButton::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
-    assert_eq!(restart, Restart::Read);
+    assert_eq!(restart, RestartEvidence::Read);
     until_ready(&mut desk);
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
@@ -355,7 +355,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
 #[test]
 fn a_write_without_consent_leaves_the_step_unchanged() {
     let mut desk = new_form(FRESH);
-    run(&mut desk, Run::Press(Button::Do));
+    run(&mut desk, Run::Press(AxisButton::Do));
     desk.until("the plan is there", |studio| {
         studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
@@ -367,6 +367,6 @@ fn a_write_without_consent_leaves_the_step_unchanged() {
     let own = axis(&desk);
     assert!(!own.is_writing() && own.changes().is_empty() && own.step() == AxisStep::Request);
     assert_eq!(number(&desk, 152), 0);
-    let number = ParameterNumber::of_drive(152, DriveNumber::FIRST).unwrap();
+    let number = ParameterNumber::for_drive(152, DriveNumber::FIRST).unwrap();
     assert!(unit(&desk).value(number).is_some());
 }

@@ -5,7 +5,7 @@ use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::Action;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::TargetState;
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State, StatusBit};
 use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
@@ -53,7 +53,7 @@ fn a_closing_window_releases_the_drives_first() {
         desk.until("it may close", |studio| studio.can_close());
         until_let_go(&desk);
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
-        drive(&mut desk, Motor::Lead(Goal::Enabled));
+        drive(&mut desk, Motor::Lead(TargetState::Enabled));
         desk.settle();
         assert_eq!(drive_state(&desk).0, State::NotReady, "{closes}");
     }

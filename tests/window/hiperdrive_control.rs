@@ -9,7 +9,7 @@ use std::time::Duration;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, State, Value};
-use encoder_studio::devices::hiperdrive::state::axis::{AxisAction as Run, Button};
+use encoder_studio::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton};
 use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::units::Moment;
 
@@ -242,7 +242,7 @@ fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
     let own = unit(&desk);
     assert!(own.session.is_ready(), "it does not begin again");
     assert_eq!(own.actual(ONE), None, "what was read before the loss");
-    let asked = own.axis().unwrap().ask(Button::Do, &own.seen(ONE));
+    let asked = own.axis().unwrap().ask(AxisButton::Do, &own.seen(ONE));
     assert_eq!(asked.unwrap_err().id(), "hd_axis.unread", "there is nothing to wait for");
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());

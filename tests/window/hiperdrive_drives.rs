@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::{AccessKitNode, Queryable};
 use encoder_studio::app::{Action, Language, Severity, Studio};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Phase};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Phase, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
 use encoder_studio::devices::hiperdrive::state::explain;
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
@@ -34,14 +34,14 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
 #[test]
 fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
-    let slow = Effort { speed: percent(7), torque: percent(50) };
+    let slow = SpeedTorque { speed: percent(7), torque: percent(50) };
     drive(&mut desk, Motor::MoveEffort(slow));
     drive(&mut desk, Motor::JogEffort(slow));
     drive(&mut desk, Motor::Expert(true));
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     until_free(&mut desk, two());
     let moves = &unit(&desk).moves;
-    assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (Effort::MOVE, Effort::JOG));
+    assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (SpeedTorque::MOVE, SpeedTorque::JOG));
     assert_eq!((moves.is_expert(ONE), moves.is_expert(two())), (true, false));
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.endless"]);
@@ -85,7 +85,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
         for motor in [
             Motor::Step { by: 64 },
             Motor::JogPress { direction: Direction::Clockwise, repeated: false },
-            Motor::Lead(Goal::Ready),
+            Motor::Lead(TargetState::Ready),
             Motor::Acknowledge,
         ] {
             drive(desk, motor);
@@ -120,7 +120,7 @@ fn a_paused_job_is_not_discarded_by_another_drive() {
         });
         act(desk, Hiperdrive::SelectDrive(two()));
         let told = warned(desk).len();
-        drive(desk, Motor::Lead(Goal::Ready));
+        drive(desk, Motor::Lead(TargetState::Ready));
         let told = warned(desk).split_off(told);
         act(desk, Hiperdrive::SelectDrive(ONE));
         until_free(desk, ONE);
@@ -158,8 +158,10 @@ fn messages_name_the_drive() {
 fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
     until_free(&mut desk, ONE);
-    let (before, after) =
-        (Effort { speed: percent(40), ..Effort::MOVE }, Effort { speed: percent(20), ..Effort::MOVE });
+    let (before, after) = (
+        SpeedTorque { speed: percent(40), ..SpeedTorque::MOVE },
+        SpeedTorque { speed: percent(20), ..SpeedTorque::MOVE },
+    );
     assert_eq!(unit(&desk).moves.moves_with(ONE), None);
     drive(&mut desk, Motor::MoveEffort(before));
     let seen = while_it_moves(&mut desk, |desk| {
@@ -220,7 +222,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     for _ in 0..20 {
         screen.act(own(Hiperdrive::SelectDrive(ONE)));
         screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.moves());
-        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(Effort::MOVE))));
+        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(SpeedTorque::MOVE))));
         screen.act(own(Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
         screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.moves());
         screen.act(own(then()));
@@ -277,7 +279,7 @@ fn drive_buttons_show_the_drive_states() {
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();
-    let slower = Motor::MoveEffort(Effort { speed: percent(20), ..Effort::MOVE });
+    let slower = Motor::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::MOVE });
     let waits = "sent: 25 %";
     assert!(!screen.shows(waits));
     assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));

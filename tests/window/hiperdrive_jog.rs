@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::{AccessKitNode, NodeT, Queryable};
 use encoder_studio::app::{Action, DeviceCommand};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Effort;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::SpeedTorque;
 use encoder_studio::devices::hiperdrive::protocol::Percent;
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
 
@@ -104,14 +104,14 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
 #[test]
 fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
-    let fast = Effort { speed: Percent::FULL, torque: Percent::FULL };
+    let fast = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, Motor::JogEffort(fast));
     assert_eq!(unit(&desk).moves.jog_effort(ONE), fast);
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected again", |studio| {
         studio.hiperdrive().is_some_and(|own| own.session.is_ready() && !own.moves.is_open())
     });
-    assert_eq!(unit(&desk).moves.jog_effort(ONE), Effort::JOG);
+    assert_eq!(unit(&desk).moves.jog_effort(ONE), SpeedTorque::JOG);
 }
 
 /// Issue 26.2: limits, position and target in the user's unit; outside the limits the way back in.

@@ -7,7 +7,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Action, Severity, Studio, connect};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
 };
@@ -69,7 +69,7 @@ fn until_standstill(desk: &Desk) {
 fn a_jog_turns_the_drive_while_it_is_held() {
     let mut desk = in_control("sim:");
     assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
-    assert_eq!(unit(&desk).moves.jog_effort(ONE), Effort::JOG);
+    assert_eq!(unit(&desk).moves.jog_effort(ONE), SpeedTorque::JOG);
     jog(&mut desk);
     assert!(desk.studio.moves() && !is_at_standstill(&desk));
     let sent = unit(&desk).moves.sent(ONE).unwrap();
@@ -183,7 +183,7 @@ fn a_move_continues_in_another_tab_and_ends_with_stop() {
 #[test]
 fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     let mut desk = in_control("sim:");
-    let effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+    let effort = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, Motor::MoveEffort(effort));
     drive_until(
         &mut desk,
@@ -217,7 +217,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
     assert_eq!(unit(&desk).reachable(ONE), [State::Ready]);
     drive_until(
         &mut desk,
-        |_| Motor::Lead(Goal::Enabled),
+        |_| Motor::Lead(TargetState::Enabled),
         "it is enabled",
         |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled),
     );
@@ -298,7 +298,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     });
     let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
     let own = unit(&desk);
-    assert_eq!(own.outside_words(ONE).unwrap().id(), "hd_outside.words");
+    assert_eq!(own.outside_limits_text(ONE).unwrap().id(), "hd_outside.words");
     assert_eq!(own.may_jog(ONE, up).unwrap_err().id(), "hd_refused.outward");
     assert!(own.may_jog(ONE, down).is_ok());
     drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
@@ -308,7 +308,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(up));
             assert!(unit(desk).may_jog(ONE, up).is_ok() && !unit(desk).can_free(ONE, up));
-            drive(desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+            drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
         let press = Motor::JogPress { direction: up, repeated: false };
         hold_pad_until(&mut desk, press, "it moves out", free, moves);
@@ -342,7 +342,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
         own.outside(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
     });
     let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
-    assert_eq!(unit(&desk).outside_words(ONE).unwrap().id(), "hd_outside.unclear");
+    assert_eq!(unit(&desk).outside_limits_text(ONE).unwrap().id(), "hd_outside.unclear");
     for (way, other) in [(up, down), (down, up)] {
         for own in [up, down] {
             assert_eq!(unit(&desk).may_jog(ONE, own).unwrap_err().id(), "hd_refused.unclear", "{own:?}");
@@ -351,7 +351,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(way));
             assert!(unit(desk).may_jog(ONE, way).is_ok() && unit(desk).may_jog(ONE, other).is_err());
-            drive(desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+            drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
         let press = Motor::JogPress { direction: way, repeated: false };
         hold_pad_until(&mut desk, press, "it moves", free, moves);

@@ -8,7 +8,7 @@ use std::fs;
 use encoder_studio::app::recorder::Recorder;
 use encoder_studio::app::{Action, FileQuestion, RecorderOwner as Whose, Severity};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Measure};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, PositionUnit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, number, read, unit};
@@ -64,7 +64,7 @@ fn a_recording_survives_unit_and_scale_changes() {
     until_recorded(&mut desk, 3);
     let before = positions(&desk);
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(Length { nanometres: 4_000_000 })));
-    act(&mut desk, Hiperdrive::SetMeasure(Measure::Millimetres));
+    act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
     until_recorded(&mut desk, 1);
     act(&mut desk, Hiperdrive::SetPitch(ONE, None));
     until_recorded(&mut desk, 1);

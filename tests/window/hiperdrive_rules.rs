@@ -4,7 +4,7 @@
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::Opener;
+use encoder_studio::app::LinkOpener;
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -110,7 +110,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let outside = Outside::new("");
     let is_bad = bad.clone();
     let world = Environment {
-        given: outside.world().given.with(Opener::new(move |url, store| {
+        given: outside.world().given.with(LinkOpener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
             let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
@@ -119,7 +119,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
             let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
             let station = Station::from_query(&url.query, None, Duration::from_millis(20))?;
             let way = DeviceConnection { wire, port: Some(port), station, target: Some(target) };
-            Ok(Session::to_target(way, clock, store))
+            Ok(Session::for_target(way, clock, store))
         })),
         ..outside.world()
     };

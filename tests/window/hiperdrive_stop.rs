@@ -8,9 +8,9 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::{Action, Studio};
-use encoder_studio::devices::hiperdrive::jobs::DriveView;
+use encoder_studio::devices::hiperdrive::jobs::DriveSnapshot;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase};
-use encoder_studio::devices::hiperdrive::protocol::{OutData, State};
+use encoder_studio::devices::hiperdrive::protocol::{OutputData, State};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
 
@@ -87,7 +87,7 @@ pub(crate) fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
 pub(crate) fn until_stopped(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
-    let moves = |own: &DriveView| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;
+    let moves = |own: &DriveSnapshot| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;
     while motion.view().drives.iter().any(moves) {
         assert!(began.elapsed() < LONG, "it does not stand");
         std::thread::sleep(Duration::from_millis(1));
@@ -241,7 +241,7 @@ fn moved_by_another_master() -> Screen {
     screen.until("it is read", own);
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
     for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
-        let out = OutData { control, speed: 1, torque: 100, target: 30_000_000 };
+        let out = OutputData { control, speed: 1, torque: 100, target: 30_000_000 };
         target.with(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
     }
     screen.until("it is seen to move", Studio::moves);

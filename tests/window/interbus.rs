@@ -8,7 +8,7 @@ use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity};
 use encoder_studio::devices::interbus::profile::Scale;
-use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOut, StartupMode};
+use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOutNumber, StartupMode};
 use encoder_studio::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus};
 
 use crate::support::{Desk, GATE};
@@ -32,7 +32,9 @@ fn read(link: &str) -> Desk {
 #[track_caller]
 fn until_read(desk: &mut Desk) {
     desk.until("everything is read", |studio| {
-        studio.interbus().is_some_and(|own| own.survey.is_some() && own.programs_read() == 8 && own.session.is_ready())
+        studio
+            .interbus()
+            .is_some_and(|own| own.survey.is_some() && own.known_program_count() == 8 && own.session.is_ready())
     });
     desk.settle();
 }
@@ -148,9 +150,9 @@ fn the_mode_of_an_encoder_can_be_selected() {
     act(&mut desk, Interbus::Select(StartupMode::K3));
     desk.until("a position comes", |studio| studio.interbus().unwrap().position().is_some());
     until_ready(&mut desk);
-    act(&mut desk, Interbus::ReadOut(ReadOut::chip_register(5).unwrap()));
+    act(&mut desk, Interbus::ReadOut(ReadOutNumber::chip_register(5).unwrap()));
     desk.until("it is read out", |studio| {
-        studio.interbus().unwrap().read_out(ReadOut::chip_register(5).unwrap()).is_some()
+        studio.interbus().unwrap().read_out(ReadOutNumber::chip_register(5).unwrap()).is_some()
     });
     assert_eq!(encoder(&desk).mode(), Some(StartupMode::K3));
     assert!(!encoder(&desk).handshake.is_empty());
@@ -179,9 +181,9 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     wish(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
     until_ready(&mut desk);
-    assert_eq!(encoder(&desk).programs_read(), 0, "another program switches outputs: only when asked");
+    assert_eq!(encoder(&desk).known_program_count(), 0, "another program switches outputs: only when asked");
     act(&mut desk, Interbus::ReadPrograms(vec![program(3)]));
-    desk.until("the program is read", |studio| studio.interbus().unwrap().programs_read() == 1);
+    desk.until("the program is read", |studio| studio.interbus().unwrap().known_program_count() == 1);
     until_ready(&mut desk);
     // After a lost connection it is not known.
     desk.outside.wire(GATE).unplug();

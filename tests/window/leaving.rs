@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, JobEnd, Severity};
+use encoder_studio::app::{Action, JobState, Severity};
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 
 use crate::support::{Desk, PORT, SLOW, is_review};
@@ -33,11 +33,11 @@ fn a_write_of_a_closed_session_is_awaited_and_reported() {
     desk.act(Action::Close);
     desk.settle();
     assert!(!desk.studio.can_close(), "it still writes");
-    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Running);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Running);
     desk.wire().release();
     desk.until("it may close", |studio| studio.can_close());
     assert!(desk.notice_ids(Severity::Warning).contains(&"write.cancelled"));
-    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Cancelled);
     assert_eq!(desk.wire().field(0)[..3], *b"XMD");
 }
 
@@ -51,7 +51,7 @@ fn a_wire_is_reopened_only_after_its_write_has_ended() {
     desk.wire().release();
     desk.until_read();
     assert!(desk.notice_ids(Severity::Warning).contains(&"write.cancelled"));
-    assert_eq!(desk.encoder().staged.on_device(0, 0), Some(b'X'));
+    assert_eq!(desk.encoder().staged.device_byte(0, 0), Some(b'X'));
 }
 
 /// The disk takes the edit only when the test lets it.
@@ -103,7 +103,7 @@ fn a_session_with_a_dead_thread_is_lost_with_its_job() {
     desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.ended"));
     assert!(desk.outside.wakes.load(Ordering::SeqCst) > wakes, "the window is told to look");
-    assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Failed(_)));
+    assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Failed(_)));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();

@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, JobEnd, Language, PendingEdits, RecorderOwner as Of, Severity, Studio, recorder};
+use encoder_studio::app::{Action, JobState, Language, PendingEdits, RecorderOwner as Of, Severity, Studio, recorder};
 use encoder_studio::devices::hiperface::jobs::Change;
-use encoder_studio::devices::hiperface::protocol::CodeNumber;
+use encoder_studio::devices::hiperface::protocol::AccessCodeNumber;
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 use encoder_studio::store::read_text;
 use encoder_studio::units::{Baud, CharacterFormat, Parity};
@@ -70,9 +70,9 @@ fn a_stopped_restore_reports_progress_and_can_be_completed() {
     assert!(texts[1].words(Language::German).contains(&backup.display().to_string()));
     desk.until_ready();
     assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000rpm");
-    assert_eq!(desk.encoder().staged.on_device(0, 2), Some(b'd'), "it is read again");
+    assert_eq!(desk.encoder().staged.device_byte(0, 2), Some(b'd'), "it is read again");
     assert!(!desk.encoder().staged.is_dirty(), "the profile's bytes are no edits of the encoder");
-    let end = desk.studio.services.jobs().map(|job| job.end.clone()).find(|end| *end == JobEnd::Cancelled);
+    let end = desk.studio.services.jobs().map(|job| job.end.clone()).find(|end| *end == JobState::Cancelled);
     assert!(end.is_some());
 
     desk.ask(Hiperface::CloseReview);
@@ -127,7 +127,7 @@ fn a_cable_pulled_while_reading_is_reported_once() {
     desk.settle();
     assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"]);
     let last = desk.studio.services.jobs().next_back().unwrap();
-    assert!(matches!(&last.end, JobEnd::Failed(why) if why.id() == "link.lost") && last.until.is_some());
+    assert!(matches!(&last.end, JobState::Failed(why) if why.id() == "link.lost") && last.until.is_some());
     let frames = desk.encoder().session.trace.lines();
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
@@ -347,7 +347,7 @@ fn a_silent_encoder_is_not_shown_as_connected() {
 fn access_codes_are_not_sent_to_another_encoder() {
     let mut desk = Desk::at_port("codes=0:9D");
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
-    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
     desk.until_ready();
     assert!(desk.encoder().field(0).unwrap().bytes.is_some());
     desk.wire().unplug();
@@ -384,7 +384,7 @@ fn reconnecting_while_reading_ends_the_job() {
     desk.ask(Hiperface::ReadCounter);
     desk.wire().wait_until_held();
     desk.open(&format!("serial:{PORT}"));
-    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobState::Cancelled);
     desk.wire().release();
     desk.until_read();
     assert!(desk.notice_ids(Severity::Error).is_empty());

@@ -61,7 +61,7 @@ fn cams_beyond_the_range_move_nothing_on_the_other_pages() {
         let link = "sim:?steps=3600&revolutions=1&cams=demo";
         let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
         screen.until("it is read", |studio| {
-            studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+            studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
         });
         screen.click("page.parameters");
         let id = screen.studio().interbus().unwrap().session.id;

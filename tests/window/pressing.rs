@@ -68,7 +68,7 @@ fn notices_and_progress_do_not_move_buttons() {
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
-        for page in encoder_studio::kinds::program().tabs.page_words(tab) {
+        for page in encoder_studio::kinds::program().tabs.page_text_ids(tab) {
             screen.click(page);
             let before = widgets(&screen);
             screen.act(Action::NoThread("told".to_owned()));

@@ -4,14 +4,14 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 
-use encoder_studio::app::diverged::Resolve;
+use encoder_studio::app::diverged::ConflictResolution;
 use encoder_studio::app::review::{Permit, ReviewSheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 use encoder_studio::kinds::program;
-use encoder_studio::profile::Document;
+use encoder_studio::profile::ProfileDocument;
 use encoder_studio::store::read_text;
 
 use crate::support::{Desk, OTHER_PORT, is_review};
@@ -34,7 +34,7 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 #[test]
 fn a_saved_profile_matches_the_encoder() {
     let (desk, path) = saved();
-    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+    let profile = ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats)
         .unwrap()
         .body
         .into_profile::<HiperfaceProfile>()
@@ -64,7 +64,7 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", saved);
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_without"]));
-    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+    let profile = ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats)
         .unwrap()
         .body
         .into_profile::<HiperfaceProfile>()
@@ -154,21 +154,21 @@ fn a_reloaded_profile_keeps_its_edits() {
     let text = read_text(&path).unwrap();
     fs::write(&path, text.replace("45 4D 44 37", "45 4E 44 37")).unwrap();
     desk.command(DeviceCommand::Read);
-    desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.on_device(0, 1) == Some(0x4E));
+    desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.device_byte(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
     // A file that is invalid by now changes nothing.
     fs::write(&path, "(").unwrap();
     desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
-    assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
+    assert_eq!((desk.encoder().staged.device_byte(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
     // Nor is it replaced without a question.
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is asked", |studio| studio.diverged.is_some());
     assert_eq!(fs::read_to_string(&path).unwrap(), "(");
-    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+    let profile = ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats)
         .unwrap()
         .body
         .into_profile::<HiperfaceProfile>()
@@ -326,7 +326,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
-    let document = Document::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap();
+    let document = ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap();
     assert!(document.note.as_ref().is_some_and(|note| note.contains("did not answer")), "{:?}", document.note);
     let profile = document.body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!((profile.fields, &profile.identity.serial_number[..]), (fields, "GB0450179"), "without the edit");
@@ -394,7 +394,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     // Dropped and typed, it is the existing session; the home folder's has its own.
     desk.act(Action::Open("./rel.ron".into()));
     desk.act(Action::Typed(FileQuestion::Open, "rel.ron".into()));
-    desk.until("both were read", |studio| studio.opening_files().is_empty());
+    desk.until("both were read", |studio| studio.files_being_opened().is_empty());
     assert_eq!(desk.studio.devices().len(), 1);
     desk.act(Action::Typed(FileQuestion::Open, "~/rel.ron".into()));
     desk.until("it is open", |studio| studio.devices().len() == 2);

@@ -5,7 +5,7 @@ use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use encoder_studio::app::diverged::{Resolve, Side};
+use encoder_studio::app::diverged::{ConflictResolution, Side};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, PendingEdits, SessionId, Severity, Studio};
 use encoder_studio::devices::hiperdrive::state::{Edit as HiperdriveEdit, HiperdriveAction as Hiperdrive};
@@ -13,7 +13,7 @@ use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 use encoder_studio::devices::ssi::protocol::{Code, Range};
 use encoder_studio::devices::ssi::state::{Edit as SsiEdit, SsiAction as Ssi};
-use encoder_studio::profile::Changed;
+use encoder_studio::profile::ChangedSide;
 
 use crate::support::Desk;
 
@@ -93,36 +93,36 @@ fn saving_over_a_changed_file_asks_first() {
     };
     let (mut desk, path) = begun();
     let rows = desk.studio.diverged.as_ref().unwrap().rows().to_vec();
-    let told: Vec<(String, Changed, Option<Side>)> =
+    let told: Vec<(String, ChangedSide, Option<Side>)> =
         rows.iter().map(|row| (row.place(), row.changed, row.take)).collect();
     let expected = [
-        ("note".to_owned(), Changed::There, Some(Side::Theirs)),
-        ("fields[number: 0].bytes[0]".to_owned(), Changed::Both, None),
+        ("note".to_owned(), ChangedSide::There, Some(Side::Theirs)),
+        ("fields[number: 0].bytes[0]".to_owned(), ChangedSide::Both, None),
     ];
     assert_eq!(told, expected);
     assert!(rows[1].value(Side::Theirs).unwrap().starts_with("\"00 AA"));
     assert!(rows[1].value(Side::Mine).unwrap().starts_with("\"58 01"));
     assert!(!desk.studio.diverged.as_ref().unwrap().can_merge(), "who decides what both changed?");
-    desk.act(Action::Resolve(Resolve::Merge));
+    desk.act(Action::Resolve(ConflictResolution::Merge));
     assert!(desk.studio.diverged.is_some());
     desk.act(Action::Escape);
     assert!(desk.studio.diverged.is_none() && file_text(&path) == theirs && desk.encoder().staged.is_dirty());
 
     let (mut desk, path) = begun();
-    desk.act(Action::Resolve(Resolve::Reload));
+    desk.act(Action::Resolve(ConflictResolution::Reload));
     desk.settle();
     assert_eq!(file_text(&path), theirs);
     assert!(!desk.encoder().staged.is_dirty());
-    assert_eq!(desk.encoder().staged.on_device(0, 1), Some(0xAA));
+    assert_eq!(desk.encoder().staged.device_byte(0, 1), Some(0xAA));
 
     let (mut desk, path) = begun();
-    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.until("it is saved", is_saved);
     assert_eq!(file_text(&path), OWN.replace("\"00 01", "\"58 01").replace("// end", "// theirs"));
 
     let (mut desk, path) = begun();
-    desk.act(Action::Resolve(Resolve::Take(1, Side::Mine)));
-    desk.act(Action::Resolve(Resolve::Merge));
+    desk.act(Action::Resolve(ConflictResolution::Take(1, Side::Mine)));
+    desk.act(Action::Resolve(ConflictResolution::Merge));
     desk.until("it is saved", is_saved);
     assert_eq!(file_text(&path), theirs.replace("\"00 AA", "\"58 01"));
     // The saved content is the open one: the next save finds no difference.
@@ -132,8 +132,8 @@ fn saving_over_a_changed_file_asks_first() {
     assert!(desk.studio.diverged.is_none() && file_text(&path).contains("58 01 5A"));
 
     let (mut desk, path) = begun();
-    desk.act(Action::Resolve(Resolve::Take(1, Side::Theirs)));
-    desk.act(Action::Resolve(Resolve::Merge));
+    desk.act(Action::Resolve(ConflictResolution::Take(1, Side::Theirs)));
+    desk.act(Action::Resolve(ConflictResolution::Merge));
     desk.until("the edit is none any more", is_saved);
     assert_eq!(file_text(&path), theirs);
 }
@@ -163,7 +163,7 @@ fn only_changed_values_count_as_a_difference() {
     let diverged = desk.studio.diverged.as_ref().unwrap();
     assert_eq!(diverged.problem().unwrap().id(), "profile.invalid");
     assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_keep_mine());
-    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.until("it is saved", is_saved);
     assert!(file_text(&path).contains("58 59 5A"));
 
@@ -173,7 +173,7 @@ fn only_changed_values_count_as_a_difference() {
     desk.put(0, 3, b"W");
     save(&mut desk);
     desk.until("it is asked", is_asked);
-    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.settle();
     assert!(desk.studio.diverged.as_ref().is_some_and(|own| !own.can_keep_mine()));
     assert_eq!(file_text(&path), newer);
@@ -316,7 +316,9 @@ fn restored_edits_keep_changes_by_others() {
                 desk.act(Action::Open(path.clone()));
             }
             desk.until("the edits are there", |studio| {
-                is_open(studio) && studio.opening_files().is_empty() && studio.selected_device().unwrap().is_dirty()
+                is_open(studio)
+                    && studio.files_being_opened().is_empty()
+                    && studio.selected_device().unwrap().is_dirty()
             });
             desk.settle();
             save(&mut desk);

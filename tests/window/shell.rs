@@ -210,7 +210,7 @@ fn the_last_frames_are_in_reach_and_stay_while_others_come() {
     screen.steps();
     let last = screen.encoder().session.trace.lines().back().unwrap().clone();
     let time = |screen: &Screen, line| {
-        screen.encoder().session.trace.time_of(line).unwrap().strftime("%H:%M:%S%.3f").to_string()
+        screen.encoder().session.trace.line_time(line).unwrap().strftime("%H:%M:%S%.3f").to_string()
     };
     let time = time(&screen, &last);
     let row = screen.harness.query_all_by_label(&time).last().expect("the last frame is drawn").rect();

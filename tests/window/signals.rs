@@ -9,7 +9,9 @@ use encoder_studio::analysis::diagnosis::{DiagnosisFinding, FindingKind};
 use encoder_studio::analysis::quality::{Family, QualityFinding as Parameter};
 use encoder_studio::analysis::wiring::Wire;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
-use encoder_studio::signals::state::{Column, Example, Origin, SignalsAction as Signals, SourceAction, TableSource};
+use encoder_studio::signals::state::{
+    Column, ExampleCapture, Origin, SignalsAction as Signals, SourceAction, TableSource,
+};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
@@ -88,10 +90,10 @@ fn a_capture_can_be_opened_without_a_session() {
 #[test]
 fn the_examples_are_judged_as_named() {
     let mut desk = Desk::fresh("");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     assert_eq!(desk.studio.signals().findings(), []);
-    desk.signals(Signals::Example(Example::WithErrors));
+    desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
     let found = desk.studio.signals().findings();
     for (label, wanted) in [
@@ -117,7 +119,7 @@ fn is_amplitude(what: &FindingKind) -> bool {
 #[test]
 fn an_unreadable_table_names_the_row_and_keeps_the_view() {
     let mut desk = Desk::fresh("");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     let broken = circle(2).replacen("0.05;", "0.05;x", 1);
     for (name, text, told) in [
@@ -131,7 +133,7 @@ fn an_unreadable_table_names_the_row_and_keeps_the_view() {
         let path = desk.file(name, text);
         desk.open_capture(&path);
         assert_eq!(desk.problem(), told, "{name}");
-        assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::Healthy))), "{name}");
+        assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::Healthy))), "{name}");
         let lines = text.lines().next().map(str::to_owned).into_iter().collect::<Vec<_>>();
         assert_eq!(desk.studio.signals().table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
     }
@@ -146,7 +148,7 @@ fn an_unreadable_table_names_the_row_and_keeps_the_view() {
     assert_eq!(desk.problem(), "file.not_found");
     assert!(desk.notice_ids(Severity::Error).contains(&"signal.empty"), "the log keeps it");
     assert!(desk.studio.services.log.standing().is_none(), "it stands beside its cause");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     assert!(desk.studio.signals().problem().is_none());
 }
@@ -211,7 +213,7 @@ fn data_without_an_ellipse_is_shown_and_refused_with_a_reason() {
 #[test]
 fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     let mut desk = Desk::fresh("");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     let large = desk.file("large.csv", &circle(20_000));
     desk.act(Action::Open(large.clone()));
@@ -219,20 +221,20 @@ fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     desk.act(Action::Escape);
     assert!(desk.studio.signals().reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::Healthy))));
-    assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(Example::Healthy));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
+    assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(ExampleCapture::Healthy));
     assert_eq!(desk.notice_ids(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
     // The later one counts, whichever is read sooner.
     desk.act(Action::Open(large));
-    desk.signals(Signals::Example(Example::WithErrors));
+    desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
     for _ in 0..50 {
         desk.studio.poll();
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
 }
 
 #[test]
@@ -249,14 +251,14 @@ fn a_kept_capture_stays_while_others_are_opened() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
     assert!(desk.studio.signals().comparison().is_none(), "there is nothing to keep");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     desk.signals(Signals::Keep);
-    desk.signals(Signals::Example(Example::WithErrors));
+    desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
     let kept = |studio: &Studio| studio.signals().comparison().map(|own| own.origin.clone());
-    assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(Example::Healthy))));
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
+    assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
     desk.signals(Signals::DropComparison);
     assert_eq!(kept(&desk.studio), None);
 }
@@ -393,7 +395,7 @@ fn a_file_replaces_the_virtual_encoder() {
 #[test]
 fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
     let mut desk = Desk::fresh("");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     let recorder = |studio: &Studio| {
         studio.recorder(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded()

@@ -83,7 +83,7 @@ fn both_positions_are_shown_and_the_offset_is_adopted() {
     assert!(screen.shows("All samples of reference.csv"));
     screen.click("synchronise.use_captured");
     assert_eq!(screen.studio().signals().synchronise().form.offset, "2.50");
-    screen.act(Action::tool(Signals::Example(encoder_studio::signals::state::Example::Healthy)));
+    screen.act(Action::tool(Signals::Example(encoder_studio::signals::state::ExampleCapture::Healthy)));
     screen.until("it is read", |studio| studio.signals().measurement().is_some_and(|own| own.nonlinearities.is_none()));
     assert!(screen.shows(&screen.say("synchronise.not_captured")));
     screen.click("page.error");

@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::{Action, RecorderOwner as Of, Studio};
-use encoder_studio::signals::state::{Example, Origin, SignalsAction as Signals, SourceAction};
+use encoder_studio::signals::state::{ExampleCapture, Origin, SignalsAction as Signals, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::signals::circle;
@@ -39,14 +39,14 @@ fn time_on_hold_is_a_gap_in_the_scope() {
 #[test]
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
         studio.signals().reading().is_none() && studio.signals().measurement().is_some()
     });
     let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
     assert_eq!((desk.studio.signals().periods(), judged(&desk.studio)), (None, None));
     desk.signals(Signals::SetPeriods(512));
-    desk.signals(Signals::Example(Example::WithErrors));
+    desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until("it is measured", |studio| {
         studio.signals().reading().is_none() && studio.signals().measurement().is_some()
     });
@@ -54,7 +54,7 @@ fn periods_are_not_assumed() {
     desk.signals(Signals::Source(SourceAction::Start));
     assert!(desk.studio.signals().periods().is_some());
     desk.signals(Signals::Source(SourceAction::Stop));
-    desk.signals(Signals::Example(Example::Healthy));
+    desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
         studio.signals().reading().is_none() && studio.signals().measurement().is_some()
     });
@@ -122,7 +122,7 @@ fn a_kept_capture_keeps_no_samples() {
     desk.until_measured();
     let samples = std::sync::Arc::downgrade(&desk.studio.signals().measurement().unwrap().capture);
     desk.signals(Signals::Keep);
-    desk.signals(Signals::Example(encoder_studio::signals::state::Example::Healthy));
+    desk.signals(Signals::Example(encoder_studio::signals::state::ExampleCapture::Healthy));
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // A circle of 100 samples per period.

@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, ColorScheme, Language};
-use encoder_studio::signals::state::{Example, Origin, SignalsAction as Signals, SourceAction};
+use encoder_studio::signals::state::{ExampleCapture, Origin, SignalsAction as Signals, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;
@@ -24,7 +24,7 @@ impl Screen {
             for theme in [ColorScheme::Dark, ColorScheme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
-                for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::SIGNALS) {
+                for page in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::SIGNALS) {
                     self.click(page);
                     self.check_language();
                 }
@@ -43,7 +43,7 @@ fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
         screen.check_signals_pages();
         assert!(screen.shows(&screen.say("signals.nothing")));
         assert!(!screen.shows(&screen.say("shell.empty")), "it needs no session");
-        for example in Example::ALL {
+        for example in ExampleCapture::ALL {
             screen.signals(Signals::Example(example));
             screen.click("signals.table");
             screen.check_signals_pages();
@@ -85,7 +85,7 @@ fn the_tab_opens_by_key_and_click_and_loads_an_example() {
 fn the_figure_has_an_accessible_value_and_a_corrected_view() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
-    screen.signals(Signals::Example(Example::WithErrors));
+    screen.signals(Signals::Example(ExampleCapture::WithErrors));
     let value = |screen: &Screen| {
         let label = screen.say("quality.lissajous");
         let image = screen
@@ -120,7 +120,7 @@ fn a_failed_capture_is_shown_on_every_page() {
 fn invalid_periods_are_refused_with_a_message() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
-    screen.signals(Signals::Example(Example::Healthy));
+    screen.signals(Signals::Example(ExampleCapture::Healthy));
     let label = screen.say("quality.periods_per_turn");
     let type_in = |screen: &mut Screen, text: &str| {
         let entry = |screen: &Screen| {
@@ -149,10 +149,10 @@ fn invalid_periods_are_refused_with_a_message() {
 fn a_capture_is_kept_and_compared_in_two_columns() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
-    screen.signals(Signals::Example(Example::WithErrors));
+    screen.signals(Signals::Example(ExampleCapture::WithErrors));
     screen.click("compare.keep");
     assert!(!screen.is_enabled("compare.keep"), "it would be compared with itself");
-    screen.signals(Signals::Example(Example::Healthy));
+    screen.signals(Signals::Example(ExampleCapture::Healthy));
     screen.check_signals_pages();
     screen.click("page.quality");
     assert!(screen.shows("Compared with offset-gain-phase.csv"));
@@ -169,7 +169,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
 fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
-    screen.signals(Signals::Example(Example::Healthy));
+    screen.signals(Signals::Example(ExampleCapture::Healthy));
     screen.click("page.error");
     // Section 3: 7.93e-5 rad with 32 intervals, 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
     assert!(screen.shows("0.00454°") && screen.shows("16.27") && screen.shows("30.00073°"));

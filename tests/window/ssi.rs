@@ -9,7 +9,7 @@ use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Location, Range, Uncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
 use encoder_studio::devices::ssi::state::{
-    Edit, Encoder, Entry, Field, Format, Input, SearchState, SsiAction as Ssi, Try,
+    Edit, Encoder, Entry, ExportFormat, Field, FieldInput, SearchState, SsiAction as Ssi, TrialInput,
 };
 
 use crate::support::Desk;
@@ -68,12 +68,12 @@ fn a_layout_needs_no_device() {
     assert_eq!((own.session.phase.clone(), own.is_dirty()), (Phase::Offline, false));
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
     // Reference section 8: AHM36, MT 123h, ST 2A5Bh, binary and Gray.
-    act(&mut desk, Ssi::Try(Try::Place(0x123, 0x2A5B)));
+    act(&mut desk, Ssi::Try(TrialInput::Place(0x123, 0x2A5B)));
     assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
-    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
     assert_eq!(encoder(&desk).displayed_frame().frame, 0x0D9_3EEC, "the position stays");
-    act(&mut desk, Ssi::Try(Try::Bits("000110110010011111011101100".to_owned())));
+    act(&mut desk, Ssi::Try(TrialInput::Bits("000110110010011111011101100".to_owned())));
     assert_eq!(
         encoder(&desk).displayed_frame().place,
         Some((
@@ -101,21 +101,21 @@ fn impossible_layouts_are_refused_and_change_nothing() {
         act(desk, Ssi::Enter(field, input));
         assert_eq!(encoder(desk).designer.problem().unwrap().id(), id);
     };
-    refused(&mut desk, Field::Singleturn, Input::Number(15), "ssi.refused");
-    refused(&mut desk, Field::Singleturn, Input::Number(300), "ssi_form.wrong");
-    refused(&mut desk, Field::Preset, Input::Number(1 << 26), "ssi.preset_range");
+    refused(&mut desk, Field::Singleturn, FieldInput::Number(15), "ssi.refused");
+    refused(&mut desk, Field::Singleturn, FieldInput::Number(300), "ssi_form.wrong");
+    refused(&mut desk, Field::Preset, FieldInput::Number(1 << 26), "ssi.preset_range");
     edit(&mut desk, Edit::Family("atm61".to_owned()));
     assert_eq!(encoder(&desk).designer.problem().unwrap().id(), "ssi.no_family");
     edit(&mut desk, Edit::LinuxCnc("pos%24q".to_owned()));
     assert_eq!(encoder(&desk).designer.problem().unwrap().id(), "ssi.refused");
-    act(&mut desk, Ssi::Try(Try::Position(1 << 26)));
+    act(&mut desk, Ssi::Try(TrialInput::Position(1 << 26)));
     assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.range");
-    act(&mut desk, Ssi::Try(Try::Bits("10102".to_owned())));
+    act(&mut desk, Ssi::Try(TrialInput::Bits("10102".to_owned())));
     assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.form");
     assert_eq!(*encoder(&desk).design(), before);
     // In both languages, with both sides named.
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
-    act(&mut desk, Ssi::Enter(Field::Clocks, Input::Number(14)));
+    act(&mut desk, Ssi::Enter(Field::Clocks, FieldInput::Number(14)));
     let words = encoder(&desk).designer.problem().unwrap().terminal();
     assert!(words.contains("ERROR is on clock 15") && words.contains("14 clocks"), "{words}");
 }
@@ -131,18 +131,18 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
     edit(&mut desk, Edit::Frame(Box::new(frame)));
     assert!(encoder(&desk).design().settings.is_none());
     assert!(field(&desk, Field::Lead).is_some(), "everything can be set");
-    act(&mut desk, Ssi::Enter(Field::Lead, Input::Number(0)));
+    act(&mut desk, Ssi::Enter(Field::Lead, FieldInput::Number(0)));
     let own = encoder(&desk).design();
     assert_eq!((own.profile.descriptor.clocks, own.settings.is_some()), (25, true));
     assert!(field(&desk, Field::Align).is_some() && field(&desk, Field::Lead).is_none());
     // Without a family it can be anything.
     edit(&mut desk, Edit::Free);
     act(&mut desk, Ssi::AddErrorBit);
-    act(&mut desk, Ssi::Enter(Field::Parity, Input::Choice(1)));
+    act(&mut desk, Ssi::Enter(Field::Parity, FieldInput::Choice(1)));
     let own = &encoder(&desk).design().profile.descriptor;
     assert_eq!((own.clocks, own.errors[0].clock, own.parity.unwrap().clock), (27, 26, 27));
     act(&mut desk, Ssi::RemoveErrorBit(0));
-    act(&mut desk, Ssi::Enter(Field::Repeat, Input::Switch(true)));
+    act(&mut desk, Ssi::Enter(Field::Repeat, FieldInput::Switch(true)));
     assert_eq!(encoder(&desk).design().profile.descriptor.clocks, 55, "27, a zero, and 27 once more");
     edit(&mut desk, Edit::LinuxCnc("err%1bpos%24ge".to_owned()));
     let own = &encoder(&desk).design().profile.descriptor;
@@ -152,7 +152,7 @@ fn a_frame_edited_by_hand_can_return_to_its_family() {
 #[test]
 fn a_layout_is_saved_opened_and_survives_a_crash() {
     let mut desk = layout();
-    act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
+    act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     wish(&mut desk, DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
     assert_eq!(question.suggested().unwrap().to_str(), Some("ahm36_st_12.ron"));
@@ -160,7 +160,7 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
     desk.act(Action::Chosen(question, path.clone()));
     desk.until("it is saved", |studio| studio.ssi().is_some_and(|own| !own.is_dirty()));
     assert!(!encoder(&desk).is_dirty() && matches!(encoder(&desk).session.source, Source::File { .. }));
-    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
     let drafts = desk.outside.path("data/drafts/ssi-files");
     desk.until("the draft is kept", |_| {
         std::fs::read_dir(&drafts).is_ok_and(|mut files| {
@@ -180,9 +180,9 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
 #[test]
 fn exports_are_in_the_language_of_the_window() {
     let mut desk = layout();
-    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(1)));
     let german = |format| encoder(&desk).designer.export(format, Language::German).unwrap();
-    let sheet = german(Format::Sheet);
+    let sheet = german(ExportFormat::Sheet);
     for line in [
         "SSI-Einstellungen: ahm36,code=gray",
         "Telegrammlänge                  27 Bits",
@@ -196,19 +196,21 @@ fn exports_are_in_the_language_of_the_window() {
     for english in ["length:", "Frame", "the ", "lowest"] {
         assert!(!sheet.contains(english), "{english}\n{sheet}");
     }
-    assert!(german(Format::Table).starts_with("Takt,Telegrammbit,Bedeutung\n1,26,MT11\n"));
-    assert!(german(Format::Timing).contains("27 Takte, 67,50 µs") && german(Format::Timing).contains(">Daten<"));
-    assert_eq!(german(Format::C), encoder(&desk).designer.export(Format::C, Language::English).unwrap());
+    assert!(german(ExportFormat::Table).starts_with("Takt,Telegrammbit,Bedeutung\n1,26,MT11\n"));
+    assert!(
+        german(ExportFormat::Timing).contains("27 Takte, 67,50 µs") && german(ExportFormat::Timing).contains(">Daten<")
+    );
+    assert_eq!(german(ExportFormat::C), encoder(&desk).designer.export(ExportFormat::C, Language::English).unwrap());
 }
 
 #[test]
 fn every_export_is_written() {
     let mut desk = layout();
-    for format in Format::ALL {
+    for format in ExportFormat::ALL {
         act(&mut desk, Ssi::AskExport(format, Language::German));
         let question = desk.studio.take_file_question().unwrap();
         assert!(matches!(question, FileQuestion::OfDevice(_)));
-        let path = desk.outside.path(&format!("export.{}", question.endings()[0]));
+        let path = desk.outside.path(&format!("export.{}", question.file_extensions()[0]));
         let _ = std::fs::remove_file(&path);
         desk.act(Action::Chosen(question, path.clone()));
         desk.until("it is written", |_| path.exists());
@@ -219,11 +221,14 @@ fn every_export_is_written() {
     }
     // The timing of a frame needs no family: 27 clocks at 400 kHz take 67.5 µs.
     edit(&mut desk, Edit::Free);
-    let picture = encoder(&desk).designer.export(Format::Timing, Language::English).unwrap();
+    let picture = encoder(&desk).designer.export(ExportFormat::Timing, Language::English).unwrap();
     assert!(picture.contains("67.50 µs"), "{picture}");
     // Parts that a format cannot represent are reported.
-    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(2)));
-    assert_eq!(encoder(&desk).designer.export(Format::LinuxCnc, Language::English).unwrap_err().id(), "ssi.lc_cannot");
+    act(&mut desk, Ssi::Enter(Field::Code, FieldInput::Choice(2)));
+    assert_eq!(
+        encoder(&desk).designer.export(ExportFormat::LinuxCnc, Language::English).unwrap_err().id(),
+        "ssi.lc_cannot"
+    );
 }
 
 #[test]
@@ -240,7 +245,7 @@ fn words_of_an_adapter_are_plotted_live() {
     assert!(decoded.is_valid && decoded.findings.is_empty());
     // Another layout reads the same words again.
     let before = own.record.positions();
-    act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
+    act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     assert!(encoder(&desk).record.positions() >= before);
     desk.until("the layout does not fit", |studio| {
         studio.ssi().unwrap().record.tally().noted().iter().any(|noted| noted.stands)
@@ -342,7 +347,7 @@ fn another_link_to_the_same_wire_changes_the_reading_settings() {
     };
     desk.open("bridge:/nowhere/tty?clock=500000");
     desk.settle();
-    act(&mut desk, Ssi::Enter(Field::Pause, Input::Number(90)));
+    act(&mut desk, Ssi::Enter(Field::Pause, FieldInput::Number(90)));
     let id = encoder(&desk).session.id;
     assert_eq!(reading(&desk), (500_000, 90));
     desk.open("bridge:/nowhere/tty?clock=750000");
@@ -416,7 +421,7 @@ fn dragging_a_boundary_changes_the_family_settings() {
     assert_eq!((own.profile.descriptor.errors[0].clock, own.profile.descriptor.clocks), (15, 15));
     assert_eq!(own.settings.as_ref().unwrap().emit("ahs36"), "ahs36,st=12");
     wish(&mut desk, DeviceCommand::Undo);
-    act(&mut desk, Ssi::Enter(Field::Errors, Input::Choice(1)));
+    act(&mut desk, Ssi::Enter(Field::Errors, FieldInput::Choice(1)));
     act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
     let own = encoder(&desk).design();
     assert_eq!(own.profile.descriptor.errors[0].clock, 13);

@@ -4,7 +4,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, JobEnd, Severity};
+use encoder_studio::app::{Action, JobState, Severity};
 use encoder_studio::devices::hiperface::protocol::FreeMemory;
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::link::{Direction, LinkUrl};
@@ -72,8 +72,8 @@ fn each_read_is_a_job_that_succeeds() {
         assert!(desk.encoder().session.is_busy());
         desk.until_ready();
     }
-    let ends: Vec<JobEnd> = desk.studio.services.jobs().skip(jobs).map(|job| job.end.clone()).collect();
-    assert_eq!(ends, vec![JobEnd::Done; 6]);
+    let ends: Vec<JobState> = desk.studio.services.jobs().skip(jobs).map(|job| job.end.clone()).collect();
+    assert_eq!(ends, vec![JobState::Done; 6]);
     assert_eq!(desk.encoder().codes, Some(vec![]));
     assert!(matches!(desk.encoder().analogue[&0x48], Ok((42, _))), "{:?}", desk.encoder().analogue);
     assert!(!desk.encoder().check.as_ref().unwrap().is_empty());

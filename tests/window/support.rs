@@ -3,7 +3,7 @@
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
-use encoder_studio::app::{Given, Opener};
+use encoder_studio::app::{Given, LinkOpener};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,15 +17,15 @@ use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Transport;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
 use encoder_studio::devices::hiperdrive::procedures::DiscoveredDevice;
-use encoder_studio::devices::hiperdrive::state::Discover;
+use encoder_studio::devices::hiperdrive::state::DiscoveryStub;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Review, ReviewState};
 use encoder_studio::devices::interbus::jobs as interbus;
 use encoder_studio::kinds::{Program, program};
-use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
-use encoder_studio::store::{Folders, Store};
+use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkScheme, LinkUrl};
+use encoder_studio::store::{BaseFolders, Store};
 use encoder_studio::worker::Session;
 
 use crate::novo::jobs::Novo;
@@ -121,22 +121,22 @@ impl Outside {
         let novos = self.wires.clone();
         Environment {
             given: Given::default()
-                .with(Opener::new(move |url, store| {
+                .with(LinkOpener::new(move |url, store| {
                     let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
-                    let way = if url.scheme == Scheme::Bridge { Transport::Adapter } else { Transport::ConfigPin };
+                    let way = if url.scheme == LinkScheme::Bridge { Transport::Adapter } else { Transport::ConfigPin };
                     let station =
                         encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
                     Ok(Session::over(link, wire.clock(), station, store, None))
                 }))
-                .with(Opener::new(move |url, store| {
+                .with(LinkOpener::new(move |url, store| {
                     let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
                     let station =
                         encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
-                    Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
+                    Ok(Session::for_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
                 }))
-                .with(Opener::new(move |url, store| {
-                    if url.scheme == Scheme::Sim {
+                .with(LinkOpener::new(move |url, store| {
+                    if url.scheme == LinkScheme::Sim {
                         return crate::unhurried::open(url, store);
                     }
                     let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
@@ -144,13 +144,13 @@ impl Outside {
                         encoder_studio::devices::hiperdrive::procedures::Station::from_query(&url.query, None, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
                     let way = hiperdrive::DeviceConnection { wire: link, port: None, station, target: None };
-                    Ok(Session::to_target(way, wire.clock(), store))
+                    Ok(Session::for_target(way, wire.clock(), store))
                 }))
-                .with(Opener::new(move |url, store| {
+                .with(LinkOpener::new(move |url, store| {
                     let Some(wire) = novos.get(&url.target) else { return crate::novo::jobs::open(url, store) };
                     Ok(Session::with(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
                 }))
-                .with(Opener::new(move |url, store| {
+                .with(LinkOpener::new(move |url, store| {
                     if url.to_string() == HANGING {
                         loop {
                             std::thread::park();
@@ -159,19 +159,19 @@ impl Outside {
                     while url.to_string() == SLOW && !opens.load(Ordering::SeqCst) {
                         std::thread::sleep(Duration::from_millis(1));
                     }
-                    let leads_to_port = url.scheme == Scheme::Sim || url.target == SLOW.trim_start_matches("tcp:");
+                    let leads_to_port = url.scheme == LinkScheme::Sim || url.target == SLOW.trim_start_matches("tcp:");
                     let target = if leads_to_port { PORT } else { &url.target };
                     let wire = wires.get(target).ok_or_else(|| LinkError::new(target, LinkErrorKind::NotFound))?;
                     let station = Station::from_query(&url.query, MARGIN)?;
                     let mut link = TestLink::plug_into(wire)?;
                     link.set_format(station.format)?;
-                    let is_virtual = url.scheme == Scheme::Sim;
+                    let is_virtual = url.scheme == LinkScheme::Sim;
                     Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
                 }))
-                .with(Discover::new(move || Ok(found.clone()))),
+                .with(DiscoveryStub::new(move || Ok(found.clone()))),
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
-            folders: Folders::at(&self.path("work"), &self.path("home")),
+            folders: BaseFolders::at(&self.path("work"), &self.path("home")),
             ..Environment::real(self.store(), self.program.studio)
         }
     }

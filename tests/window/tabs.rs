@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use encoder_studio::app::connect::{Connect, ConnectAction};
+use encoder_studio::app::connect::{ConnectAction, ConnectDialog};
 use encoder_studio::app::{Studio, Tab};
 use encoder_studio::devices::hiperdrive::state::{Discovery, DiscoveryAction, DiscoveryFinder};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
@@ -86,11 +86,11 @@ pub(crate) fn choose_answer(at: usize) -> ConnectAction {
 }
 
 /// Returns the search of a dialog.
-pub(crate) fn search(dialog: &Connect) -> Option<&Search> {
+pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
     dialog.finder::<SearchFinder>()?.search.as_ref()
 }
 
 /// Returns the question to the network of a dialog.
-pub(crate) fn discovery(dialog: &Connect) -> Option<&Discovery> {
+pub(crate) fn discovery(dialog: &ConnectDialog) -> Option<&Discovery> {
     dialog.finder::<DiscoveryFinder>()?.discovery.as_ref()
 }

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use encoder_studio::app::review::OperationTexts;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{COMMON, Catalogue};
-use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text};
+use encoder_studio::app::{JobState, Language, Notice, Studio, Text};
 use encoder_studio::buses::bridge;
 use encoder_studio::devices::hiperface::state::explain as words;
 use encoder_studio::devices::hiperface::state::{Encoder, ReviewState};
@@ -80,7 +80,7 @@ pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.standing().iter().for_each(|notice| check_notice(notice));
     for job in studio.services.jobs() {
         check(&job.title);
-        if let JobEnd::Failed(why) = &job.end {
+        if let JobState::Failed(why) = &job.end {
             check(why);
         }
     }

@@ -12,7 +12,7 @@ use std::{env, fs, thread};
 use encoder_studio::app::{Action, ColorScheme, Environment, Language, Settings, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
-use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Measure, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, PositionUnit};
 use encoder_studio::kinds::program;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
@@ -170,15 +170,15 @@ fn values_typed_for_a_drive_stay_in_their_window() {
     let pitch = |nanometres| Some(Length { nanometres });
     act(&mut first, Hiperdrive::SetPitch(ONE, pitch(4_000_000)));
     act(&mut second, Hiperdrive::SetPitch(two, pitch(5_000_000)));
-    act(&mut second, Hiperdrive::SetMeasure(Measure::Degrees));
+    act(&mut second, Hiperdrive::SetMeasure(PositionUnit::Degrees));
     let all = ["1: 4000000", "2: 5000000", "Degrees"];
     combine_spreads([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
     assert_eq!((unit(&first).pitch(two), unit(&second).pitch(ONE)), (None, None));
-    assert_eq!(unit(&first).measure, Measure::Steps);
+    assert_eq!(unit(&first).measure, PositionUnit::Steps);
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
     with_drives(&mut later);
     assert_eq!((unit(&later).pitch(ONE), unit(&later).pitch(two)), (pitch(4_000_000), pitch(5_000_000)));
-    assert_eq!(unit(&later).measure, Measure::Degrees);
+    assert_eq!(unit(&later).measure, PositionUnit::Degrees);
 }
 
 const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";

@@ -37,5 +37,5 @@ pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, O
     let wire = Box::new(SimLink::connect(connection, clock.clone()));
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
     let station = Station::from_query(&url.query, None, MARGIN)?;
-    Ok(Session::to_target(DeviceConnection { wire, port: Some(port), station, target: Some(target) }, clock, store))
+    Ok(Session::for_target(DeviceConnection { wire, port: Some(port), station, target: Some(target) }, clock, store))
 }

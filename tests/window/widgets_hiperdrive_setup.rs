@@ -9,7 +9,7 @@ use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Studio, Text, connect};
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::TargetState;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
 use encoder_studio::devices::hiperdrive::state::axis::AxisStep;
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Mark, Motor};
@@ -301,7 +301,7 @@ fn the_layout_of_a_step_does_not_shift() {
     screen.steps();
     assert_eq!(places(&screen), before, "with control");
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Lead(Goal::Enabled))));
+    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Lead(TargetState::Enabled))));
     screen.until("it is enabled", |studio| {
         studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Enabled))
     });
@@ -313,7 +313,7 @@ fn the_layout_of_a_step_does_not_shift() {
     assert!(screen.shows("Fault 8203") && screen.is_enabled("hd_axis.acknowledge"));
     assert!(!screen.is_enabled("hd_axis.jog_up") && !screen.is_enabled("hd_axis.jog_down"));
     assert_eq!(places(&screen), before, "in a fault");
-    let scale = ParameterNumber::of_drive(154, DriveNumber::FIRST).unwrap();
+    let scale = ParameterNumber::for_drive(154, DriveNumber::FIRST).unwrap();
     unit(&screen).with(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
     screen.until("somebody else has set the scale", |studio| {
         studio.hiperdrive().is_some_and(|own| own.axis().unwrap().invalidated_text() == Some(AxisStep::Scale))

@@ -21,7 +21,7 @@ fn next_picture(screen: &Screen) -> Duration {
 #[test]
 fn an_idle_window_requests_no_frame() {
     let mut screen = Screen::new_form(SIZE);
-    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE) {
+    for page in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE) {
         screen.click(page);
         for _ in 0..30 {
             screen.harness.step();

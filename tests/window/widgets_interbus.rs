@@ -26,7 +26,7 @@ fn cam(number: u8) -> CamNumber {
 fn page() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {
-        studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+        studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
     });
     screen.click("page.cams");
     screen

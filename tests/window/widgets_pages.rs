@@ -10,7 +10,7 @@ use encoder_studio::app::{Action, ColorScheme, FileQuestion, Language, Studio};
 use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
-use encoder_studio::devices::ssi::state::{Edit, Field, Input, SsiAction as Ssi};
+use encoder_studio::devices::ssi::state::{Edit, Field, FieldInput, SsiAction as Ssi};
 
 use crate::screen::Screen;
 use crate::support::{GATE, HANGING, KIT, Outside, PORT};
@@ -27,7 +27,7 @@ fn check_every_page(screen: &mut Screen, size: [f32; 2]) {
         for theme in [ColorScheme::Dark, ColorScheme::Light] {
             screen.act(Action::SetLanguage(language));
             screen.act(Action::SetTheme(theme));
-            for page in encoder_studio::kinds::program().tabs.page_words(screen.studio().settings.tab) {
+            for page in encoder_studio::kinds::program().tabs.page_text_ids(screen.studio().settings.tab) {
                 screen.click(page);
                 screen.check_language();
                 for id in ALWAYS {
@@ -127,7 +127,7 @@ fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
     {
         let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
         screen.until("it is read", |studio| {
-            studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+            studio.interbus().is_some_and(|own| own.known_program_count() == 8 && own.session.is_ready())
         });
         let id = screen.studio().interbus().unwrap().session.id;
         screen.act(Action::device(id, Interbus::Check));
@@ -154,9 +154,9 @@ fn every_page_of_an_ssi_layout_is_drawn() {
     for action in [
         Ssi::AddErrorBit,
         Ssi::AddErrorBit,
-        Ssi::Enter(Field::Parity, Input::Choice(1)),
-        Ssi::Enter(Field::Repeat, Input::Switch(true)),
-        Ssi::Enter(Field::Singleturn, Input::Number(99)),
+        Ssi::Enter(Field::Parity, FieldInput::Choice(1)),
+        Ssi::Enter(Field::Repeat, FieldInput::Switch(true)),
+        Ssi::Enter(Field::Singleturn, FieldInput::Number(99)),
     ] {
         screen.act(Action::device(id, action));
     }
@@ -282,7 +282,7 @@ fn a_search_is_started_and_a_result_chosen_by_click() {
 #[test]
 fn f1_opens_help_and_escape_closes_it() {
     let mut screen = Screen::new_form(SMALL);
-    for (page, help) in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
+    for (page, help) in encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
         "help.memory",
         "help.values",
@@ -305,7 +305,7 @@ fn f1_opens_help_and_escape_closes_it() {
 #[test]
 fn language_and_theme_change_with_one_click() {
     let mut screen = Screen::new_form(LARGE);
-    let pages = encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE);
+    let pages = encoder_studio::kinds::program().tabs.page_text_ids(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
     screen.click("shell.language");
     assert_eq!(screen.studio().settings.language, Language::German);

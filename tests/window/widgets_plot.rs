@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
+use encoder_studio::app::recorder::{Cursor, Recorder, TriggerCondition, TriggerState};
 use encoder_studio::app::{Action, FileQuestion};
 use encoder_studio::app::{Language, RecorderOwner as Of, recorder};
 
@@ -188,7 +188,7 @@ fn a_trigger_can_be_set_armed_and_switched_off() {
     screen.harness.get_by_role_and_label(Role::RadioButton, &falling).click();
     screen.steps();
     screen.click("trigger.arm");
-    assert_eq!(recorder(&screen).trigger().unwrap().0.when, When::Falling);
+    assert_eq!(recorder(&screen).trigger().unwrap().0.when, TriggerCondition::Falling);
     let (trigger, state) = recorder(&screen).trigger().unwrap();
     assert_eq!((trigger.level, state), (250.5, TriggerState::Armed));
     screen.click("recorder.disarm");

@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::devices::ssi::state::{Field, Input, SearchState, SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{Field, FieldInput, SearchState, SsiAction as Ssi, TrialInput};
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -41,7 +41,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;
     for id_of_entry in ["ssi_trial.position", "ssi_trial.bits_label"] {
-        screen.act(Action::device(id, Ssi::Try(Try::Live)));
+        screen.act(Action::device(id, Ssi::Try(TrialInput::Live)));
         let label = screen.say(id_of_entry);
         screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
         screen.steps();
@@ -83,7 +83,7 @@ fn frames_of_a_file_are_listed_and_tried() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frames.txt");
     std::fs::write(&path, "000110110010011111011101100\n".repeat(20)).unwrap();
-    screen.act(Action::device(id, Ssi::Enter(Field::Code, Input::Choice(1))));
+    screen.act(Action::device(id, Ssi::Enter(Field::Code, FieldInput::Choice(1))));
     screen.act(Action::device(id, Ssi::FindIn(path)));
     screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     screen.click("page.find");

@@ -102,7 +102,7 @@ fn actions_a_field_does_not_allow_are_disabled() {
     screen.click("page.memory");
     assert!(screen.is_enabled("memory.delete"), "it is the last");
     let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
-    let code = encoder_studio::devices::hiperface::protocol::CodeNumber::ZERO;
+    let code = encoder_studio::devices::hiperface::protocol::AccessCodeNumber::ZERO;
     let status = encoder_studio::devices::hiperface::state::forms::new_field(size, code, true);
     let create = encoder_studio::devices::hiperface::jobs::Change::CreateField { number: 1, status };
     screen.ask(Hiperface::Plan(create));

@@ -4,7 +4,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::sim as biss;
-use encoder_studio::devices::biss::sim::Port;
+use encoder_studio::devices::biss::sim::UbicomPort;
 use encoder_studio::devices::hiperdrive::sim as hiperdrive;
 use encoder_studio::devices::hiperdrive::sim::Target;
 use encoder_studio::devices::hiperface::sim as hiperface;
@@ -33,7 +33,7 @@ enum End {
     /// HIPERFACE encoders.
     Hiperface(Arc<Mutex<Bus>>),
     /// A BiSS encoder's configuration pin.
-    Pin(Arc<Mutex<Port>>),
+    Pin(Arc<Mutex<UbicomPort>>),
     /// An adapter on a BiSS encoder's bus.
     Adapter(Arc<Mutex<Adapter>>),
     /// A gateway before an INTERBUS encoder.
@@ -311,6 +311,6 @@ fn novo(query: &str) -> Virtual {
     Virtual::from_pairs(&pairs(query)).unwrap()
 }
 
-fn port(query: &str) -> Port {
-    Port::new(&biss::Config::from_pairs(&pairs(query)).unwrap())
+fn port(query: &str) -> UbicomPort {
+    UbicomPort::new(&biss::Config::from_pairs(&pairs(query)).unwrap())
 }

@@ -7,10 +7,10 @@ use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
-use encoder_studio::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize};
+use encoder_studio::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState, forms, rules};
 use encoder_studio::kinds::program;
-use encoder_studio::profile::Document;
+use encoder_studio::profile::ProfileDocument;
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
 
 use crate::support::{Desk, is_review};
@@ -24,7 +24,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
     let staged = &desk.encoder().staged;
-    assert_eq!((staged.on_device(0, RATED), staged.byte(0, RATED)), (Some(0x22), Some(0x23)));
+    assert_eq!((staged.device_byte(0, RATED), staged.byte(0, RATED)), (Some(0x22), Some(0x23)));
     assert_eq!(desk.wire().field(0)[RATED], 0x22);
 
     desk.command(DeviceCommand::Review);
@@ -44,7 +44,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     assert_eq!((committed.written.ops, committed.written.write_cycles), (1, 1));
     assert_eq!(desk.wire().field(0)[RATED], 0x23);
-    assert_eq!(desk.encoder().staged.on_device(0, RATED), Some(0x23));
+    assert_eq!(desk.encoder().staged.device_byte(0, RATED), Some(0x23));
     assert!(!desk.encoder().staged.is_dirty());
     assert_eq!(desk.notice_count("session.written"), 1);
     desk.ask(Hiperface::CloseReview);
@@ -58,7 +58,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     let backup = committed.backup.clone().unwrap();
-    let profile = Document::parse(&read_text(&backup).unwrap(), program().studio.formats)
+    let profile = ProfileDocument::parse(&read_text(&backup).unwrap(), program().studio.formats)
         .unwrap()
         .body
         .into_profile::<HiperfaceProfile>()
@@ -223,14 +223,14 @@ fn changes_that_would_discard_edits_are_refused() {
 #[test]
 fn a_field_with_an_unknown_access_code_is_not_changed() {
     let mut desk = Desk::at_port("codes=0:9D");
-    let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", CodeNumber::ZERO);
+    let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", AccessCodeNumber::ZERO);
     let small = FieldSize::from_bytes(16).unwrap();
     let sent = desk.wire().sent();
     for change in [
         Change::LockField { number: 0, lock: true },
         Change::DeleteField { number: 0 },
         Change::ResizeField { number: 0, size: small },
-        Change::ChangeCode { number: CodeNumber::ZERO, new: forms::access_code("11").unwrap() },
+        Change::ChangeCode { number: AccessCodeNumber::ZERO, new: forms::access_code("11").unwrap() },
     ] {
         assert_eq!(refused(&mut desk, change), why);
     }
@@ -243,13 +243,13 @@ fn an_access_code_is_checked_and_never_shown() {
     let mut desk = Desk::at_port("codes=0:9D");
     for (code, id) in [("1C", "session.code_wrong"), ("9D", "session.code_fits")] {
         let code = forms::access_code(code).unwrap();
-        desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+        desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
         desk.until_ready();
         assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), id);
     }
     let log = crate::support::log(&desk.studio);
     assert!(!log.contains("9D") && !log.contains("1C"), "{log}");
-    desk.ask(Hiperface::UseCode { number: CodeNumber::new(2).unwrap(), code: forms::access_code("11").unwrap() });
+    desk.ask(Hiperface::UseCode { number: AccessCodeNumber::new(2).unwrap(), code: forms::access_code("11").unwrap() });
     desk.until_ready();
     assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), "session.code_unused");
 }
@@ -281,7 +281,7 @@ fn late_results_for_another_encoder_are_dropped() {
     desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
-    let document = Box::new(Document::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
+    let document = Box::new(ProfileDocument::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
     desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
@@ -289,7 +289,7 @@ fn late_results_for_another_encoder_are_dropped() {
 /// Returns a second field, so that the first is no longer the last.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::new_form("");
-    let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), CodeNumber::ZERO, true);
+    let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), AccessCodeNumber::ZERO, true);
     change(&mut desk, Change::CreateField { number: 1, status });
     assert_eq!(desk.encoder().staged.device().len(), 2);
     desk
@@ -337,7 +337,7 @@ fn changes_against_the_field_rules_are_refused_with_a_reason() {
     assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: larger }), not_last);
     assert_eq!(rules::resize(memory, &first, larger, &desk.encoder().staged), Err(not_last));
 
-    let status = DataFieldStatus::new(larger, CodeNumber::ZERO, true);
+    let status = DataFieldStatus::new(larger, AccessCodeNumber::ZERO, true);
     assert_eq!(refused(&mut desk, Change::CreateField { number: 5, status }).id(), "plan.not_next");
     assert_eq!(refused(&mut desk, Change::DeleteField { number: 7 }).id(), "encoder.no_field");
 }
@@ -347,7 +347,7 @@ fn a_field_exceeding_the_memory_is_refused() {
     let mut desk = Desk::new_form("");
     // 112 blocks less the name plate's two: 13 fields of 128 bytes leave six blocks.
     let size = FieldSize::from_bytes(128).unwrap();
-    let status = DataFieldStatus::new(size, CodeNumber::ZERO, false);
+    let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, false);
     for number in 1..=13 {
         change(&mut desk, Change::CreateField { number, status });
     }
@@ -355,7 +355,7 @@ fn a_field_exceeding_the_memory_is_refused() {
     assert_eq!((memory.blocks, memory.fields), (6, 14));
     let why = refused(&mut desk, Change::CreateField { number: 14, status });
     assert_eq!(why.id(), "plan.no_memory");
-    assert_eq!(rules::create(memory, size, CodeNumber::ZERO, false), Err(why));
+    assert_eq!(rules::create(memory, size, AccessCodeNumber::ZERO, false), Err(why));
 }
 
 #[test]
@@ -388,7 +388,7 @@ fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
     desk.put(0, 0, b"X");
     assert_eq!(desk.notice_ids(Severity::Error), ["encoder.code_unknown"]);
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
-    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
     desk.until("the field is readable", |studio| studio.hiperface().unwrap().field(0).unwrap().bytes.is_some());
     desk.until_ready();
     desk.put(0, 0, b"X");
@@ -418,6 +418,6 @@ fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
     desk.open("serial:/dev/enc0");
     desk.until_read();
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
-    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.ask(Hiperface::UseCode { number: AccessCodeNumber::ZERO, code });
     desk.until("the edit is back", |studio| studio.hiperface().unwrap().staged.byte(0, 1) == Some(b'Y'));
 }

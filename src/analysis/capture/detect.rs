@@ -3,7 +3,7 @@
 
 use super::CaptureError;
 use super::encoding::decode_head;
-use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
+use super::header::{Columns, TimeUnit, VoltUnit, column_unit, is_unit};
 use super::import::{Number, is_no_value, number, whole};
 
 pub const HEAD: usize = 64 << 10;
@@ -77,7 +77,7 @@ impl Layout {
     /// [`CaptureError`] if the bytes contain no table with sine and cosine.
     pub fn detect(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
-        let text = whole_lines(&decoded, head.len());
+        let text = complete_lines(&decoded, head.len());
         if text.iter().all(u8::is_ascii_whitespace) {
             return Err(CaptureError::Empty);
         }
@@ -87,7 +87,7 @@ impl Layout {
         })?;
         let lines = lines(text, delimiter);
         let decimal_comma = hints.decimal_comma.unwrap_or_else(|| decimal_comma(&lines));
-        let usual = usual_width(&lines, decimal_comma);
+        let usual = most_common_width(&lines, decimal_comma);
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
         let width = data.first().map_or(0, |line| filled(&line.fields));
@@ -108,7 +108,7 @@ impl Layout {
         };
         let unit = |column: usize| {
             let of_line = |line: &Vec<String>| line.get(column.checked_sub(1)?).map(|name| name.to_lowercase());
-            header.iter().filter_map(of_line).find_map(|name| unit_of(&name).map(str::to_owned))
+            header.iter().filter_map(of_line).find_map(|name| column_unit(&name).map(str::to_owned))
         };
         let time_unit = columns.time.and_then(unit).and_then(|unit| TimeUnit::parse(&unit));
         let volt_unit = unit(columns.sine).and_then(|unit| VoltUnit::parse(&unit)).unwrap_or_default();
@@ -140,7 +140,7 @@ fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) ->
 }
 
 /// Returns the head without a truncated last line; `read` is the number of bytes read.
-fn whole_lines(head: &[u8], read: usize) -> &[u8] {
+fn complete_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
         Some(end) if read + 3 >= HEAD => head.get(..=end).unwrap_or(head),
         _ => head,
@@ -230,7 +230,7 @@ fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
 
 /// Returns the most frequent width of the rows in which at least half the fields are numbers, or the larger width in a
 /// tie.
-fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
+fn most_common_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
     for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
         *counts.entry(filled(&line.fields)).or_default() += 1;

@@ -15,7 +15,7 @@ enum Encoding {
 
 /// Decoder that converts a table to UTF-8 piece by piece and drops the byte order mark.
 #[derive(Debug)]
-pub(super) struct Decoder {
+pub(super) struct Utf8Decoder {
     encoding: Encoding,
     /// Number of remaining bytes of the byte order mark.
     mark: usize,
@@ -27,10 +27,10 @@ pub(super) struct Decoder {
 
 /// Converts the beginning of a table to UTF-8.
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
-    Decoder::of(head).decode(head)
+    Utf8Decoder::of(head).decode(head)
 }
 
-impl Decoder {
+impl Utf8Decoder {
     /// Detects the encoding from the beginning of a table. Without a byte order mark, UTF-16 is recognised by the zero
     /// bytes in the first two characters.
     pub(super) fn of(head: &[u8]) -> Self {
@@ -42,7 +42,7 @@ impl Decoder {
             [0, 1..=255, 0, 1..=255, ..] => (Encoding::Utf16Be, 0),
             _ => (Encoding::Bytes, 0),
         };
-        Decoder { encoding, mark, half: None, high: None }
+        Utf8Decoder { encoding, mark, half: None, high: None }
     }
 
     pub(super) fn decode<'b>(&mut self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
@@ -61,13 +61,13 @@ impl Decoder {
         for &byte in bytes {
             match self.half.take() {
                 None => self.half = Some(byte),
-                Some(first) => self.take_unit(unit([first, byte]), &mut text),
+                Some(first) => self.push_unit(unit([first, byte]), &mut text),
             }
         }
         text.into_bytes()
     }
 
-    fn take_unit(&mut self, unit: u16, text: &mut String) {
+    fn push_unit(&mut self, unit: u16, text: &mut String) {
         if self.high.is_none() && (0xD800..0xDC00).contains(&unit) {
             self.high = Some(unit);
             return;
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     fn decoded(bytes: &[u8], pieces: usize) -> Vec<u8> {
-        let mut decoder = Decoder::of(bytes);
+        let mut decoder = Utf8Decoder::of(bytes);
         let mut out = Vec::new();
         for piece in bytes.chunks(pieces) {
             out.extend_from_slice(&decoder.decode(piece));

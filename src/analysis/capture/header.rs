@@ -122,7 +122,7 @@ fn is_degrees(text: &str) -> bool {
 }
 
 fn is_in_volts(name: &str) -> bool {
-    unit_of(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
+    column_unit(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
 }
 
 /// Returns whether a lower-case string is a unit of time, voltage or angle.
@@ -133,7 +133,7 @@ pub(super) fn is_unit(text: &str) -> bool {
 /// Returns a column name in lower case and without its unit: `Time [ms]` becomes `time`.
 fn bare_name(name: &str) -> String {
     let name = name.trim().to_lowercase();
-    let bare = match unit_of(&name) {
+    let bare = match column_unit(&name) {
         Some(unit) => name.strip_suffix([']', ')']).unwrap_or(&name).strip_suffix(unit).unwrap_or(&name).to_owned(),
         None => name,
     };
@@ -142,7 +142,7 @@ fn bare_name(name: &str) -> String {
 
 /// Returns the unit in a lower-case column name, in brackets or after a space, a slash or an underscore: `ms` in
 /// `time_ms`. A name entirely in brackets, as in a line of units, is a unit as a whole.
-pub(super) fn unit_of(name: &str) -> Option<&str> {
+pub(super) fn column_unit(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);
     let (_, unit) = inside.rsplit_once(['[', '(', '/', '_', ' '])?;
@@ -185,7 +185,7 @@ mod tests {
             ("cos", None),
         ];
         for (name, unit) in rows {
-            assert_eq!(unit_of(name), unit, "{name}");
+            assert_eq!(column_unit(name), unit, "{name}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::detect::{HEAD, Layout, TableHints};
-use super::encoding::Decoder;
+use super::encoding::Utf8Decoder;
 use super::header::Columns;
 use super::{Capture, CaptureError, Wires};
 
@@ -18,7 +18,7 @@ pub struct Import {
     ends: Vec<usize>,
     ended: usize,
     last: Option<u8>,
-    decoder: Decoder,
+    decoder: Utf8Decoder,
     /// First skipped row, and the error for its missing value.
     first_left_out: Option<(u64, CaptureError)>,
     taken: ColumnChoice,
@@ -59,7 +59,7 @@ impl Import {
     pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
         let import = Import::with(Layout::detect(head, hints)?);
-        Ok(Import { decoder: Decoder::of(head), ..import })
+        Ok(Import { decoder: Utf8Decoder::of(head), ..import })
     }
 
     pub fn with(layout: Layout) -> Self {
@@ -87,7 +87,7 @@ impl Import {
             ends: vec![0; 64],
             ended: 0,
             last: None,
-            decoder: Decoder::of(&[]),
+            decoder: Utf8Decoder::of(&[]),
             first_left_out: None,
             taken,
             capture,

@@ -7,7 +7,7 @@ use super::lines::Interference;
 use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, Severity, severity};
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Changes {
+pub struct DiagnosisChanges {
     /// Findings that are new or became worse, most severe first.
     pub worse: Vec<DiagnosisFinding>,
     /// Findings that changed without becoming worse.
@@ -33,8 +33,8 @@ const LEAST_NOISE: f64 = 0.001;
 /// Relative difference from which an amplitude counts as changed.
 const AMPLITUDE: f64 = 0.02;
 
-pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
-    let mut changes = Changes::default();
+pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
+    let mut changes = DiagnosisChanges::default();
     let is_worse = |finding: &&DiagnosisFinding| is_worse(finding, before, after);
     changes.worse.extend(after.findings.iter().filter(is_worse));
     match (before.amplitude_v, after.amplitude_v) {
@@ -54,7 +54,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
 }
 
 /// Compares noise and spectral lines by magnitude.
-fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
+fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut DiagnosisChanges) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
         changes.untold.push(ComparisonObstacle::NoSpectrum);
         return;

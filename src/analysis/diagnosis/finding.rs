@@ -1,7 +1,7 @@
 //! Findings of a signal diagnosis, with their magnitudes.
 
 use super::OutOfLimits;
-use crate::analysis::ellipse::Channel;
+use crate::analysis::ellipse::SignalChannel;
 use crate::analysis::wiring::Wire;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,12 +27,12 @@ pub enum FindingKind {
     AtRest,
     /// One channel is constant while the other one changes.
     Dead {
-        channel: Channel,
-        stuck: Stuck,
+        channel: SignalChannel,
+        stuck: StuckLevel,
     },
     /// One channel has half the amplitude of the other, because one of its two wires is open.
     Half {
-        channel: Channel,
+        channel: SignalChannel,
         /// Ratio of this channel's amplitude to that of the other channel.
         share: f64,
     },
@@ -78,7 +78,7 @@ pub enum FindingKind {
         share: f64,
     },
     Clipping {
-        channel: Channel,
+        channel: SignalChannel,
         /// Clipping level in volts.
         volts: f64,
         /// Fraction of the samples at the clipping level.
@@ -159,7 +159,7 @@ pub enum FindingKind {
 
 /// Level of the wires of a channel that does not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stuck {
+pub enum StuckLevel {
     /// Both wires are at the same level: one is open, or they are shorted to each other.
     Together,
     Ground(Wire),

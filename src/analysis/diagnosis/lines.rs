@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::LEAST_LINE;
-use crate::analysis::ellipse::Correction;
+use crate::analysis::ellipse::EllipseCorrection;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
@@ -108,12 +108,13 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     let projector =
         FrequencyProbe { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
     let spacing_hz = spectra.0.spacing_hz();
-    let mut found: Vec<StrongLine> = candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
+    let mut found: Vec<StrongLine> = peak_candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
         .into_iter()
         .filter_map(|at| {
-            let louder = |at: usize| height(spectra.0.amplitudes_v(), at) > height(spectra.1.amplitudes_v(), at);
+            let louder =
+                |at: usize| magnitude_at(spectra.0.amplitudes_v(), at) > magnitude_at(spectra.1.amplitudes_v(), at);
             let spectrum = if louder(at) { &spectra.0 } else { &spectra.1 };
-            projector.line(spectrum.peak_at(at).frequency_hz)
+            projector.line(spectrum.interpolate_peak(at).frequency_hz)
         })
         .filter(|found| found.line.volts >= LEAST_LINE * analysis.ellipse.amplitude_v)
         .collect();
@@ -138,7 +139,7 @@ fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
     }
 }
 
-fn height(lines: &[f64], at: usize) -> f64 {
+fn magnitude_at(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
@@ -147,9 +148,10 @@ fn height(lines: &[f64], at: usize) -> f64 {
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = REACH.min(both.len());
-    let peak = (first..both.len()).max_by(|a, b| height(both, *a).total_cmp(&height(both, *b))).unwrap_or(0);
+    let peak =
+        (first..both.len()).max_by(|a, b| magnitude_at(both, *a).total_cmp(&magnitude_at(both, *b))).unwrap_or(0);
     // An uneven motion widens a line, and each harmonic in proportion to its order.
-    let above = |at: usize| height(both, at) > WIDTH * height(both, peak);
+    let above = |at: usize| magnitude_at(both, at) > WIDTH * magnitude_at(both, peak);
     let up = (peak..both.len()).take_while(|at| above(*at)).count();
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
     let width = up.max(down).saturating_sub(1);
@@ -165,23 +167,23 @@ fn signal(both: &[f64]) -> Vec<bool> {
     belongs
 }
 
-fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
+fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
     let free = |at: usize| !is_signal.get(at).copied().unwrap_or(true);
     let mut found: Vec<usize> = (1..both.len().saturating_sub(1))
         .filter(|at| {
-            let own = height(both, *at);
-            let peak = own >= height(both, at - 1) && own > height(both, at + 1);
+            let own = magnitude_at(both, *at);
+            let peak = own >= magnitude_at(both, at - 1) && own > magnitude_at(both, at + 1);
             free(*at) && peak && own >= LEAST_LINE / 2.0 * amplitude
         })
         .collect();
-    found.sort_by(|a, b| height(both, *b).total_cmp(&height(both, *a)));
+    found.sort_by(|a, b| magnitude_at(both, *b).total_cmp(&magnitude_at(both, *a)));
     let mut taken: Vec<usize> = Vec::new();
     // Lines at noise level are never reported, no matter how many exist.
     for at in found.into_iter().take(4 * MOST) {
         let near =
             (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS).filter(|other| free(*other) && other.abs_diff(at) > REACH);
-        let floor = median(near.map(|other| height(both, other)).collect()).unwrap_or(0.0);
-        if height(both, at) >= ABOVE * floor && taken.iter().all(|other| other.abs_diff(at) > REACH) {
+        let floor = median(near.map(|other| magnitude_at(both, other)).collect()).unwrap_or(0.0);
+        if magnitude_at(both, at) >= ABOVE * floor && taken.iter().all(|other| other.abs_diff(at) > REACH) {
             taken.push(at);
         }
     }
@@ -248,7 +250,7 @@ struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
     analysis: &'a Analysis,
-    correction: Correction,
+    correction: EllipseCorrection,
     rate_hz: f64,
 }
 

@@ -11,11 +11,11 @@ mod lines;
 mod shape;
 mod trust;
 
-pub use compare::{Changes, ComparisonObstacle, compare};
-pub use finding::{DiagnosisFinding, FindingKind, Severity, Stuck};
+pub use compare::{ComparisonObstacle, DiagnosisChanges, compare};
+pub use finding::{DiagnosisFinding, FindingKind, Severity, StuckLevel};
 pub use lines::Interference;
 
-use super::ellipse::{Channel, FitError};
+use super::ellipse::{FitError, SignalChannel};
 use super::position_error::Samples;
 use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, within};
 use super::signal_analysis::{Analysis, AnalysisError};
@@ -75,7 +75,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
     let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
     levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
     match analysis {
-        Err(error) => without_ellipse(record, error, &mut say),
+        Err(error) => diagnose_without_ellipse(record, error, &mut say),
         Ok(analysis) => {
             let amplitude = analysis.ellipse.amplitude_v;
             parameters(analysis, limits, &mut say);
@@ -164,7 +164,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
 }
 
 /// Diagnoses samples to which no ellipse could be fitted; their distribution still reveals the cause.
-fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
+fn diagnose_without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
     match error {
         AnalysisError::AtRest => say(Severity::Warning, FindingKind::AtRest),
         AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, FindingKind::Still),
@@ -176,11 +176,11 @@ fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnM
     }
 }
 
-fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
+fn stuck(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
     let references = record.references_v.unwrap_or_default();
     let (values, reference, wires) = match channel {
-        Channel::Sine => (record.samples.sine_v, references.0, (Wire::Sin, Wire::Refsin)),
-        Channel::Cosine => (record.samples.cosine_v, references.1, (Wire::Cos, Wire::Refcos)),
+        SignalChannel::Sine => (record.samples.sine_v, references.0, (Wire::Sin, Wire::Refsin)),
+        SignalChannel::Cosine => (record.samples.cosine_v, references.1, (Wire::Cos, Wire::Refcos)),
     };
     let difference = mean(values).unwrap_or(0.0);
     let level = mean(reference);
@@ -188,10 +188,10 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     let wires = level.map(|level| [(wires.0, level + difference), (wires.1, level)]);
     let at = |is: fn(f64) -> bool| wires.and_then(|wires| wires.into_iter().find(|(_, level)| is(*level)));
     match (at(|level| level < RAILS_V.0), at(|level| level > RAILS_V.1)) {
-        _ if difference.abs() <= SAME_LEVEL_V => Stuck::Together,
-        (Some((wire, _)), _) => Stuck::Ground(wire),
-        (None, Some((wire, _))) => Stuck::Supply(wire),
-        (None, None) => Stuck::Apart(difference),
+        _ if difference.abs() <= SAME_LEVEL_V => StuckLevel::Together,
+        (Some((wire, _)), _) => StuckLevel::Ground(wire),
+        (None, Some((wire, _))) => StuckLevel::Supply(wire),
+        (None, None) => StuckLevel::Apart(difference),
     }
 }
 
@@ -200,16 +200,16 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {
-        Some((Channel::Sine, 1.0 / ratio))
+        Some((SignalChannel::Sine, 1.0 / ratio))
     } else if within(ratio, HALF) {
-        Some((Channel::Cosine, ratio))
+        Some((SignalChannel::Cosine, ratio))
     } else {
         None
     };
     if let Some((channel, share)) = half {
         say(Severity::Fault, FindingKind::Half { channel, share });
     }
-    let single = trust::single_ended(&analysis.ellipse);
+    let single = trust::detect_single_ended(&analysis.ellipse);
     if let Some(what) = single {
         say(Severity::Fault, what);
     }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::analysis::ellipse::Channel;
+use crate::analysis::ellipse::SignalChannel;
 use crate::analysis::outliers::kept;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
@@ -62,14 +62,18 @@ pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(u
 }
 
 /// Returns the clipped channels, each with its clipping voltage and the fraction of samples at that voltage.
-pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Channel, f64, f64)> {
+pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(SignalChannel, f64, f64)> {
     if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
         return Vec::new();
     }
     let ellipse = &analysis.ellipse;
     let channels = [
-        (Channel::Sine, good(samples, analysis).map(|(y, _)| y).collect::<Vec<f64>>(), ellipse.amplitude_sine_v()),
-        (Channel::Cosine, good(samples, analysis).map(|(_, x)| x).collect(), ellipse.amplitude_v),
+        (
+            SignalChannel::Sine,
+            good(samples, analysis).map(|(y, _)| y).collect::<Vec<f64>>(),
+            ellipse.amplitude_sine_v(),
+        ),
+        (SignalChannel::Cosine, good(samples, analysis).map(|(_, x)| x).collect(), ellipse.amplitude_v),
     ];
     let mut found = Vec::new();
     for (channel, values, amplitude) in channels {

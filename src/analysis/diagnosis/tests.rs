@@ -64,7 +64,7 @@ impl Made {
 
     /// Returns the only finding, apart from uncertain parameters if it is a disturbance.
     #[track_caller]
-    fn finding(&self) -> DiagnosisFinding {
+    fn finding_text(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;
         found.retain(|finding| !matches!(finding.kind, FindingKind::Uncertain { .. }));
         assert_eq!(found.len(), 1, "{found:?}");
@@ -109,14 +109,14 @@ fn amplitude_variation_over_a_revolution_is_not_interference() {
     let mut capture = made(steady, wobbling);
     assert_eq!(capture.diagnosed().interference, Some(vec![]));
     capture.periods = Some(16);
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     let FindingKind::Modulation { share } = finding.kind else { panic!("{finding:?}") };
     assert_eq!(finding.severity, Severity::Notice);
     // The mean over a 36th of a revolution reduces it by a thousandth.
     near(share, 0.04, 3e-4);
     capture.periods = Some(2_000);
     // Less than a revolution does not show it, so the distance from the ellipse is reported.
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     assert!(matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))), "{finding:?}");
 }
 
@@ -124,7 +124,7 @@ fn amplitude_variation_over_a_revolution_is_not_interference() {
 fn interference_is_reported_with_frequency_and_amplitude() {
     for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
         for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
-            let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding();
+            let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding_text();
             let FindingKind::Interference { frequency_hz, volts: found, share, common } = finding.kind else {
                 panic!("{finding:?}")
             };
@@ -139,7 +139,7 @@ fn interference_is_reported_with_frequency_and_amplitude() {
 
 #[test]
 fn interference_is_found_while_the_speed_changes() {
-    let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding();
+    let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding_text();
     let FindingKind::Interference { frequency_hz, volts, common, .. } = finding.kind else { panic!("{finding:?}") };
     near(frequency_hz, 8_000.0, 0.5);
     near(volts, 0.02, 2e-4);
@@ -153,7 +153,7 @@ fn mains_hum_is_reported_with_its_harmonics() {
             let wave = 0.008 * (TAU * mains * time).sin() + 0.006 * (TAU * 3.0 * mains * time + 1.0).sin();
             (sine + wave, cosine + wave)
         };
-        let finding = made(steady, hum).finding();
+        let finding = made(steady, hum).finding_text();
         let FindingKind::Hum { mains_hz, volts, share, common } = finding.kind else { panic!("{finding:?}") };
         assert_eq!((mains_hz, common, finding.severity), (mains, true, Severity::Warning));
         near(volts, 0.01, 5e-5);
@@ -211,7 +211,7 @@ fn a_clipped_channel_is_reported_with_its_voltage() {
         _ => None,
     });
     let (channel, volts, samples) = cut_off.unwrap();
-    assert_eq!(channel, Channel::Cosine);
+    assert_eq!(channel, SignalChannel::Cosine);
     near(volts, 0.45, 1e-9);
     // arccos(0.9)/π of the time, and the samples within 0.2 % below.
     near(samples, 0.1436, 0.003);
@@ -225,38 +225,38 @@ fn broken_wires_are_diagnosed() {
         ..made(steady, dead(level))
     };
     let cases = [
-        ("open at a terminated receiver", made(steady, dead(0.0)), Stuck::Together),
-        ("open elsewhere", made(steady, dead(-0.8)), Stuck::Apart(-0.8)),
-        ("COS at ground", with(-2.4, 2.5), Stuck::Ground(Wire::Cos)),
-        ("COS at 5 V", with(2.4, 2.5), Stuck::Supply(Wire::Cos)),
-        ("REFCOS at ground", with(2.5, 0.0), Stuck::Ground(Wire::Refcos)),
-        ("both together", with(0.0, 2.5), Stuck::Together),
+        ("open at a terminated receiver", made(steady, dead(0.0)), StuckLevel::Together),
+        ("open elsewhere", made(steady, dead(-0.8)), StuckLevel::Apart(-0.8)),
+        ("COS at ground", with(-2.4, 2.5), StuckLevel::Ground(Wire::Cos)),
+        ("COS at 5 V", with(2.4, 2.5), StuckLevel::Supply(Wire::Cos)),
+        ("REFCOS at ground", with(2.5, 0.0), StuckLevel::Ground(Wire::Refcos)),
+        ("both together", with(0.0, 2.5), StuckLevel::Together),
     ];
     for (label, made, expected) in cases {
         let found = made.diagnosed().findings;
         let FindingKind::Dead { channel, stuck } = found[0].kind else { panic!("{label}: {found:?}") };
-        assert_eq!((channel, found[0].severity), (Channel::Cosine, Severity::Fault));
+        assert_eq!((channel, found[0].severity), (SignalChannel::Cosine, Severity::Fault));
         match (stuck, expected) {
-            (Stuck::Apart(found), Stuck::Apart(expected)) => near(found, expected, 1e-4),
+            (StuckLevel::Apart(found), StuckLevel::Apart(expected)) => near(found, expected, 1e-4),
             _ => assert_eq!(stuck, expected, "{label}"),
         }
     }
-    let half = made(steady, |_, _, (sine, cosine)| (sine / 2.0, cosine)).finding();
-    let FindingKind::Half { channel: Channel::Sine, share } = half.kind else { panic!("{half:?}") };
+    let half = made(steady, |_, _, (sine, cosine)| (sine / 2.0, cosine)).finding_text();
+    let FindingKind::Half { channel: SignalChannel::Sine, share } = half.kind else { panic!("{half:?}") };
     near(share, 0.5, 1e-3);
-    let same = made(steady, |_, _, (sine, _)| (sine, -sine)).finding();
+    let same = made(steady, |_, _, (sine, _)| (sine, -sine)).finding_text();
     assert_eq!(same, DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::Same });
     let mut still = made(steady, |_, _, _| (0.0, 0.0));
     still.sine.fill(0.3);
     still.cosine.fill(-0.1);
-    assert_eq!(still.finding(), DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::Still });
+    assert_eq!(still.finding_text(), DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::Still });
 }
 
 #[test]
 fn levels_of_the_references_are_judged_by_the_family() {
     let mut capture = made(steady, |_, _, signal| signal);
     capture.references = Some((vec![2.3; COUNT], vec![3.2; COUNT]));
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     let FindingKind::Level { wire: Wire::Refcos, volts, ok_v: (2.0, 3.0) } = finding.kind else {
         panic!("{finding:?}")
     };
@@ -270,14 +270,14 @@ fn levels_of_the_references_are_judged_by_the_family() {
 fn spikes_are_reported_and_are_not_interference() {
     let mut capture = made(steady, |_, _, signal| signal);
     (0..20).for_each(|at| capture.sine[2_000 * at + 77] = 2.0);
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     let FindingKind::Spikes { count: 20, volts } = finding.kind else { panic!("{finding:?}") };
     assert!(volts > 1.0 && finding.severity == Severity::Notice);
     // One of the spikes is among them.
     for at in 24_000..24_300 {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     assert_eq!(
         finding,
         DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::LetsGo { count: 319, longest: 300 } }
@@ -306,8 +306,8 @@ fn comparing_captures_reports_worse_findings() {
         })
         .diagnosed()
     };
-    assert_eq!(compare(&off, &off), Changes::default());
-    assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), Changes::default(), "what is gone is not worse");
+    assert_eq!(compare(&off, &off), DiagnosisChanges::default());
+    assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), DiagnosisChanges::default(), "what is gone is not worse");
     let on = compare(&hum(0.004, 0.0, 1.0), &hum(0.004, 0.02, 1.0)).worse;
     let [
         DiagnosisFinding {
@@ -401,7 +401,7 @@ fn missing_comparisons_are_reported() {
     assert_eq!(compare(&good, &timeless).untold, [ComparisonObstacle::NoSpectrum]);
     assert_eq!(
         compare(&timeless, &good),
-        Changes { untold: vec![ComparisonObstacle::NoSpectrum], ..Changes::default() }
+        DiagnosisChanges { untold: vec![ComparisonObstacle::NoSpectrum], ..DiagnosisChanges::default() }
     );
     let dead = made(steady, |_, _, (sine, _)| (sine, 0.0)).diagnosed();
     let died = compare(&good, &dead);
@@ -409,7 +409,10 @@ fn missing_comparisons_are_reported() {
     assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { kind: FindingKind::Dead { .. }, .. }]), "{died:?}");
     // The offset of the first capture is not known.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
-    assert_eq!(mended, Changes { untold: vec![ComparisonObstacle::NoEllipseBefore], ..Changes::default() });
+    assert_eq!(
+        mended,
+        DiagnosisChanges { untold: vec![ComparisonObstacle::NoEllipseBefore], ..DiagnosisChanges::default() }
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
 use crate::analysis::ellipse::Ellipse;
-use crate::analysis::position_error::Basis;
+use crate::analysis::position_error::ErrorBasis;
 use crate::analysis::signal_analysis::Analysis;
 
 /// Range of the mean level, in volts, that identifies a single wire. Section 1 of the project's sine/cosine reference
@@ -32,8 +32,8 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
 /// Checks for an ellipse that mistakes harmonics for gain or phase errors and thereby doubles them. The distance from
 /// the ellipse contains noise, so only a motion reveals this.
 pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
-    let Basis::Motion { noise_deg } = analysis.error.basis else { return };
-    let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
+    let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
+    let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
     if corrected_deg > LARGER * raw_deg && corrected_deg - raw_deg > LARGER_DEG.max(noise_deg) {
         say(Severity::Warning, FindingKind::CorrectionHarms { raw_deg, corrected_deg });
     }
@@ -53,7 +53,7 @@ pub(super) fn uncertainty_finding(findings: &[DiagnosisFinding]) -> Option<Findi
 }
 
 /// Reports whether SIN and COS were recorded against ground instead of against their references.
-pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
+pub(super) fn detect_single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
     let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);
     let levels = [sine_v, cosine_v].iter().all(|level| within(*level, WIRE_LEVEL_V));

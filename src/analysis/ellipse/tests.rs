@@ -108,7 +108,7 @@ fn a_fit_in_chunks_equals_a_fit_in_one() {
         moments.add(sine, cosine).unwrap();
     }
     assert_eq!(moments.count(), 20_000);
-    assert_close(&Ellipse::of_moments(&moments).unwrap(), &REFERENCE, 1e-12);
+    assert_close(&Ellipse::from_moments(&moments).unwrap(), &REFERENCE, 1e-12);
 }
 
 #[test]
@@ -131,8 +131,8 @@ fn data_that_is_no_ellipse_is_refused_with_a_reason() {
         ("one channel ends early", &sine[..4], &cosine, FitError::TooFew { points: 4 }),
         ("constant", &vec![1.3; 360], &vec![2.7; 360], FitError::Constant),
         ("no voltage", &zeros, &zeros, FitError::Constant),
-        ("dead sine", &noisy, &cosine, FitError::Dead(Channel::Sine)),
-        ("dead cosine", &sine, &zeros, FitError::Dead(Channel::Cosine)),
+        ("dead sine", &noisy, &cosine, FitError::Dead(SignalChannel::Sine)),
+        ("dead cosine", &sine, &zeros, FitError::Dead(SignalChannel::Cosine)),
         ("the same twice", &sine, &sine, FitError::Line),
         ("the opposite", &sine, &minus, FitError::Line),
         ("four places", &corners.0, &corners.1, FitError::Ambiguous),
@@ -161,5 +161,5 @@ fn an_outline_goes_once_around_the_center() {
         }
     };
     near(ellipse.outline(4), [(0.75, -0.125), (0.25, 0.125), (-0.25, -0.125), (0.25, -0.375), (0.75, -0.125)]);
-    near(ellipse.corrected().outline(4), [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]);
+    near(ellipse.corrected_ellipse().outline(4), [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]);
 }

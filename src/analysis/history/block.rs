@@ -5,21 +5,21 @@ use std::ops::Range;
 
 use super::flags::{FlagBlock, Flags};
 use super::number::Number;
-use super::spread::{Spread, combine_spreads, extremes, extremes_of_eight};
+use super::spread::{RunningStatistics, combine_spreads, extremes, extremes_of_eight};
 use super::{BLOCK, FAN};
 
 #[derive(Clone, Copy)]
-struct Level {
+struct BucketLevel {
     size: usize,
     /// Index within the block of the first bucket of a level.
     start: usize,
 }
 
 /// Levels between the samples and the whole block, coarsest first, in the order in which they are stored.
-const LEVELS: [Level; 3] = [
-    Level { size: FAN * FAN * FAN, start: 0 },
-    Level { size: FAN * FAN, start: FAN },
-    Level { size: FAN, start: FAN + FAN * FAN },
+const LEVELS: [BucketLevel; 3] = [
+    BucketLevel { size: FAN * FAN * FAN, start: 0 },
+    BucketLevel { size: FAN * FAN, start: FAN },
+    BucketLevel { size: FAN, start: FAN + FAN * FAN },
 ];
 
 const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
@@ -66,16 +66,16 @@ impl Bucket {
 
 /// Range of values that contains all values of its sources. An empty range is (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent {
+pub(super) struct ValueRange {
     pub(super) min: f64,
     pub(super) max: f64,
 }
 
-impl Extent {
-    pub(super) const EMPTY: Extent = Extent { min: f64::INFINITY, max: f64::NEG_INFINITY };
+impl ValueRange {
+    pub(super) const EMPTY: ValueRange = ValueRange { min: f64::INFINITY, max: f64::NEG_INFINITY };
 
-    pub(super) fn with(self, other: Extent) -> Extent {
-        Extent {
+    pub(super) fn with(self, other: ValueRange) -> ValueRange {
+        ValueRange {
             min: if other.min < self.min { other.min } else { self.min },
             max: if other.max > self.max { other.max } else { self.max },
         }
@@ -83,9 +83,9 @@ impl Extent {
 }
 
 /// Block of up to `BLOCK` samples. Its memory, except that of the flags, is allocated at once and reused after
-/// [`clear`](Block::clear). A block has few fields, so that many blocks are scanned quickly.
+/// [`clear`](SampleBlock::clear). A block has few fields, so that many blocks are scanned quickly.
 #[derive(Debug)]
-pub(super) struct Block<T> {
+pub(super) struct SampleBlock<T> {
     values: Vec<T>,
     /// All `BUCKETS` buckets. A bucket is valid once its samples are complete.
     buckets: Box<[Bucket]>,
@@ -96,14 +96,14 @@ pub(super) struct Block<T> {
     base: Option<T>,
     flags: FlagBlock,
     /// Spread of the whole block if the block is full and contains a value.
-    spread: Option<Box<Spread<T>>>,
+    spread: Option<Box<RunningStatistics<T>>>,
 }
 
-impl<T: Number> Block<T> {
+impl<T: Number> SampleBlock<T> {
     pub(super) fn new() -> Self {
         let values = Vec::with_capacity(BLOCK);
         let buckets = vec![Bucket::EMPTY; BUCKETS].into_boxed_slice();
-        Block { values, buckets, top: Bucket::EMPTY, base: None, flags: FlagBlock::default(), spread: None }
+        SampleBlock { values, buckets, top: Bucket::EMPTY, base: None, flags: FlagBlock::default(), spread: None }
     }
 
     pub(super) fn clear(&mut self) {
@@ -133,7 +133,7 @@ impl<T: Number> Block<T> {
                 self.flags.mark(start + at, Flags::BAD);
             }
         }
-        self.complete(start);
+        self.fill_complete_buckets(start);
     }
 
     /// Breaks the line before the sample `at`.
@@ -151,10 +151,10 @@ impl<T: Number> Block<T> {
 
     /// Returns `known`, widened to include the values in `range`. Values from samples are exact and values from buckets
     /// are rounded outward. Only parts that can widen the result are examined.
-    pub(super) fn widen(&self, known: Extent, range: Range<usize>) -> Extent {
+    pub(super) fn widen(&self, known: ValueRange, range: Range<usize>) -> ValueRange {
         let Some(base) = self.base else { return known.with(self.scan(range)) };
         let mut search = Search {
-            samples: Extent::EMPTY,
+            samples: ValueRange::EMPTY,
             found: Bucket::EMPTY,
             enough: Bucket { low: base.distance_rounded_up(known.min), high: base.distance_rounded_down(known.max) },
         };
@@ -170,11 +170,11 @@ impl<T: Number> Block<T> {
         if search.found.is_empty() {
             return known;
         }
-        known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
+        known.with(ValueRange { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
     /// Returns the count, mean and deviation of the samples in `range`, calculated from the samples themselves.
-    pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
+    pub(super) fn spread(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
         }
@@ -216,13 +216,13 @@ impl<T: Number> Block<T> {
     }
 
     pub(super) fn memory(&self) -> usize {
-        let spread = self.spread.as_ref().map_or(0, |_| size_of::<Spread<T>>());
+        let spread = self.spread.as_ref().map_or(0, |_| size_of::<RunningStatistics<T>>());
         let buckets = self.buckets.len() * size_of::<Bucket>();
         self.values.capacity() * size_of::<T>() + buckets + self.flags.memory() + spread
     }
 
     /// Fills the buckets that have become complete since the block held `before` samples.
-    fn complete(&mut self, before: usize) {
+    fn fill_complete_buckets(&mut self, before: usize) {
         let first = before / FAN;
         let (groups, _) = self.values.get(first * FAN..).unwrap_or_default().as_chunks::<FAN>();
         let (values, flags) = (self.values.as_slice(), &self.flags);
@@ -256,7 +256,7 @@ impl<T: Number> Block<T> {
     }
 
     /// Fills the newly completed buckets of the level `upper` from the buckets of the level `lower`.
-    fn fill_level(&mut self, lower: Level, upper: Level, before: usize) {
+    fn fill_level(&mut self, lower: BucketLevel, upper: BucketLevel, before: usize) {
         let (first, end) = (before / upper.size, self.values.len() / upper.size);
         let (uppers, lowers) = self.buckets.split_at_mut(lower.start);
         let (groups, _) = lowers.get(first * FAN..end * FAN).unwrap_or_default().as_chunks::<FAN>();
@@ -266,7 +266,7 @@ impl<T: Number> Block<T> {
     }
 
     /// Returns the bucket of a level that contains the sample `at`, or `None` if the bucket is incomplete.
-    fn bucket(&self, level: Level, at: usize) -> Option<Bucket> {
+    fn bucket(&self, level: BucketLevel, at: usize) -> Option<Bucket> {
         let number = at / level.size;
         let complete = (number + 1) * level.size <= self.len();
         self.buckets.get(level.start + number).copied().filter(|_| complete)
@@ -274,7 +274,7 @@ impl<T: Number> Block<T> {
 
     /// Searches `range` for values that widen the result. Buckets of the coarsest level inside the range are searched
     /// first, then the remainder on both sides, which a single bucket may rule out.
-    fn search(&self, levels: &[Level], range: Range<usize>, search: &mut Search) {
+    fn search(&self, levels: &[BucketLevel], range: Range<usize>, search: &mut Search) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.with(self.scan(range));
             return;
@@ -292,19 +292,19 @@ impl<T: Number> Block<T> {
         }
     }
 
-    fn spread_of(&self, range: Range<usize>) -> Option<Spread<T>> {
-        self.flags.good(range).map(|good| Spread::of(self.values.get(good)?)).fold(None, combine_spreads)
+    fn spread_of(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
+        self.flags.good(range).map(|good| RunningStatistics::of(self.values.get(good)?)).fold(None, combine_spreads)
     }
 
-    fn scan(&self, range: Range<usize>) -> Extent {
+    fn scan(&self, range: Range<usize>) -> ValueRange {
         let extremes = extremes_within(&self.values, &self.flags, range);
-        extremes.map_or(Extent::EMPTY, |(min, max)| Extent { min: min.below(), max: max.above() })
+        extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.below(), max: max.above() })
     }
 
     /// Returns the length of a run of samples without a value, from `at` and within `end`, as far as a single check
     /// reveals.
     fn next_gap(&self, at: usize, end: usize) -> usize {
-        let empty = |level: &&Level| {
+        let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
             inside && self.bucket(**level, at).is_some_and(Bucket::is_empty)
         };
@@ -314,7 +314,7 @@ impl<T: Number> Block<T> {
     /// Returns the length of a run of samples without a value that ends before `end`, within `start`, as far as a
     /// single check reveals.
     fn previous_gap(&self, end: usize, start: usize) -> usize {
-        let empty = |level: &&Level| {
+        let empty = |level: &&BucketLevel| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
             inside && self.bucket(**level, end - level.size).is_some_and(Bucket::is_empty)
         };
@@ -324,7 +324,7 @@ impl<T: Number> Block<T> {
 }
 
 struct Search {
-    samples: Extent,
+    samples: ValueRange,
     found: Bucket,
     /// Bucket whose values do not widen the result.
     enough: Bucket,

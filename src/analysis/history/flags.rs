@@ -23,7 +23,7 @@ impl Flags {
     }
 
     /// Returns the flags with all implied flags added, as stored.
-    pub(super) const fn completed(self) -> Flags {
+    pub(super) const fn with_implied_flags(self) -> Flags {
         if self.contains(Flags::BAD) { Flags(self.0 | Flags::BREAK.0) } else { self }
     }
 }
@@ -70,7 +70,7 @@ impl FlagBlock {
         if flags == Flags::NONE {
             return;
         }
-        let flags = flags.completed();
+        let flags = flags.with_implied_flags();
         let kept = self.kept.get_or_insert_with(|| Box::new([Flags::NONE; BLOCK]));
         if let Some(place) = kept.get_mut(at) {
             *place |= flags;
@@ -86,7 +86,7 @@ impl FlagBlock {
     }
 
     pub(super) fn get(&self, at: usize) -> Flags {
-        match self.of_groups(at / GROUP..at / GROUP + 1) {
+        match self.flags_in_groups(at / GROUP..at / GROUP + 1) {
             Flags::NONE => Flags::NONE,
             _ => self.kept.as_ref().and_then(|kept| kept.get(at)).copied().unwrap_or_default(),
         }
@@ -97,12 +97,12 @@ impl FlagBlock {
             return Flags::NONE;
         }
         let (from, to) = (range.start.div_ceil(GROUP), range.end / GROUP);
-        let mut found = self.of_groups(from..to.max(from));
+        let mut found = self.flags_in_groups(from..to.max(from));
         let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
         for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
             // Part of one group, which may add no new flags.
             let group = edge.start / GROUP;
-            if !found.contains(self.of_groups(group..group + 1)) {
+            if !found.contains(self.flags_in_groups(group..group + 1)) {
                 found |= union(self.samples(edge));
             }
         }
@@ -111,21 +111,21 @@ impl FlagBlock {
 
     /// Returns whether the group summary alone proves that sample `at` has a valid value.
     pub(super) fn is_surely_good(&self, at: usize) -> bool {
-        !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
+        !self.flags_in_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
 
     /// Returns the ranges within `range` whose samples have a valid value.
-    pub(super) fn good(&self, range: Range<usize>) -> Good<'_> {
-        let bad = self.of_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
+    pub(super) fn good(&self, range: Range<usize>) -> ValidRanges<'_> {
+        let bad = self.flags_in_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
         let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());
-        Good { samples, range }
+        ValidRanges { samples, range }
     }
 
     pub(super) fn memory(&self) -> usize {
         self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
     }
 
-    fn of_groups(&self, groups: Range<usize>) -> Flags {
+    fn flags_in_groups(&self, groups: Range<usize>) -> Flags {
         if groups.is_empty() || self.any == Flags::NONE {
             return Flags::NONE;
         }
@@ -141,13 +141,13 @@ fn union(flags: &[Flags]) -> Flags {
 }
 
 /// Iterator over ranges of valid samples; see [`FlagBlock::good`].
-pub(super) struct Good<'a> {
+pub(super) struct ValidRanges<'a> {
     /// Flags of the samples; empty if all samples are good.
     samples: &'a [Flags],
     range: Range<usize>,
 }
 
-impl Iterator for Good<'_> {
+impl Iterator for ValidRanges<'_> {
     type Item = Range<usize>;
 
     fn next(&mut self) -> Option<Range<usize>> {
@@ -216,7 +216,7 @@ mod tests {
             for _ in 0..flagged {
                 let (at, flags) = (random.usize(..BLOCK), KINDS[random.usize(..3)]);
                 block.mark(at, flags);
-                plain[at] |= flags.completed();
+                plain[at] |= flags.with_implied_flags();
             }
             for _ in 0..2_000 {
                 let (one, other) = (random.usize(..=BLOCK), random.usize(..=BLOCK));

@@ -20,14 +20,14 @@ use std::ops::Range;
 
 pub use flags::Flags;
 pub use number::Value;
-pub use picture::{Grid, GridCut, Picture, Pixel, Reduced};
+pub use picture::{Grid, GridColumns, Picture, Pixel, Reduced};
 pub use statistics::Statistics;
 
 use number::Number;
 use series::Series;
 use times::Times;
 
-use super::Time;
+use super::SampleTime;
 
 /// Number of samples in a block, the unit of allocation and eviction.
 const BLOCK: usize = 4096;
@@ -105,7 +105,7 @@ pub enum Refused {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub index: u64,
-    pub time: Time,
+    pub time: SampleTime,
     /// Value as appended.
     pub value: Value,
     pub flags: Flags,
@@ -153,7 +153,7 @@ impl History {
     }
 
     /// Appends samples, given as non-decreasing times and one part of equal length per column.
-    pub fn append(&mut self, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+    pub fn append(&mut self, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
         let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
             return Err(Refused::Shape);
@@ -188,20 +188,20 @@ impl History {
 
     /// Returns the time of the oldest sample left after `more` further samples are appended, or `None` if all current
     /// samples will have been evicted.
-    pub fn oldest_after(&self, more: usize) -> Option<Time> {
+    pub fn oldest_after(&self, more: usize) -> Option<SampleTime> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
         self.times.get(first.max(self.times.first()))
     }
 
     /// Returns the index range of the samples from `from` up to but not including `to`.
-    pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
+    pub fn indices(&self, from: SampleTime, to: SampleTime) -> Range<u64> {
         let from = self.times.search(from);
         from..self.times.search(to).max(from)
     }
 
     /// Returns the time of sample `index`, or `None` if the sample is not stored.
-    pub fn time(&self, index: u64) -> Option<Time> {
+    pub fn time(&self, index: u64) -> Option<SampleTime> {
         self.times.get(index)
     }
 
@@ -217,7 +217,7 @@ impl History {
 
     /// Returns the index of the sample nearest to `time`, or `None` if there are no samples. The earlier sample wins a
     /// tie.
-    pub fn nearest(&self, time: Time) -> Option<u64> {
+    pub fn nearest(&self, time: SampleTime) -> Option<u64> {
         let after = self.times.search(time);
         let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
         let after = self.times.get(after).map(|at| (after, at));
@@ -236,7 +236,7 @@ impl History {
     }
 
     /// Breaks the line in every column where samples in `range` follow a pause or known missing samples.
-    fn mark_breaks(&mut self, times: &[Time], range: Range<usize>, last: Option<Time>, index: u64) {
+    fn mark_breaks(&mut self, times: &[SampleTime], range: Range<usize>, last: Option<SampleTime>, index: u64) {
         let pause = self.longest_pause.unwrap_or(i64::MAX);
         let mut before = range.start.checked_sub(1).and_then(|at| times.get(at).copied()).or(last);
         let mut broken = std::mem::take(&mut self.broken);

@@ -3,25 +3,25 @@
 
 use std::ops::Range;
 
-use super::block::Extent;
+use super::block::ValueRange;
 use super::flags::Flags;
 use super::number::Number;
 use super::series::Series;
 use super::{Column, FAN, History};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Grid of equal time steps, one per pixel column. Edges are multiples of the step, so that a picture scrolling at
 /// constant zoom keeps its pixel columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
-    start: Time,
+    start: SampleTime,
     width: i64,
     pixels: usize,
 }
 
 impl Grid {
     /// Creates a grid of `pixels` or `pixels + 1` columns that covers the time from `from` to `to`.
-    pub fn new(from: Time, to: Time, pixels: usize) -> Self {
+    pub fn new(from: SampleTime, to: SampleTime, pixels: usize) -> Self {
         let span = i128::from(to.nanoseconds()) - i128::from(from.nanoseconds());
         let width = match i128::try_from(pixels) {
             Ok(pixels @ 1..) if span > 0 => (span + pixels - 1) / pixels,
@@ -31,7 +31,7 @@ impl Grid {
         let start = from.nanoseconds().saturating_sub(from.nanoseconds().rem_euclid(width));
         let covered = i128::from(to.nanoseconds()) - i128::from(start);
         let columns = (covered + i128::from(width) - 1) / i128::from(width);
-        Grid { start: Time::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
+        Grid { start: SampleTime::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
     }
 
     pub fn pixels(&self) -> usize {
@@ -44,16 +44,16 @@ impl Grid {
     }
 
     /// Returns the start of pixel column `pixel`, which is also the end of the previous column.
-    pub fn edge(&self, pixel: usize) -> Time {
+    pub fn edge(&self, pixel: usize) -> SampleTime {
         let edge = i128::from(self.start.nanoseconds()) + pixel as i128 * i128::from(self.width);
-        Time::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
+        SampleTime::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
     }
 }
 
 /// Intersection of a [`Grid`] with the samples of a history, valid for all columns of the history. Samples appended
 /// later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
-pub struct GridCut {
+pub struct GridColumns {
     /// Starts of all pixel columns, followed by the end of the last one.
     edges: Vec<Edge>,
 }
@@ -63,17 +63,17 @@ struct Edge {
     /// Index of the first sample after the boundary.
     index: u64,
     /// Time of the last sample before the boundary, if any.
-    before: Option<Time>,
+    before: Option<SampleTime>,
     /// Time of the first sample after the boundary, if any.
-    after: Option<Time>,
+    after: Option<SampleTime>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Time of the first valid sample, or of the first sample if none is valid.
-    pub from: Time,
+    pub from: SampleTime,
     /// Time of the last valid sample, or of the last sample if none is valid.
-    pub to: Time,
+    pub to: SampleTime,
     /// Values of the valid samples, or `None` if no sample is valid.
     pub values: Option<Reduced>,
     /// Union of the samples' flags; [`BREAK`](Flags::BREAK) if the line is broken inside or before the pixel column.
@@ -120,7 +120,7 @@ const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as 
 impl History {
     /// Finds the samples of each pixel column. A column with many samples starts at a pyramid bucket, up to a sixteenth
     /// of its width before its edge; the result depends only on the samples and the edge.
-    pub fn cut(&self, grid: &Grid) -> GridCut {
+    pub fn cut(&self, grid: &Grid) -> GridColumns {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
             // The first and last edges are the picture's own.
@@ -128,7 +128,7 @@ impl History {
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
             Edge { index, before, after: self.times.get(index) }
         };
-        GridCut { edges: (0..=grid.pixels()).map(edge).collect() }
+        GridColumns { edges: (0..=grid.pixels()).map(edge).collect() }
     }
 
     /// Returns the start of a bucket instead of the first sample after an edge, if the bucket starts only slightly
@@ -140,17 +140,17 @@ impl History {
     }
 
     /// Draws a column into `picture`, reusing its memory.
-    pub fn picture(&self, column: usize, cut: &GridCut, picture: &mut Picture) {
+    pub fn picture(&self, column: usize, cut: &GridColumns, picture: &mut Picture) {
         picture.pixels.clear();
         match self.columns.get(column) {
-            Some(Column::Real(series)) => Painter { history: self, series, last: None, picture }.paint(cut),
-            Some(Column::Whole(series)) => Painter { history: self, series, last: None, picture }.paint(cut),
+            Some(Column::Real(series)) => HistoryPainter { history: self, series, last: None, picture }.paint(cut),
+            Some(Column::Whole(series)) => HistoryPainter { history: self, series, last: None, picture }.paint(cut),
             None => {}
         }
     }
 }
 
-struct Painter<'a, T> {
+struct HistoryPainter<'a, T> {
     history: &'a History,
     series: &'a Series<T>,
     /// Index of the last valid sample already painted, if any.
@@ -158,8 +158,8 @@ struct Painter<'a, T> {
     picture: &'a mut Picture,
 }
 
-impl<T: Number> Painter<'_, T> {
-    fn paint(&mut self, cut: &GridCut) {
+impl<T: Number> HistoryPainter<'_, T> {
+    fn paint(&mut self, cut: &GridColumns) {
         let all = self.history.all();
         let (Some(from), Some(to)) = (cut.edges.first(), cut.edges.last()) else { return };
         let (from, to) = (from.index.max(all.start), to.index.min(all.end));
@@ -230,7 +230,8 @@ impl<T: Number> Painter<'_, T> {
 
     fn reduced(&self, range: Range<u64>, (first, last): (T, T)) -> Reduced {
         let (first, last) = (first.value().to_f64(), last.value().to_f64());
-        let Extent { min, max } = self.series.widen(Extent { min: first.min(last), max: first.max(last) }, range);
+        let ValueRange { min, max } =
+            self.series.widen(ValueRange { min: first.min(last), max: first.max(last) }, range);
         Reduced { first, min, max, last }
     }
 }

@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 use super::BLOCK;
-use super::block::{Block, Extent};
+use super::block::{SampleBlock, ValueRange};
 use super::flags::Flags;
 use super::number::Number;
-use super::spread::{Spread, combine_spreads};
+use super::spread::{RunningStatistics, combine_spreads};
 
 #[derive(Debug)]
 pub(super) struct Series<T> {
-    blocks: VecDeque<Block<T>>,
+    blocks: VecDeque<SampleBlock<T>>,
     /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
 }
@@ -58,10 +58,10 @@ impl<T: Number> Series<T> {
     }
 
     /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see
-    /// [`Block::widen`]. Whole blocks are processed first, since they save most of the work on the rest.
-    pub(super) fn widen(&self, known: Extent, range: Range<u64>) -> Extent {
+    /// [`SampleBlock::widen`]. Whole blocks are processed first, since they save most of the work on the rest.
+    pub(super) fn widen(&self, known: ValueRange, range: Range<u64>) -> ValueRange {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
-        let widen = |known: Extent, block: usize, range: Range<usize>| {
+        let widen = |known: ValueRange, block: usize, range: Range<usize>| {
             self.blocks.get(block).map_or(known, |block| block.widen(known, range))
         };
         if first == last {
@@ -88,7 +88,7 @@ impl<T: Number> Series<T> {
         self.parts(range).fold(Flags::NONE, |all, (_, block, range)| all | block.flags().within(range))
     }
 
-    pub(super) fn spread(&self, range: Range<u64>) -> Option<Spread<T>> {
+    pub(super) fn spread(&self, range: Range<u64>) -> Option<RunningStatistics<T>> {
         self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, combine_spreads)
     }
 
@@ -112,13 +112,13 @@ impl<T: Number> Series<T> {
     /// value is valid.
     fn is_surely_good(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
-        let has_it = |block: &&Block<T>| index >= self.first && at < block.len();
+        let has_it = |block: &&SampleBlock<T>| index >= self.first && at < block.len();
         self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
     }
 
     pub(super) fn memory(&self) -> usize {
-        let blocks: usize = self.blocks.iter().map(Block::memory).sum();
-        blocks + self.blocks.capacity() * size_of::<Block<T>>()
+        let blocks: usize = self.blocks.iter().map(SampleBlock::memory).sum();
+        blocks + self.blocks.capacity() * size_of::<SampleBlock<T>>()
     }
 
     fn open(&mut self, keep: usize) {
@@ -129,7 +129,7 @@ impl<T: Number> Series<T> {
                 block.clear();
                 block
             }
-            None => Block::new(),
+            None => SampleBlock::new(),
         };
         self.blocks.push_back(block);
     }
@@ -142,7 +142,7 @@ impl<T: Number> Series<T> {
 
     /// Returns the blocks that overlap the stored part of `range`, each with the index of its first sample and the
     /// range within the block.
-    fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &Block<T>, Range<usize>)> {
+    fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;
         let blocks = (from / BLOCK).min(self.blocks.len())..to.div_ceil(BLOCK).min(self.blocks.len());

@@ -5,7 +5,7 @@ use super::number::Number;
 
 /// Count, mean, sum of squared deviations and range of a set of samples.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spread<T> {
+pub(super) struct RunningStatistics<T> {
     pub(super) count: u64,
     pub(super) base: T,
     pub(super) mean: f64,
@@ -14,7 +14,7 @@ pub(super) struct Spread<T> {
     pub(super) max: T,
 }
 
-impl<T: Number> Spread<T> {
+impl<T: Number> RunningStatistics<T> {
     /// Returns the spread of `values`, which must all be finite, or `None` if `values` is empty.
     pub(super) fn of(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
@@ -25,7 +25,7 @@ impl<T: Number> Spread<T> {
             let deviation = value.minus(base) - mean;
             deviation * deviation
         });
-        Some(Spread { count: values.len() as u64, base, mean, squares, min, max })
+        Some(RunningStatistics { count: values.len() as u64, base, mean, squares, min, max })
     }
 
     /// Returns the combined spread of both sets of samples.
@@ -33,7 +33,7 @@ impl<T: Number> Spread<T> {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
         let apart = other.base.minus(self.base) + other.mean - self.mean;
-        Spread {
+        RunningStatistics {
             count: self.count + other.count,
             base: self.base,
             mean: self.mean + apart * (others / all),
@@ -44,7 +44,10 @@ impl<T: Number> Spread<T> {
     }
 }
 
-pub(super) fn combine_spreads<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
+pub(super) fn combine_spreads<T: Number>(
+    one: Option<RunningStatistics<T>>,
+    other: Option<RunningStatistics<T>>,
+) -> Option<RunningStatistics<T>> {
     match (one, other) {
         (Some(one), Some(other)) => Some(one.with(other)),
         (one, other) => one.or(other),

@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 
 use super::BLOCK;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Times of the samples, in blocks that match those of the values.
 #[derive(Debug)]
 pub(super) struct Times {
-    blocks: VecDeque<Vec<Time>>,
+    blocks: VecDeque<Vec<SampleTime>>,
     /// First time of each block, stored contiguously for fast search.
-    starts: VecDeque<Time>,
+    starts: VecDeque<SampleTime>,
     /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
 }
@@ -35,17 +35,17 @@ impl Times {
         self.blocks.back().map_or(0, |block| BLOCK - block.len())
     }
 
-    pub(super) fn last(&self) -> Option<Time> {
+    pub(super) fn last(&self) -> Option<SampleTime> {
         self.blocks.back()?.last().copied()
     }
 
-    pub(super) fn get(&self, index: u64) -> Option<Time> {
+    pub(super) fn get(&self, index: u64) -> Option<SampleTime> {
         let at = index.checked_sub(self.first)? as usize;
         self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
     }
 
     /// Appends `times`, which must fit into the newest block or start a new one. At most `keep` blocks are kept.
-    pub(super) fn append(&mut self, times: &[Time], keep: usize) {
+    pub(super) fn append(&mut self, times: &[SampleTime], keep: usize) {
         let Some(start) = times.first() else { return };
         if self.room() == 0 {
             let used = if self.blocks.len() >= keep { self.blocks.pop_front() } else { None };
@@ -67,23 +67,24 @@ impl Times {
     }
 
     /// Returns the absolute index of the first sample at or after `time`, or the end index if no such sample is stored.
-    pub(super) fn search(&self, time: Time) -> u64 {
+    pub(super) fn search(&self, time: SampleTime) -> u64 {
         let Some(number) = self.starts.partition_point(|start| *start < time).checked_sub(1) else { return self.first };
-        let inside = self.blocks.get(number).map_or(0, |block| search_in(block, time));
+        let inside = self.blocks.get(number).map_or(0, |block| search_times(block, time));
         self.first + (number * BLOCK + inside) as u64
     }
 
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Vec::capacity).sum();
-        (blocks + self.starts.capacity()) * size_of::<Time>() + self.blocks.capacity() * size_of::<Vec<Time>>()
+        (blocks + self.starts.capacity()) * size_of::<SampleTime>()
+            + self.blocks.capacity() * size_of::<Vec<SampleTime>>()
     }
 }
 
 /// Returns the index of the first time at or after `time`. Samples are usually evenly spaced, so the expected index is
 /// tried first.
-fn search_in(times: &[Time], time: Time) -> usize {
+fn search_times(times: &[SampleTime], time: SampleTime) -> usize {
     const NEAR: usize = 4;
-    let before = |other: &Time| *other < time;
+    let before = |other: &SampleTime| *other < time;
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0 };
     let share = time.nanoseconds_since(*first) as f64 / last.nanoseconds_since(*first).max(1) as f64;
     let guess = (share * (times.len() - 1) as f64) as usize;
@@ -99,8 +100,8 @@ fn search_in(times: &[Time], time: Time) -> usize {
 mod tests {
     use super::*;
 
-    fn times(nanoseconds: impl Iterator<Item = i64>) -> Vec<Time> {
-        nanoseconds.map(Time::from_nanoseconds).collect()
+    fn times(nanoseconds: impl Iterator<Item = i64>) -> Vec<SampleTime> {
+        nanoseconds.map(SampleTime::from_nanoseconds).collect()
     }
 
     #[test]
@@ -114,9 +115,9 @@ mod tests {
         ];
         for (label, times) in cases {
             for probe in -2..1_000_200 {
-                let probe = Time::from_nanoseconds(if label == "even" { probe / 10 } else { probe });
+                let probe = SampleTime::from_nanoseconds(if label == "even" { probe / 10 } else { probe });
                 let naive = times.partition_point(|time| *time < probe);
-                assert_eq!(search_in(&times, probe), naive, "{label} {probe:?}");
+                assert_eq!(search_times(&times, probe), naive, "{label} {probe:?}");
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::analysis::position_error::{Basis, Samples};
+use crate::analysis::position_error::{ErrorBasis, Samples};
 use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 
 const ELLIPSE: Ellipse =
@@ -79,7 +79,7 @@ fn spikes_in_a_long_capture_do_not_change_the_fit() {
     let analysis = capture.analysed().unwrap();
     assert!((analysis.coverage.periods - 100.0).abs() < 0.01, "{:?}", analysis.coverage);
     assert!((analysis.coverage.residual_rms - 0.002).abs() < 0.0002, "{:?}", analysis.coverage);
-    assert!(matches!(analysis.error.basis, Basis::Motion { .. }), "{:?}", analysis.error.basis);
+    assert!(matches!(analysis.error.basis, ErrorBasis::Motion { .. }), "{:?}", analysis.error.basis);
     // Noise of 1 mV in 0.5 V is 0.11°; the error that remains is far less.
     assert!(analysis.error.corrected_pp_deg < 0.02, "{}", analysis.error.corrected_pp_deg);
     assert_eq!(analysis.samples, 100_000);
@@ -130,7 +130,7 @@ fn a_spike_does_not_revive_a_dead_channel() {
     let mut capture = made(5_000, 5.0, 5e-4);
     capture.sine.iter_mut().for_each(|value| *value = 2e-4 * value.signum());
     capture.sine[2_345] = 4.0;
-    assert_eq!(capture.analysed(), Err(FitError::Dead(Channel::Sine).into()));
+    assert_eq!(capture.analysed(), Err(FitError::Dead(SignalChannel::Sine).into()));
     // Nor does it make one dead.
     let mut capture = made(5_000, 5.0, 5e-4);
     capture.sine[2_345] = 40.0;

@@ -1,7 +1,7 @@
 //! Added errors are found; other deviations of the signals are not errors.
 
 use super::*;
-use crate::analysis::ellipse::{Channel, FitError};
+use crate::analysis::ellipse::{FitError, SignalChannel};
 use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 
 const CIRCLE: Ellipse =
@@ -59,9 +59,13 @@ fn raw_errors_match_section_6() {
         for periods in [1.0, 3.7, -2.5, 400.0] {
             let told = made(&ellipse, 8000, |t| 0.1 + periods * t, |_| 0.0).analysed().unwrap();
             // The largest of 720 points misses the peak by at most a few 1e-5 of it.
-            assert!((told.error.raw_pp_deg() - expected).abs() < 2e-4, "{label}: {}", told.error.raw_pp_deg());
+            assert!(
+                (told.error.raw_peak_to_peak_deg() - expected).abs() < 2e-4,
+                "{label}: {}",
+                told.error.raw_peak_to_peak_deg()
+            );
             assert!(told.error.corrected_pp_deg < 1e-6, "{label}: {:?}", told.error.corrected_pp_deg);
-            assert!(matches!(told.error.basis, Basis::Motion { .. }), "{label}, {periods} periods");
+            assert!(matches!(told.error.basis, ErrorBasis::Motion { .. }), "{label}, {periods} periods");
         }
     }
     let offset = made(&rows[0].1, 1000, |t| t, |_| 0.0).analysed().unwrap();
@@ -85,7 +89,12 @@ fn the_reference_error_is_found_and_corrected() {
         ((y.atan2(x) - angle).to_degrees() + 180.0).rem_euclid(360.0) - 180.0
     });
     let (low, high) = by_points.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
-    assert!((told.error.raw_pp_deg() - (high - low)).abs() < 1e-6, "{} {}", told.error.raw_pp_deg(), high - low);
+    assert!(
+        (told.error.raw_peak_to_peak_deg() - (high - low)).abs() < 1e-6,
+        "{} {}",
+        told.error.raw_peak_to_peak_deg(),
+        high - low
+    );
     assert!((high - low - 9.970_872_586_9).abs() < 1e-9 && (low + 7.6606).abs() < 2e-4, "{low}");
     assert!(told.error.corrected_pp_deg < 1e-9);
 }
@@ -104,7 +113,7 @@ fn harmonics_are_not_corrected() {
         assert!((left[3] - 0.3).abs() < 0.03, "{count}: {left:?}");
         assert!(left.iter().enumerate().all(|(at, value)| at == 3 || *value < 0.05), "{count}: {left:?}");
         assert!((told.error.corrected_pp_deg - 0.6).abs() < 0.1, "{count}: {}", told.error.corrected_pp_deg);
-        let Basis::Motion { noise_deg } = told.error.basis else { panic!("{count}: {:?}", told.error.basis) };
+        let ErrorBasis::Motion { noise_deg } = told.error.basis else { panic!("{count}: {:?}", told.error.basis) };
         assert!((noise_deg - 0.115).abs() < 0.02, "{count}: {noise_deg}");
         assert!((told.coverage.residual_rms - 0.002).abs() < 3e-4, "{count}: {}", told.coverage.residual_rms);
     }
@@ -114,11 +123,11 @@ fn harmonics_are_not_corrected() {
 fn uneven_motion_is_not_mistaken_for_an_error() {
     let there_and_back = made(&REFERENCE, 5000, |t| 3.0 * (TAU * t).sin(), |_| 0.0).add_noise(1e-3, 4);
     let told = there_and_back.analysed().unwrap();
-    assert_eq!(told.error.basis, Basis::Ellipse);
+    assert_eq!(told.error.basis, ErrorBasis::Ellipse);
     assert!(told.error.corrected_pp_deg < 0.5, "{}", told.error.corrected_pp_deg);
     assert!((told.coverage.periods - 6.0).abs() < 0.01);
     let six = made(&REFERENCE, 6, |t| t, |_| 0.0).analysed().unwrap();
-    assert!(six.error.corrected_pp_deg < 1e-9 && six.error.raw_pp_deg() > 9.0);
+    assert!(six.error.corrected_pp_deg < 1e-9 && six.error.raw_peak_to_peak_deg() > 9.0);
     assert!((six.coverage.periods - 5.0 / 6.0).abs() < 1e-12);
 }
 
@@ -142,5 +151,5 @@ fn a_fraction_of_a_period_is_refused() {
     let mut dead = made(&REFERENCE, 500, |t| 3.0 * t, |_| 0.0);
     dead.sine.fill(0.0);
     let told = dead.add_noise(1e-3, 6).analysed();
-    assert_eq!(told, Err(AnalysisError::Fit(FitError::Dead(Channel::Sine))));
+    assert_eq!(told, Err(AnalysisError::Fit(FitError::Dead(SignalChannel::Sine))));
 }

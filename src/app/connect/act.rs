@@ -1,8 +1,8 @@
 //! Execution of the connection dialog's actions.
 
-use super::context::{FinderContext, Next};
+use super::context::{FinderContext, NextAction};
 use super::form::AnyForm;
-use super::{Connect, ConnectAction, list_ports};
+use super::{ConnectAction, ConnectDialog, list_ports};
 use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
@@ -18,7 +18,7 @@ impl Studio {
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
                 // The last used target comes first.
                 let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
-                self.connect = Some(Connect::new(kinds, device, last));
+                self.connect = Some(ConnectDialog::new(kinds, device, last));
                 self.list_ports();
             }
             ConnectAction::Close => self.close_dialog(),
@@ -61,7 +61,7 @@ impl Studio {
         }
     }
 
-    fn edit(&mut self, edit: impl FnOnce(&mut Connect)) {
+    fn edit(&mut self, edit: impl FnOnce(&mut ConnectDialog)) {
         if let Some(connect) = &mut self.connect {
             edit(connect);
             connect.problem = None;
@@ -97,7 +97,7 @@ impl Studio {
 
     /// Continues the search after the user has confirmed that no other master is on the line.
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
-        let at = |connect: &Connect| connect.forms.iter().position(|(own, _)| *own == tab);
+        let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
             self.with_finder(tab, place, |form, context| form.confirmed(context));
         }
@@ -126,12 +126,12 @@ impl Studio {
         if let Some((_, form)) = connect.forms.get_mut(place) {
             act(form.as_mut(), &mut context);
         }
-        let Next { found, problem } = context.into_next();
+        let NextAction { found, problem } = context.into_next();
         connect.problem = problem;
         self.connect = Some(connect);
         if let Some(url) = found {
             self.close_dialog();
-            self.open_found(tab, url);
+            self.open_discovered(tab, url);
         }
     }
 

@@ -20,7 +20,7 @@ pub struct FinderContext<'a> {
 
 /// The next action of the dialog after a request to a search.
 #[derive(Default)]
-pub(super) struct Next {
+pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,
     /// Reason why the request was not executed, to be shown to the user.
     pub(super) problem: Option<Text>,
@@ -31,8 +31,8 @@ impl<'a> FinderContext<'a> {
         FinderContext { studio, tab, link, found: None, problem: None }
     }
 
-    pub(super) fn into_next(self) -> Next {
-        Next { found: self.found, problem: self.problem }
+    pub(super) fn into_next(self) -> NextAction {
+        NextAction { found: self.found, problem: self.problem }
     }
 
     pub fn services(&mut self) -> &mut Services {
@@ -74,7 +74,7 @@ impl<'a> FinderContext<'a> {
     }
 
     /// Closes the dialog and connects to a device found on a line that has already been checked for other masters.
-    pub fn open_found(&mut self, url: LinkUrl) {
+    pub fn open_discovered(&mut self, url: LinkUrl) {
         self.found = Some(url);
     }
 }

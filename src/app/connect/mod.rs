@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 use form::{AnyForm, Finder, FormModel};
 
-use super::kinds::Kinds;
+use super::kinds::KindRegistry;
 use super::payload::Payload;
 use super::services::Services;
 use super::tab::Tab;
@@ -52,9 +52,9 @@ impl ConnectAction {
     }
 }
 
-pub struct Connect {
+pub struct ConnectDialog {
     pub device: Tab,
-    kinds: Kinds,
+    kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
     /// The link as typed, or `None` once the form has been edited and determines the link.
     pub typed: Option<String>,
@@ -63,11 +63,11 @@ pub struct Connect {
     pub problem: Option<Text>,
 }
 
-impl Connect {
+impl ConnectDialog {
     /// Creates the dialog for a kind of device. `last` returns the link last used in a tab.
-    pub(super) fn new(kinds: Kinds, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
+    pub(super) fn new(kinds: KindRegistry, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
-        Connect { device, kinds, forms, typed: None, ports: None, problem: None }
+        ConnectDialog { device, kinds, forms, typed: None, ports: None, problem: None }
     }
 
     pub fn form<F: Any>(&self) -> Option<&F> {

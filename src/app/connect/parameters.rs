@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::target::{filled, other};
 use crate::app::{Text, explain};
-use crate::link::{LinkUrl, Query, Scheme};
+use crate::link::{LinkScheme, LinkUrl, UrlQuery};
 use crate::parameter::Entry;
 
 /// Name and value of a link parameter.
@@ -12,7 +12,7 @@ pub(crate) type Pair = (String, String);
 
 /// Returns the parameters of a link that have no form entry. `take` fills in an entry and returns whether the entry
 /// exists.
-pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
+pub(crate) fn parameters_without_entry(query: &UrlQuery, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
@@ -72,7 +72,7 @@ impl Parameters {
     }
 
     /// Adds parameters that have no form entry. Parameters of a virtual device are added only if the link leads to one.
-    pub(crate) fn set_remaining(
+    pub(crate) fn add_remaining(
         &mut self,
         rest: &[Pair],
         is_virtual: bool,
@@ -94,7 +94,7 @@ impl Parameters {
     ///
     /// # Errors
     /// Returns an error if a character would end a part of the link, or if the parts do not form a link.
-    pub(crate) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
+    pub(crate) fn link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
             .or_else(|| self.0.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));

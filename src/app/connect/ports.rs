@@ -1,6 +1,6 @@
 //! Serial ports offered by the connection form, in order of likelihood.
 
-use crate::link::{LinkUrl, PortInfo, Scheme};
+use crate::link::{LinkScheme, LinkUrl, PortInfo};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortEntry {
@@ -19,7 +19,7 @@ pub struct PortEntry {
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {
-        if url.scheme == Scheme::Serial && offers.iter().all(|offer| offer.path != url.target) {
+        if url.scheme == LinkScheme::Serial && offers.iter().all(|offer| offer.path != url.target) {
             let known = ports.iter().find(|port| port.path == url.target);
             let description = known.map(|port| port.description.clone()).unwrap_or_default();
             let listed = known.is_some() || exists(&url.target);

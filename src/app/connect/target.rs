@@ -57,11 +57,11 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     };
     let own = [("margin", "form.margin"), ("rpm", "form.rpm"), ("clock", "form.clock")];
     match own.iter().find(|(own, _)| own == name) {
-        Some((_, id)) => Text::new(id).with("value", value).with_text("allowed", explain::expected(allowed)),
+        Some((_, id)) => Text::new(id).with("value", value).with_text("allowed", explain::expected_text(allowed)),
         None => Text::new("form.parameter")
             .with("name", name)
             .with("value", value)
-            .with_text("why", explain::expected(allowed)),
+            .with_text("why", explain::expected_text(allowed)),
     }
 }
 
@@ -127,6 +127,6 @@ pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
 ///
 /// # Errors
 /// Returns the same errors as [`host_and_port`].
-pub(crate) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
+pub(crate) fn for_adapter(host: &str, port: &str) -> Result<String, Text> {
     Ok(format!("{TCP}{}", host_and_port(host, port)?))
 }

@@ -10,10 +10,10 @@ use crate::app::action::{ReadError, ReviewAction};
 use crate::app::closing::MUCH;
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
-use crate::app::session::{DeviceHistory, Opening, Phase, Source};
+use crate::app::session::{DeviceHistory, PendingOpen, Phase, Source};
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
-use crate::profile::Document;
+use crate::profile::ProfileDocument;
 use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
 
 impl AnyDevice {
@@ -57,7 +57,7 @@ impl AnyDevice {
         self.state().opening.is_some()
     }
 
-    pub(in crate::app) fn opening_mut(&mut self) -> &mut Option<Opening> {
+    pub(in crate::app) fn opening_mut(&mut self) -> &mut Option<PendingOpen> {
         &mut self.state_mut().opening
     }
 
@@ -121,15 +121,15 @@ impl AnyDevice {
         }
     }
 
-    pub(in crate::app) fn take_backup(
+    pub(in crate::app) fn apply_backup(
         &mut self,
         of: &DeviceKey,
         path: &Path,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
         services: &mut Services,
     ) {
         if let Some(memory) = self.memory_mut() {
-            memory.take_backup(of, path, result, services);
+            memory.apply_backup(of, path, result, services);
         }
     }
 
@@ -143,7 +143,7 @@ impl AnyDevice {
     }
 
     /// Records that a save is waiting for an answer from the user, so that another save may begin.
-    pub(in crate::app) fn save_waits(&mut self) {
+    pub(in crate::app) fn mark_save_waiting(&mut self) {
         self.state_mut().is_saving = false;
     }
 }

@@ -16,14 +16,14 @@ use crate::app::session::{Kind, ProfileFile, Session};
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document, Profile, ProfileFormat};
+use crate::profile::{Cause, Profile, ProfileDocument, ProfileFormat};
 use crate::store::Store;
 use crate::worker::OpenError;
 
 /// A kind of device, implemented once per device folder.
 pub trait DeviceType: DeviceModel + Sized {
     /// Entry in the list of device kinds.
-    const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
+    const KIND: &'static dyn DeviceKind = &DeviceKindAdapter::<Self>(PhantomData);
 
     /// Name of the bus, identical in every language.
     const BUS: &'static str;
@@ -72,7 +72,7 @@ pub trait DeviceType: DeviceModel + Sized {
     fn in_file(
         id: SessionId,
         file: ProfileFile,
-        document: Document,
+        document: ProfileDocument,
         tables: Self::Tables,
         services: &mut Services,
     ) -> Self {
@@ -95,7 +95,8 @@ pub trait DeviceType: DeviceModel + Sized {
 }
 
 /// A function that opens a profile in a session.
-pub(crate) type OpenProfile = Box<dyn FnOnce(SessionId, ProfileFile, Document, &mut Services) -> Box<AnyDevice> + Send>;
+pub(crate) type OpenProfile =
+    Box<dyn FnOnce(SessionId, ProfileFile, ProfileDocument, &mut Services) -> Box<AnyDevice> + Send>;
 
 /// Object-safe interface of a kind of device, used by the studio. Implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
@@ -143,9 +144,9 @@ pub trait DeviceKind: Sync {
 }
 
 /// Adapter from [`DeviceType`] to [`DeviceKind`].
-struct KindOf<M>(PhantomData<fn() -> M>);
+struct DeviceKindAdapter<M>(PhantomData<fn() -> M>);
 
-impl<M: DeviceType> DeviceKind for KindOf<M> {
+impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
     fn tab(&self) -> Tab {
         M::TAB
     }

@@ -10,20 +10,20 @@ use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
 use crate::app::review::ReviewSheet;
 use crate::app::services::{Environment, Services};
-use crate::app::session::{DeviceHistory, Drafted, HasSession, Kind, Saved, SessionEvents, WithMemory};
+use crate::app::session::{DeviceHistory, HasDraft, HasMemory, HasProfile, HasSession, Kind, SessionEvents};
 use crate::app::studio::SessionId;
 use crate::app::{
     AnyDevice, DeviceAction, DeviceCommand, DriveMemory, EditStep, Recording, Severity, SineCosineSource, Tab, Text,
 };
 use crate::link::LinkUrl;
-use crate::profile::{Body, Document, ProfileError};
+use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
 /// The state of a device or a profile, with all data known about it.
-pub trait DeviceModel: SessionEvents + Drafted + 'static {
+pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Tab in which the device is shown.
     const TAB: Tab;
 
@@ -42,7 +42,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
 
     /// Executes an action specific to this kind of device.
-    fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
+    fn act(&mut self, action: Self::Action, context: &mut ActionContext<'_>);
 
     /// Handles the result of a task that this device has started.
     fn done(&mut self, done: Self::Done, services: &mut Services);
@@ -130,7 +130,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 
     /// Switches to another link that uses the same wire.
-    fn take_link(&mut self, _url: &LinkUrl) {}
+    fn switch_link(&mut self, _url: &LinkUrl) {}
 
     /// Returns the memory of the device, or `None` for a kind that is never written to.
     fn memory(&self) -> Option<&dyn DeviceMemory>;
@@ -209,7 +209,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 
     /// Returns the interface for stored data about drives, or `None` for a kind without drives.
-    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
+    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
         None
     }
 }
@@ -218,15 +218,15 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// Resources that an action may use in addition to the device.
-pub struct ActContext<'a> {
+pub struct ActionContext<'a> {
     pub(crate) services: &'a mut Services,
     others: &'a [Box<AnyDevice>],
     next: Vec<DeviceCommand>,
 }
 
-impl<'a> ActContext<'a> {
+impl<'a> ActionContext<'a> {
     pub(in crate::app) fn new(services: &'a mut Services, others: &'a [Box<AnyDevice>]) -> Self {
-        ActContext { services, others, next: Vec::new() }
+        ActionContext { services, others, next: Vec::new() }
     }
 
     /// Queues another command for the same device, to be sent once the action is done.
@@ -315,18 +315,18 @@ pub trait DeviceMemory {
     fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
     /// Handles a backup that was read, or the error, ignoring backups of another device.
-    fn take_backup(
+    fn apply_backup(
         &mut self,
         of: &DeviceKey,
         path: &Path,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
         services: &mut Services,
     );
 }
 
-impl<T: Saved> DeviceMemory for T {
+impl<T: HasProfile> DeviceMemory for T {
     fn review_edits(&mut self, services: &mut Services) {
-        WithMemory::review_edits(self, services);
+        HasMemory::review_edits(self, services);
     }
 
     fn is_reviewing(&self) -> bool {
@@ -336,36 +336,36 @@ impl<T: Saved> DeviceMemory for T {
     fn sheet(&self) -> Option<ReviewSheet> {
         let running = self.session().line().and_then(|line| line.running());
         let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-        WithMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
+        HasMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
     }
 
     fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
         match action {
             ReviewAction::Write(plan) => self.write(plan, services),
-            ReviewAction::Toggle(permit) => self.plan_with(permit, services),
+            ReviewAction::Toggle(permit) => self.toggle_plan_permit(permit, services),
             ReviewAction::ForceWear(force) => self.force_wear(force),
             ReviewAction::Close => DeviceMemory::close_review(self),
         }
     }
 
     fn close_review(&mut self) {
-        WithMemory::close_review(self);
+        HasMemory::close_review(self);
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        Saved::wanted_body(self)
+        HasProfile::wanted_body(self)
     }
 
     fn known_body(&self) -> Option<Result<Body, Vec<Text>>> {
-        Some(Saved::known_body(self)?.map(|(body, _)| body))
+        Some(HasProfile::known_body(self)?.map(|(body, _)| body))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        Saved::restore(self, body, services)
+        HasProfile::restore(self, body, services)
     }
 
     fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::save(self, path, services);
+        HasProfile::save(self, path, services);
     }
 
     fn is_savable(&self) -> bool {
@@ -373,24 +373,24 @@ impl<T: Saved> DeviceMemory for T {
     }
 
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::read_backup(self, path, services);
+        HasProfile::read_backup(self, path, services);
     }
 
     fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
         if self.key().as_ref() == Some(of) {
-            self.session_mut().take_backups(listed);
+            self.session_mut().set_backups(listed);
         }
     }
 
-    fn take_backup(
+    fn apply_backup(
         &mut self,
         of: &DeviceKey,
         path: &Path,
-        result: Result<Box<Document>, ReadError>,
+        result: Result<Box<ProfileDocument>, ReadError>,
         services: &mut Services,
     ) {
         if self.key().as_ref() == Some(of) {
-            Saved::take_backup(self, path, result, services);
+            HasProfile::apply_backup(self, path, result, services);
         }
     }
 }

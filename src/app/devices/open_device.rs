@@ -9,15 +9,17 @@ use std::path::PathBuf;
 use crossbeam_channel::Receiver;
 
 use super::command::DeviceCommand;
-use super::model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
+use super::model::{ActionContext, DeviceMemory, DeviceModel, MotionControl};
 use crate::app::action::{Attempt, Done, OpenFailure, OpenedSession};
 use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{DraftOutcome, Drafted, Kind, ProfileFile, Saving, SessionEvents, SessionState, Source};
+use crate::app::services::{JobState, Services};
+use crate::app::session::{
+    DraftOutcome, HasDraft, Kind, ProfileFile, SaveRequest, SessionEvents, SessionState, Source,
+};
 use crate::app::{DriveMemory, Payload, PayloadKindError, SineCosineSource, Tab, Text};
 use crate::link::LinkUrl;
-use crate::profile::{Body, Document, ProfileError};
+use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::store::FileError;
 
 /// A device or profile of any kind.
@@ -66,7 +68,7 @@ pub trait OpenDevice: Any {
     /// Returns whether every edit has been saved to disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
-    fn dropped(&self) -> u64;
+    fn dropped_count(&self) -> u64;
     /// Returns the displayed recorder.
     fn recorder(&self) -> &Recorder;
     #[doc(hidden)]
@@ -88,7 +90,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
     #[doc(hidden)]
-    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory>;
+    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory>;
     #[doc(hidden)]
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
     #[doc(hidden)]
@@ -96,7 +98,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn connect(&mut self, opened: Box<dyn OpenedSession>, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), PayloadKindError>;
+    fn act(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn obey(&mut self, command: DeviceCommand, services: &mut Services);
     #[doc(hidden)]
@@ -108,7 +110,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
-    fn take_link(&mut self, url: LinkUrl);
+    fn switch_link(&mut self, url: LinkUrl);
     #[doc(hidden)]
     fn save(&mut self, path: PathBuf, services: &mut Services);
     #[doc(hidden)]
@@ -118,7 +120,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn connection_lost(&mut self, why: Text, services: &mut Services);
     #[doc(hidden)]
-    fn let_go(&mut self, end: JobEnd, services: &mut Services);
+    fn let_go(&mut self, end: JobState, services: &mut Services);
     #[doc(hidden)]
     fn may_have_changed(&mut self);
     #[doc(hidden)]
@@ -128,11 +130,17 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services);
     #[doc(hidden)]
-    fn take_document(&mut self, file: ProfileFile, document: Document);
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
     #[doc(hidden)]
     fn revert_edits(&mut self);
     #[doc(hidden)]
-    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services);
+    fn written(
+        &mut self,
+        saving: SaveRequest,
+        file: ProfileFile,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    );
 }
 
 impl<M: DeviceModel> OpenDevice for M {
@@ -209,15 +217,15 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn keeps_edits(&self) -> bool {
-        Drafted::keeps_edits(self)
+        HasDraft::keeps_edits(self)
     }
 
     fn is_draft_kept(&self) -> bool {
         self.session().drafting.is_kept()
     }
 
-    fn dropped(&self) -> u64 {
-        self.record().dropped()
+    fn dropped_count(&self) -> u64 {
+        self.record().dropped_count()
     }
 
     fn recorder(&self) -> &Recorder {
@@ -260,8 +268,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::motion_mut(self)
     }
 
-    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
-        DeviceModel::remembers_drives(self)
+    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
+        DeviceModel::drive_memory(self)
     }
 
     fn open_failed(&self, failed: &OpenFailure) -> Text {
@@ -283,7 +291,7 @@ impl<M: DeviceModel> OpenDevice for M {
         Ok(())
     }
 
-    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), PayloadKindError> {
+    fn act(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError> {
         DeviceModel::act(self, action.open()?, context);
         Ok(())
     }
@@ -309,8 +317,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::adopt_body(self, body, services)
     }
 
-    fn take_link(&mut self, url: LinkUrl) {
-        DeviceModel::take_link(self, &url);
+    fn switch_link(&mut self, url: LinkUrl) {
+        DeviceModel::switch_link(self, &url);
         self.session_mut().source = Source::Link(url);
     }
 
@@ -330,7 +338,7 @@ impl<M: DeviceModel> OpenDevice for M {
         SessionEvents::connection_lost(self, why, services);
     }
 
-    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    fn let_go(&mut self, end: JobState, services: &mut Services) {
         SessionEvents::let_go(self, end, services);
     }
 
@@ -339,26 +347,32 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn write_draft(&mut self, services: &mut Services) {
-        Drafted::write_draft(self, services);
+        HasDraft::write_draft(self, services);
     }
 
     fn leave_draft(&mut self, services: &mut Services) {
-        Drafted::leave_draft(self, services);
+        HasDraft::leave_draft(self, services);
     }
 
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
-        Drafted::take_draft(self, done, services);
+        HasDraft::take_draft(self, done, services);
     }
 
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
-        Drafted::take_document(self, file, document);
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
+        HasDraft::apply_document(self, file, document);
     }
 
     fn revert_edits(&mut self) {
-        Drafted::revert_edits(self);
+        HasDraft::revert_edits(self);
     }
 
-    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
-        Drafted::written(self, saving, file, result, services);
+    fn written(
+        &mut self,
+        saving: SaveRequest,
+        file: ProfileFile,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) {
+        HasDraft::written(self, saving, file, result, services);
     }
 }

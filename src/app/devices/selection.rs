@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::AnyDevice;
-use crate::app::kinds::Kinds;
+use crate::app::kinds::KindRegistry;
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 
@@ -30,7 +30,7 @@ impl Selection {
 
     /// Removes a device, where `left` are the remaining ones. Its tab then shows the device opened last, and the device
     /// shown last becomes that of the last tab.
-    pub(in crate::app) fn remove(&mut self, kinds: Kinds, left: &[Box<AnyDevice>], id: SessionId) {
+    pub(in crate::app) fn remove(&mut self, kinds: KindRegistry, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id
                 && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)

@@ -4,13 +4,13 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
-use super::{expected, file, plain};
-use crate::app::{Kinds, Text};
+use super::{expected_text, file, plain};
+use crate::app::{KindRegistry, Text};
 use crate::bits::HexError;
-use crate::link::{Scheme, TRACE_HEADER, TraceFileError, UrlError};
-use crate::profile::{ProfileError, SyntaxProblem};
+use crate::link::{LinkScheme, TRACE_HEADER, TraceFileError, UrlError};
+use crate::profile::{ProfileError, SyntaxErrorKind};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
-use crate::store::{LogbookError, LogbookProblem};
+use crate::store::{LogbookError, LogbookErrorKind};
 
 /// Explains why a string is not a valid link, or why the link does not accept a parameter.
 pub fn url(error: &UrlError) -> Text {
@@ -18,12 +18,12 @@ pub fn url(error: &UrlError) -> Text {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
         UrlError::Device { scheme, known } => Text::new("url.other_device").with("scheme", scheme).with("known", known),
         UrlError::Target { scheme } => Text::new(match scheme {
-            Scheme::Tcp => "url.needs_host_and_port",
-            Scheme::Modbus => "url.needs_gateway",
-            Scheme::Enip => "url.needs_device",
-            Scheme::Bridge => "url.needs_adapter",
-            Scheme::Replay => "url.needs_file",
-            Scheme::Serial | Scheme::Sim => "url.needs_port",
+            LinkScheme::Tcp => "url.needs_host_and_port",
+            LinkScheme::Modbus => "url.needs_gateway",
+            LinkScheme::Enip => "url.needs_device",
+            LinkScheme::Bridge => "url.needs_adapter",
+            LinkScheme::Replay => "url.needs_file",
+            LinkScheme::Serial | LinkScheme::Sim => "url.needs_port",
         }),
         UrlError::Port { scheme, port } => Text::new("detail.no_port").with("scheme", scheme).with("port", port),
         UrlError::Parameter(text) => Text::new("url.no_parameter").with("text", format!("{text:?}")),
@@ -34,7 +34,7 @@ pub fn url(error: &UrlError) -> Text {
         UrlError::Value { name, value, allowed } => Text::new("detail.parameter")
             .with("name", name)
             .with("value", value)
-            .with_text("allowed", expected(allowed)),
+            .with_text("allowed", expected_text(allowed)),
     }
 }
 
@@ -49,9 +49,10 @@ pub fn setting(error: &ConfigError) -> Text {
             };
             Text::new("sim.no_setting").with_text("device", device).with("key", key).with("known", known)
         }
-        ConfigError::Value { key, value, allowed } => {
-            Text::new("detail.setting").with("name", key).with("value", value).with_text("allowed", expected(allowed))
-        }
+        ConfigError::Value { key, value, allowed } => Text::new("detail.setting")
+            .with("name", key)
+            .with("value", value)
+            .with_text("allowed", expected_text(allowed)),
         ConfigError::Fault(FaultError::Unknown { item }) => Text::new("sim.no_fault").with("item", item),
         ConfigError::Fault(FaultError::Probability { item }) => Text::new("sim.fault_probability").with("item", item),
         ConfigError::Fault(FaultError::Number { item, min, max }) => {
@@ -61,7 +62,7 @@ pub fn setting(error: &ConfigError) -> Text {
 }
 
 /// Explains why a file is not a valid profile. `kinds` supplies the explanations of devices that refuse a value.
-pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
+pub fn document(error: &ProfileError, kinds: KindRegistry) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
         ProfileError::Misspelt { line, column, path, intended } => Text::new("detail.misspelt")
@@ -71,7 +72,7 @@ pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
             .with("meant", intended),
         ProfileError::Missing { path } => Text::new("detail.missing").with("path", path),
         ProfileError::Shape { path, expected: shape } => {
-            Text::new("detail.shape").with("path", path).with_text("expected", expected(shape))
+            Text::new("detail.shape").with("path", path).with_text("expected", expected_text(shape))
         }
         ProfileError::Bytes { path, problem } => {
             Text::new("detail.value").with("path", path).with_text("what", hex(problem))
@@ -84,11 +85,11 @@ pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     }
 }
 
-fn syntax_problem(problem: &SyntaxProblem) -> Text {
+fn syntax_problem(problem: &SyntaxErrorKind) -> Text {
     match problem {
-        SyntaxProblem::TooDeep => Text::new("detail.too_deep"),
-        SyntaxProblem::Twice(name) => Text::new("detail.twice").with("name", name),
-        SyntaxProblem::Parser(words) => plain(words),
+        SyntaxErrorKind::TooDeep => Text::new("detail.too_deep"),
+        SyntaxErrorKind::Twice(name) => Text::new("detail.twice").with("name", name),
+        SyntaxErrorKind::Parser(words) => plain(words),
     }
 }
 
@@ -111,15 +112,17 @@ pub fn recording(error: &TraceFileError) -> Text {
 
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
-        LogbookProblem::Folder(error) => file(error),
-        LogbookProblem::NoAccess => Text::new("logbook.access"),
-        LogbookProblem::WriteProtected => Text::new("logbook.protected"),
-        LogbookProblem::Locked => Text::new("logbook.locked"),
-        LogbookProblem::DiskFull => Text::new("logbook.full"),
-        LogbookProblem::Damaged { what } => Text::new("logbook.damaged").with("what", what),
-        LogbookProblem::Newer { found, known } => Text::new("logbook.newer").with("found", found).with("known", known),
-        LogbookProblem::NotOpen { entry } => Text::new("logbook.not_open").with("entry", entry),
-        LogbookProblem::Database { what, .. } => plain(what),
+        LogbookErrorKind::Folder(error) => file(error),
+        LogbookErrorKind::NoAccess => Text::new("logbook.access"),
+        LogbookErrorKind::WriteProtected => Text::new("logbook.protected"),
+        LogbookErrorKind::Locked => Text::new("logbook.locked"),
+        LogbookErrorKind::DiskFull => Text::new("logbook.full"),
+        LogbookErrorKind::Damaged { what } => Text::new("logbook.damaged").with("what", what),
+        LogbookErrorKind::Newer { found, known } => {
+            Text::new("logbook.newer").with("found", found).with("known", known)
+        }
+        LogbookErrorKind::NotOpen { entry } => Text::new("logbook.not_open").with("entry", entry),
+        LogbookErrorKind::Database { what, .. } => plain(what),
     };
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }

@@ -1,77 +1,81 @@
 //! Descriptions of the values that a parameter, a setting or an entry accepts.
 
 use crate::app::Text;
-use crate::expected::{Expected, Quantity};
+use crate::expected::{AllowedValues, Quantity};
 
-pub fn expected(expected: &Expected) -> Text {
+pub fn expected_text(expected: &AllowedValues) -> Text {
     match expected {
-        Expected::Words(words) => match &**words {
+        AllowedValues::Words(words) => match &**words {
             [before @ .., last] if !before.is_empty() => {
                 Text::new("expected.words").with("before", before.join(", ")).with("last", last)
             }
             words => super::plain(words.concat()),
         },
-        Expected::OneOf(names) => Text::new("expected.one_of").with("list", names.join(", ")),
-        Expected::Range { quantity: own, low, high } => {
+        AllowedValues::OneOf(names) => Text::new("expected.one_of").with("list", names.join(", ")),
+        AllowedValues::Range { quantity: own, low, high } => {
             let range = Text::new("expected.range").with_text("quantity", quantity(*own));
-            range.with_digits("low", low).with_digits("high", high)
+            range.with_formatted_number("low", low).with_formatted_number("high", high)
         }
-        Expected::Whole => Text::new("expected.whole"),
-        Expected::Number32 => Text::new("expected.number_32"),
-        Expected::Speed { most } => Text::new("expected.speed").with("most", most),
-        Expected::RevolutionsAMinute { most } => Text::new("expected.revolutions").with("most", most),
-        Expected::Seconds { low, high } => {
-            Text::new("expected.seconds").with_digits("low", low).with_digits("high", high)
+        AllowedValues::Whole => Text::new("expected.whole"),
+        AllowedValues::Number32 => Text::new("expected.number_32"),
+        AllowedValues::Speed { most } => Text::new("expected.speed").with("most", most),
+        AllowedValues::RevolutionsAMinute { most } => Text::new("expected.revolutions").with("most", most),
+        AllowedValues::Seconds { low, high } => {
+            Text::new("expected.seconds").with_formatted_number("low", low).with_formatted_number("high", high)
         }
-        Expected::BitRate { low, high } => Text::new("expected.bit_rate").with("low", low).with("high", high),
-        Expected::Periods { most } => Text::new("expected.periods").with("most", most),
-        Expected::MostTurns { most } => Text::new("expected.turns").with("most", most),
-        Expected::StepsOfTurns { low, high } => {
+        AllowedValues::BitRate { low, high } => Text::new("expected.bit_rate").with("low", low).with("high", high),
+        AllowedValues::Periods { most } => Text::new("expected.periods").with("most", most),
+        AllowedValues::MostTurns { most } => Text::new("expected.turns").with("most", most),
+        AllowedValues::StepsOfTurns { low, high } => {
             Text::new("expected.steps_of_turns").with("low", low).with("high", high)
         }
-        Expected::OnlyWith(other) => Text::new("expected.only_with").with("other", other),
-        Expected::Polynomial => Text::new("expected.polynomial"),
-        Expected::ShortFrame => Text::new("expected.short_frame"),
-        Expected::AddressOrOnlyOne => Text::new("expected.address_or_only_one"),
-        Expected::BusAddress { last } => Text::new("expected.bus_address").with("last", format!("{last:#04X}")),
-        Expected::FirstAddress { last } => Text::new("expected.first_address").with("last", format!("{last:#04X}")),
-        Expected::TimeoutBits => Text::new("expected.timeout_bits"),
-        Expected::TypeByte => Text::new("expected.type_byte"),
-        Expected::SettingsByte => Text::new("expected.settings_byte"),
-        Expected::SerialNumber => Text::new("expected.serial_number"),
-        Expected::Ascii { most } => Text::new("expected.ascii").with("most", most),
-        Expected::Steps => Text::new("expected.steps"),
-        Expected::AccessCodes => Text::new("expected.access_codes"),
-        Expected::Release => Text::new("expected.release"),
-        Expected::ErrorRegister => Text::new("expected.error_register"),
-        Expected::WriteCycles => Text::new("expected.write_cycles"),
-        Expected::Stores => Text::new("expected.stores"),
-        Expected::Pulses => Text::new("expected.pulses"),
-        Expected::Program => Text::new("expected.program"),
-        Expected::Hub => Text::new("expected.hub"),
-        Expected::SwitchDigits => Text::new("expected.switch_digits"),
-        Expected::Variant => Text::new("expected.variant"),
-        Expected::Places { count } => Text::new("expected.places").with("count", count),
-        Expected::Family => Text::new("expected.family"),
-        Expected::ErrorBits(names) => Text::new("expected.error_bits").with("names", names.join(", ")),
-        Expected::NoErrorBits => Text::new("expected.no_error_bits"),
-        Expected::Text => Text::new("expected.text"),
-        Expected::TextSuchAs(example) => Text::new("expected.text_such_as").with("example", format!("{example:?}")),
-        Expected::Byte => Text::new("expected.byte"),
-        Expected::Word => Text::new("expected.word"),
-        Expected::HexLines => Text::new("expected.hex_lines"),
-        Expected::Structure => Text::new("expected.structure"),
-        Expected::Names => Text::new("expected.names"),
-        Expected::List => Text::new("expected.list"),
-        Expected::Map => Text::new("expected.map").with("brace", "{"),
-        Expected::FourTenths => Text::new("expected.four_tenths"),
-        Expected::Banks => Text::new("expected.banks"),
-        Expected::Revolutions => Text::new("expected.revolutions_text"),
-        Expected::Fraction => Text::new("expected.fraction"),
-        Expected::Frame => Text::new("expected.frame"),
-        Expected::ParityBit => Text::new("expected.parity_bit"),
-        Expected::Repetition => Text::new("expected.repetition"),
-        Expected::Clocks => Text::new("expected.clocks"),
+        AllowedValues::OnlyWith(other) => Text::new("expected.only_with").with("other", other),
+        AllowedValues::Polynomial => Text::new("expected.polynomial"),
+        AllowedValues::ShortFrame => Text::new("expected.short_frame"),
+        AllowedValues::AddressOrOnlyOne => Text::new("expected.address_or_only_one"),
+        AllowedValues::BusAddress { last } => Text::new("expected.bus_address").with("last", format!("{last:#04X}")),
+        AllowedValues::FirstAddress { last } => {
+            Text::new("expected.first_address").with("last", format!("{last:#04X}"))
+        }
+        AllowedValues::TimeoutBits => Text::new("expected.timeout_bits"),
+        AllowedValues::TypeByte => Text::new("expected.type_byte"),
+        AllowedValues::SettingsByte => Text::new("expected.settings_byte"),
+        AllowedValues::SerialNumber => Text::new("expected.serial_number"),
+        AllowedValues::Ascii { most } => Text::new("expected.ascii").with("most", most),
+        AllowedValues::Steps => Text::new("expected.steps"),
+        AllowedValues::AccessCodes => Text::new("expected.access_codes"),
+        AllowedValues::Release => Text::new("expected.release"),
+        AllowedValues::ErrorRegister => Text::new("expected.error_register"),
+        AllowedValues::WriteCycles => Text::new("expected.write_cycles"),
+        AllowedValues::Stores => Text::new("expected.stores"),
+        AllowedValues::Pulses => Text::new("expected.pulses"),
+        AllowedValues::Program => Text::new("expected.program"),
+        AllowedValues::Hub => Text::new("expected.hub"),
+        AllowedValues::SwitchDigits => Text::new("expected.switch_digits"),
+        AllowedValues::Variant => Text::new("expected.variant"),
+        AllowedValues::Places { count } => Text::new("expected.places").with("count", count),
+        AllowedValues::Family => Text::new("expected.family"),
+        AllowedValues::ErrorBits(names) => Text::new("expected.error_bits").with("names", names.join(", ")),
+        AllowedValues::NoErrorBits => Text::new("expected.no_error_bits"),
+        AllowedValues::Text => Text::new("expected.text"),
+        AllowedValues::TextSuchAs(example) => {
+            Text::new("expected.text_such_as").with("example", format!("{example:?}"))
+        }
+        AllowedValues::Byte => Text::new("expected.byte"),
+        AllowedValues::Word => Text::new("expected.word"),
+        AllowedValues::HexLines => Text::new("expected.hex_lines"),
+        AllowedValues::Structure => Text::new("expected.structure"),
+        AllowedValues::Names => Text::new("expected.names"),
+        AllowedValues::List => Text::new("expected.list"),
+        AllowedValues::Map => Text::new("expected.map").with("brace", "{"),
+        AllowedValues::FourTenths => Text::new("expected.four_tenths"),
+        AllowedValues::Banks => Text::new("expected.banks"),
+        AllowedValues::Revolutions => Text::new("expected.revolutions_text"),
+        AllowedValues::Fraction => Text::new("expected.fraction"),
+        AllowedValues::Frame => Text::new("expected.frame"),
+        AllowedValues::ParityBit => Text::new("expected.parity_bit"),
+        AllowedValues::Repetition => Text::new("expected.repetition"),
+        AllowedValues::Clocks => Text::new("expected.clocks"),
     }
 }
 
@@ -143,63 +147,63 @@ mod tests {
         Quantity::RefusedRequests,
     ];
 
-    fn samples() -> Vec<Expected> {
+    fn samples() -> Vec<AllowedValues> {
         vec![
-            Expected::words(&["auto", "on", "off"]),
-            Expected::OneOf(vec!["skm36".to_owned(), "sks36".to_owned()]),
-            Expected::number(1, 8),
-            Expected::Whole,
-            Expected::Number32,
-            Expected::Speed { most: 12_000 },
-            Expected::RevolutionsAMinute { most: 1000 },
-            Expected::Seconds { low: Limit::thousandths(500), high: 60.into() },
-            Expected::BitRate { low: 300, high: 4_000_000 },
-            Expected::Periods { most: 7 },
-            Expected::MostTurns { most: 7 },
-            Expected::StepsOfTurns { low: 1, high: 8192 },
-            Expected::OnlyWith("periods="),
-            Expected::Polynomial,
-            Expected::ShortFrame,
-            Expected::AddressOrOnlyOne,
-            Expected::BusAddress { last: 0x5F },
-            Expected::FirstAddress { last: 0x5E },
-            Expected::TimeoutBits,
-            Expected::TypeByte,
-            Expected::SettingsByte,
-            Expected::SerialNumber,
-            Expected::Ascii { most: 32 },
-            Expected::Steps,
-            Expected::AccessCodes,
-            Expected::Release,
-            Expected::ErrorRegister,
-            Expected::WriteCycles,
-            Expected::Stores,
-            Expected::Pulses,
-            Expected::Program,
-            Expected::Hub,
-            Expected::SwitchDigits,
-            Expected::Variant,
-            Expected::Places { count: 4 },
-            Expected::Family,
-            Expected::ErrorBits(vec!["ERROR".to_owned()]),
-            Expected::NoErrorBits,
-            Expected::Text,
-            Expected::TextSuchAs("0x24:0x10+3"),
-            Expected::Byte,
-            Expected::Word,
-            Expected::HexLines,
-            Expected::Structure,
-            Expected::Names,
-            Expected::List,
-            Expected::Map,
-            Expected::FourTenths,
-            Expected::Banks,
-            Expected::Revolutions,
-            Expected::Fraction,
-            Expected::Frame,
-            Expected::ParityBit,
-            Expected::Repetition,
-            Expected::Clocks,
+            AllowedValues::words(&["auto", "on", "off"]),
+            AllowedValues::OneOf(vec!["skm36".to_owned(), "sks36".to_owned()]),
+            AllowedValues::number(1, 8),
+            AllowedValues::Whole,
+            AllowedValues::Number32,
+            AllowedValues::Speed { most: 12_000 },
+            AllowedValues::RevolutionsAMinute { most: 1000 },
+            AllowedValues::Seconds { low: Limit::thousandths(500), high: 60.into() },
+            AllowedValues::BitRate { low: 300, high: 4_000_000 },
+            AllowedValues::Periods { most: 7 },
+            AllowedValues::MostTurns { most: 7 },
+            AllowedValues::StepsOfTurns { low: 1, high: 8192 },
+            AllowedValues::OnlyWith("periods="),
+            AllowedValues::Polynomial,
+            AllowedValues::ShortFrame,
+            AllowedValues::AddressOrOnlyOne,
+            AllowedValues::BusAddress { last: 0x5F },
+            AllowedValues::FirstAddress { last: 0x5E },
+            AllowedValues::TimeoutBits,
+            AllowedValues::TypeByte,
+            AllowedValues::SettingsByte,
+            AllowedValues::SerialNumber,
+            AllowedValues::Ascii { most: 32 },
+            AllowedValues::Steps,
+            AllowedValues::AccessCodes,
+            AllowedValues::Release,
+            AllowedValues::ErrorRegister,
+            AllowedValues::WriteCycles,
+            AllowedValues::Stores,
+            AllowedValues::Pulses,
+            AllowedValues::Program,
+            AllowedValues::Hub,
+            AllowedValues::SwitchDigits,
+            AllowedValues::Variant,
+            AllowedValues::Places { count: 4 },
+            AllowedValues::Family,
+            AllowedValues::ErrorBits(vec!["ERROR".to_owned()]),
+            AllowedValues::NoErrorBits,
+            AllowedValues::Text,
+            AllowedValues::TextSuchAs("0x24:0x10+3"),
+            AllowedValues::Byte,
+            AllowedValues::Word,
+            AllowedValues::HexLines,
+            AllowedValues::Structure,
+            AllowedValues::Names,
+            AllowedValues::List,
+            AllowedValues::Map,
+            AllowedValues::FourTenths,
+            AllowedValues::Banks,
+            AllowedValues::Revolutions,
+            AllowedValues::Fraction,
+            AllowedValues::Frame,
+            AllowedValues::ParityBit,
+            AllowedValues::Repetition,
+            AllowedValues::Clocks,
         ]
     }
 
@@ -207,12 +211,12 @@ mod tests {
     fn expected_values_are_explained_in_both_languages() {
         let mut told = BTreeSet::new();
         for own in samples() {
-            let text = expected(&own);
+            let text = expected_text(&own);
             in_both_languages(&text, &own);
             told.insert(text.id());
         }
         for own in QUANTITIES {
-            in_both_languages(&expected(&Expected::range(own, 1, 8)), &Expected::range(own, 1, 8));
+            in_both_languages(&expected_text(&AllowedValues::range(own, 1, 8)), &AllowedValues::range(own, 1, 8));
             told.insert(quantity(own).id());
         }
         // A row that no sample reaches has a variant that is not above, or none.
@@ -223,8 +227,8 @@ mod tests {
 
     #[test]
     fn limits_have_the_decimal_sign_of_the_language() {
-        let volts = Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500));
-        assert_eq!(expected(&volts).words(English), "a voltage in volts from 4.75 to 12.5");
-        assert_eq!(expected(&volts).words(German), "eine Spannung in Volt von 4,75 bis 12,5");
+        let volts = AllowedValues::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500));
+        assert_eq!(expected_text(&volts).words(English), "a voltage in volts from 4.75 to 12.5");
+        assert_eq!(expected_text(&volts).words(German), "eine Spannung in Volt von 4,75 bis 12,5");
     }
 }

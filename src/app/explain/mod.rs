@@ -11,13 +11,13 @@ pub(crate) use detail::syntax;
 #[cfg(test)]
 pub(crate) use detail::tests::check as in_both_languages;
 pub use detail::{document, logbook_problem, recording, setting, url};
-pub use expected::expected;
+pub use expected::expected_text;
 
 use super::action::OpenFailure;
-use super::{Kinds, Text};
+use super::{KindRegistry, Text};
 use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::{Document, ProfileError, SCHEMA};
-use crate::store::{FileError, FileProblem, LogbookError, StoreError};
+use crate::profile::{ProfileDocument, ProfileError, SCHEMA};
+use crate::store::{FileError, FileErrorKind, LogbookError, StoreError};
 use crate::units::Parity;
 use crate::worker::{NotBegun, OpenError};
 
@@ -70,19 +70,19 @@ pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> T
 pub fn file(error: &FileError) -> Text {
     let path = error.path.display();
     match &error.problem {
-        FileProblem::NotFound => Text::new("file.not_found").with("path", path),
-        FileProblem::NoFolder => Text::new("file.no_folder").with("path", path),
-        FileProblem::NotFolder => Text::new("file.not_a_folder").with("path", path),
-        FileProblem::IsFolder => Text::new("file.is_folder").with("path", path),
-        FileProblem::NotAFile => Text::new("file.no_file").with("path", path),
-        FileProblem::Exists => Text::new("file.exists").with("path", path),
-        FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
-        FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),
-        FileProblem::DiskFull => Text::new("file.disk_full").with("path", path),
-        FileProblem::InUse => Text::new("file.in_use").with("path", path),
-        FileProblem::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
-        FileProblem::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
-        FileProblem::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),
+        FileErrorKind::NotFound => Text::new("file.not_found").with("path", path),
+        FileErrorKind::NoFolder => Text::new("file.no_folder").with("path", path),
+        FileErrorKind::NotFolder => Text::new("file.not_a_folder").with("path", path),
+        FileErrorKind::IsFolder => Text::new("file.is_folder").with("path", path),
+        FileErrorKind::NotAFile => Text::new("file.no_file").with("path", path),
+        FileErrorKind::Exists => Text::new("file.exists").with("path", path),
+        FileErrorKind::PermissionDenied => Text::new("file.permission").with("path", path),
+        FileErrorKind::WriteProtected => Text::new("file.write_protected").with("path", path),
+        FileErrorKind::DiskFull => Text::new("file.disk_full").with("path", path),
+        FileErrorKind::InUse => Text::new("file.in_use").with("path", path),
+        FileErrorKind::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
+        FileErrorKind::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
+        FileErrorKind::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),
     }
 }
 
@@ -99,7 +99,7 @@ pub fn store(error: &StoreError) -> Text {
 
 /// Explains why a profile cannot be read. `kinds` supplies the explanations of devices. The command line, which is in
 /// English, does not require them.
-pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
+pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     let path = path.display();
     match error {
         ProfileError::Schema { found, known } => {
@@ -116,7 +116,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
 }
 
 /// Returns remarks about an opened profile that has a newer schema or entries that the schema does not define.
-pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
+pub fn profile_remarks(path: &Path, document: &ProfileDocument) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];
     }
@@ -126,7 +126,7 @@ pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
 }
 
 /// Describes a profile with a newer schema and its unknown content.
-pub fn newer_profile(path: &Path, document: &Document) -> Text {
+pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
     let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
     Text::new(id)
         .with("path", path.display())
@@ -135,7 +135,7 @@ pub fn newer_profile(path: &Path, document: &Document) -> Text {
         .with("entries", document.beyond.join(", "))
 }
 
-pub fn not_begun(why: &NotBegun) -> Text {
+pub fn not_started_text(why: &NotBegun) -> Text {
     match why {
         NotBegun::OtherPlan => Text::new("write.other_plan"),
         NotBegun::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),

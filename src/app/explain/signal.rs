@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::file;
 use crate::analysis::capture::CaptureError;
-use crate::analysis::diagnosis::{ComparisonObstacle, DiagnosisFinding, FindingKind, Stuck};
-use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
+use crate::analysis::diagnosis::{ComparisonObstacle, DiagnosisFinding, FindingKind, StuckLevel};
+use crate::analysis::ellipse::{FitError, LEAST_POINTS, SignalChannel};
 use crate::analysis::nonlinearity::NonlinearityError;
 use crate::analysis::quality::{QualityFinding as Parameter, Verdict};
 use crate::analysis::revolution::RevolutionError;
@@ -73,8 +73,8 @@ fn fit(path: &Path, error: &FitError) -> Text {
         FitError::TooFew { points } => text("signal.few_points").with("points", points).with("least", LEAST_POINTS),
         FitError::NotFinite { index } => text("signal.sample").with("number", index + 1),
         FitError::Constant => text("signal.constant"),
-        FitError::Dead(Channel::Sine) => text("signal.dead_sine"),
-        FitError::Dead(Channel::Cosine) => text("signal.dead_cosine"),
+        FitError::Dead(SignalChannel::Sine) => text("signal.dead_sine"),
+        FitError::Dead(SignalChannel::Cosine) => text("signal.dead_cosine"),
         FitError::Line => text("signal.line"),
         FitError::Ambiguous => text("signal.ambiguous"),
         FitError::NotAnEllipse => text("signal.no_ellipse"),
@@ -105,12 +105,12 @@ pub fn revolution(error: &RevolutionError) -> Text {
 }
 
 pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
-    let of = |id, which: Channel| {
+    let of = |id, which: SignalChannel| {
         Text::new(id).with_text(
             "channel",
             Text::new(match which {
-                Channel::Sine => "diagnosis.sine",
-                Channel::Cosine => "diagnosis.cosine",
+                SignalChannel::Sine => "diagnosis.sine",
+                SignalChannel::Cosine => "diagnosis.cosine",
             }),
         )
     };
@@ -118,18 +118,18 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
         Text::new(id).with_number("millivolts", volts * 1e3, 1).with_number("percent", share * 100.0, 1)
     };
     match finding.kind {
-        FindingKind::Limit(parameter) => self::finding(&parameter),
+        FindingKind::Limit(parameter) => self::finding_text(&parameter),
         FindingKind::AtRest => Text::new("diagnosis.at_rest"),
         FindingKind::Still => Text::new("diagnosis.still"),
         FindingKind::Same => Text::new("diagnosis.same"),
-        FindingKind::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
-        FindingKind::Dead { channel, stuck: Stuck::Ground(wire) } => {
+        FindingKind::Dead { channel, stuck: StuckLevel::Together } => of("diagnosis.dead_together", channel),
+        FindingKind::Dead { channel, stuck: StuckLevel::Ground(wire) } => {
             of("diagnosis.dead_ground", channel).with("wire", wire.name())
         }
-        FindingKind::Dead { channel, stuck: Stuck::Supply(wire) } => {
+        FindingKind::Dead { channel, stuck: StuckLevel::Supply(wire) } => {
             of("diagnosis.dead_supply", channel).with("wire", wire.name())
         }
-        FindingKind::Dead { channel, stuck: Stuck::Apart(volts) } => {
+        FindingKind::Dead { channel, stuck: StuckLevel::Apart(volts) } => {
             of("diagnosis.dead_apart", channel).with_number("volts", volts, 2)
         }
         FindingKind::Half { channel, share } => of("diagnosis.half", channel).with_number("percent", share * 100.0, 0),
@@ -209,7 +209,7 @@ fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
 }
 
-pub fn finding(finding: &Parameter) -> Text {
+pub fn finding_text(finding: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
     match *finding {
         Parameter::Amplitude { volts, ok_v: (least, most), verdict } => {
@@ -286,7 +286,7 @@ mod tests {
                  Schirm oder Masse eingekoppelt. Den Schirm beidseitig auflegen.",
             ]
         );
-        let dead = FindingKind::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
+        let dead = FindingKind::Dead { channel: SignalChannel::Sine, stuck: StuckLevel::Ground(Wire::Refsin) };
         assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal, weil REFSIN auf Masse liegt."));
         let level = FindingKind::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
         assert!(said(level)[0].contains("3.20 V; the permitted range is 2.375 to 2.625 V"));

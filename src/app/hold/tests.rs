@@ -4,7 +4,7 @@ use super::HoldEvent::{Hold, Press, Release, Stop};
 use super::PressKey::{Enter, Space};
 use super::*;
 
-const SCENE: HoldScene = HoldScene { enabled: true, window: true, keyboard: true, moving: false };
+const SCENE: HoldContext = HoldContext { enabled: true, window: true, keyboard: true, moving: false };
 const DOWN: HoldInput = HoldInput::Down { key: Space, plain: true };
 const UP: HoldInput = HoldInput::Up(Space);
 const POINTER: HoldInput = HoldInput::PointerDown { on: true };
@@ -14,7 +14,7 @@ struct Pad {
     state: HoldState,
     now: f64,
     apart: f64,
-    scene: HoldScene,
+    scene: HoldContext,
     pointer: bool,
     follows: bool,
 }
@@ -234,10 +234,10 @@ fn a_press_right_after_another_key_starts_no_hold() {
 fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
-    assert_eq!(pad.state.next_picture(), None, "while it is held");
+    assert_eq!(pad.state.repaint_delay(), None, "while it is held");
     assert_eq!(pad.picture(&[UP]), Some(Release));
     let released = pad.now;
-    while let Some(next) = pad.state.next_picture() {
+    while let Some(next) = pad.state.repaint_delay() {
         pad.apart = next;
         assert_eq!(pad.picture(&[]), None);
         assert!(pad.now < released + 0.0501);

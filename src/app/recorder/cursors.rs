@@ -2,7 +2,7 @@
 //! reduced for drawing.
 
 use super::{Recorder, Series};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::history::Sample;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,7 +44,7 @@ pub struct CursorStatistics {
 }
 
 impl Recorder {
-    pub fn cursor(&self, cursor: Cursor) -> Option<Time> {
+    pub fn cursor(&self, cursor: Cursor) -> Option<SampleTime> {
         match cursor {
             Cursor::A => self.cursors[0],
             Cursor::B => self.cursors[1],
@@ -62,7 +62,7 @@ impl Recorder {
         if a.is_none() && b.is_none() {
             return None;
         }
-        let at = |time: Option<Time>| self.at(line, time?).filter(|sample| line.value(sample).is_finite());
+        let at = |time: Option<SampleTime>| self.at(line, time?).filter(|sample| line.value(sample).is_finite());
         let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::analysis::history::Flags::BAD));
         let (at_a, at_b) = (good(a), good(b));
         let difference = at_a.zip(at_b).map(|(a, b)| line.difference(&a, &b));
@@ -75,7 +75,7 @@ impl Recorder {
         })
     }
 
-    fn between(&self, line: &Series, from: Time, to: Time) -> Option<CursorStatistics> {
+    fn between(&self, line: &Series, from: SampleTime, to: SampleTime) -> Option<CursorStatistics> {
         let history = self.history(line)?;
         let statistics = history.statistics(line.column, history.indices(from, to.plus(1)))?;
         let factor = line.factor();
@@ -92,7 +92,7 @@ impl Recorder {
     }
 
     /// Returns the raw sample of a line nearest to a point in time, or `None` if nothing was recorded then.
-    pub fn at(&self, line: &Series, time: Time) -> Option<Sample> {
+    pub fn at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         /// Divisor of the visible range that gives how far a cursor may be from the first or last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
@@ -104,8 +104,8 @@ impl Recorder {
 
     /// Moves a cursor to the nearest sample, so that time and value belong together. If nothing was recorded there, the
     /// cursor stays at the given time.
-    pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
-        let nearest = |time: Time| {
+    pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<SampleTime>) {
+        let nearest = |time: SampleTime| {
             let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
             samples.min_by_key(|own| own.nanoseconds_since(time).saturating_abs()).unwrap_or(time)
         };

@@ -1,13 +1,13 @@
 //! Lines that have ended because later samples have another meaning or no longer arrive. They keep their samples and
 //! units, and follow the active lines.
 
-use super::{LineId, Recorder, Scale, Series};
+use super::{Recorder, Scale, Series, SeriesId};
 use crate::app::Text;
 
 impl Recorder {
     /// Continues a line with new samples, keeping its colour and, if possible, its unit. The old line ends under the
     /// given name.
-    pub(in crate::app) fn succeed(&mut self, old: LineId, new: Series, (name, heading): (Text, String)) -> LineId {
+    pub(in crate::app) fn succeed(&mut self, old: SeriesId, new: Series, (name, heading): (Text, String)) -> SeriesId {
         let id = self.add_line(new);
         if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
             let unit = before.chosen();
@@ -25,20 +25,20 @@ impl Recorder {
         id
     }
 
-    fn take(&mut self, id: LineId) -> Option<Series> {
+    fn take(&mut self, id: SeriesId) -> Option<Series> {
         let at = self.lines.iter().position(|line| line.id == id)?;
         Some(self.lines.remove(at))
     }
 
     /// Ends a line. No more samples are added, and the line moves behind the active lines.
-    pub(in crate::app) fn end_line(&mut self, id: LineId, name: Text, heading: String) {
+    pub(in crate::app) fn end_line(&mut self, id: SeriesId, name: Text, heading: String) {
         if let Some(line) = self.take(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });
         }
         self.forget_trigger(id);
     }
 
-    pub(in crate::app) fn resume_line(&mut self, id: LineId, name: Text, heading: String) {
+    pub(in crate::app) fn resume_line(&mut self, id: SeriesId, name: Text, heading: String) {
         let mut group = None;
         self.with_line(id, |line| {
             (line.ended, line.name, line.heading) = (false, name, heading);
@@ -48,7 +48,7 @@ impl Recorder {
     }
 
     /// Changes the units in which the samples of a line can be displayed.
-    pub(in crate::app) fn rescale(&mut self, id: LineId, scales: Vec<Scale>) {
+    pub(in crate::app) fn rescale(&mut self, id: SeriesId, scales: Vec<Scale>) {
         if self.line(id).is_none_or(|line| line.scales == scales) {
             return;
         }
@@ -61,7 +61,7 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    pub(in crate::app) fn has_samples(&self, id: LineId) -> bool {
+    pub(in crate::app) fn has_samples(&self, id: SeriesId) -> bool {
         self.line(id).and_then(|line| self.history(line)).is_some_and(|history| !history.all().is_empty())
     }
 }

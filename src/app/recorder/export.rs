@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
 use super::{GroupId, Recorder, SAMPLE, Series};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_with};
 
@@ -31,7 +31,7 @@ pub struct Export {
     columns: Vec<Column>,
     lost: u64,
     /// End of the recorded range to include, or `None` for the visible part only.
-    until: Option<Time>,
+    until: Option<SampleTime>,
 }
 
 /// The number of a table, unique in the process.
@@ -81,7 +81,7 @@ enum Portion {
 /// A portion of the table. Each row has a time and one cell per column.
 #[derive(Debug, Default)]
 struct Rows {
-    times: Vec<Time>,
+    times: Vec<SampleTime>,
     cells: Vec<Cell>,
 }
 

@@ -5,7 +5,7 @@ use crate::analysis::history::{Sample, Value};
 use crate::app::Text;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LineId(pub(super) u32);
+pub struct SeriesId(pub(super) u32);
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
@@ -25,7 +25,7 @@ impl Scale {
 
 #[derive(Clone, Debug)]
 pub struct Series {
-    pub id: LineId,
+    pub id: SeriesId,
     pub name: Text,
     /// Column heading in a table.
     pub heading: String,
@@ -49,7 +49,7 @@ impl Series {
     /// Creates a line from a column of a group. `scales` must not be empty, and its first entry is displayed.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
-            id: LineId::default(),
+            id: SeriesId::default(),
             name,
             heading: heading.into(),
             colour: 0,

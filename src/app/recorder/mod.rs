@@ -15,35 +15,35 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use cursors::{Cursor, Measured};
 pub use export::{Export, ExportResult};
-pub use line::{LineId, Scale, Series};
-pub use trigger::{Trigger, TriggerState, When};
+pub use line::{Scale, Series, SeriesId};
+pub use trigger::{Trigger, TriggerCondition, TriggerState};
 pub use view::TimeWindow;
 
 use trigger::Watch;
 
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::history::{History, Kind, Part, Refused, Sample};
 use crate::app::Text;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecorderAction {
-    Show(LineId, bool),
+    Show(SeriesId, bool),
     /// Display a line in the unit with this index.
-    SetScale(LineId, usize),
+    SetScale(SeriesId, usize),
     /// Set the range of values of a line in its unit, or `None` to fit the visible samples.
-    SetRange(LineId, Option<(f64, f64)>),
+    SetRange(SeriesId, Option<(f64, f64)>),
     /// Draw all lines on one shared axis, or each line on its own.
     ShareAxis(bool),
     Follow,
     Pause,
     Fit,
-    Look(Time, Time),
+    Look(SampleTime, SampleTime),
     /// Set the length of the view in nanoseconds, keeping its current end.
     SetSpan(i64),
     /// Lengthen (above 1) or shorten (below 1) the view around a point in time.
-    Zoom(Time, f64),
+    Zoom(SampleTime, f64),
     /// Move a cursor to a point in time, or remove it.
-    SetCursor(Cursor, Option<Time>),
+    SetCursor(Cursor, Option<SampleTime>),
     ShowCursors(bool),
     Arm(Trigger),
     Disarm,
@@ -104,11 +104,11 @@ pub struct Recorder {
     counts: bool,
     finished: bool,
     one_axis: bool,
-    cursors: [Option<Time>; 2],
+    cursors: [Option<SampleTime>; 2],
     watch: Option<Watch>,
     export: Option<Export>,
     /// Time up to which everything has been exported to a table.
-    saved: Option<Time>,
+    saved: Option<SampleTime>,
 }
 
 impl Recorder {
@@ -143,8 +143,8 @@ impl Recorder {
     }
 
     /// Adds a line for a column of a group. The first of its scales is displayed.
-    pub fn add_line(&mut self, line: Series) -> LineId {
-        let id = LineId(self.new_number());
+    pub fn add_line(&mut self, line: Series) -> SeriesId {
+        let id = SeriesId(self.new_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
         let colour = (0..).find(taken).unwrap_or(0);
         self.lines.push(Series { id, colour, ..line });
@@ -152,7 +152,7 @@ impl Recorder {
     }
 
     /// Removes a line, and its samples unless another line shows samples of the same group.
-    pub(in crate::app) fn remove_line(&mut self, id: LineId) {
+    pub(in crate::app) fn remove_line(&mut self, id: SeriesId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;
         if self.lines.iter().all(|line| line.group != group) {
@@ -161,13 +161,13 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    fn forget_trigger(&mut self, id: LineId) {
+    fn forget_trigger(&mut self, id: SeriesId) {
         if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
             self.watch = None;
         }
     }
 
-    pub(in crate::app) fn remark(&mut self, id: LineId, remark: Option<Text>) {
+    pub(in crate::app) fn remark(&mut self, id: SeriesId, remark: Option<Text>) {
         self.with_line(id, |line| line.remark = remark);
     }
 
@@ -175,7 +175,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The batch does not have the group's columns, or its time goes back.
-    pub fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+    pub fn append(&mut self, group: GroupId, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
         if self.would_discard_picture(group, times.len()) {
             self.break_before_next(group);
             return Ok(());
@@ -233,7 +233,7 @@ impl Recorder {
         &self.lines
     }
 
-    pub fn line(&self, id: LineId) -> Option<&Series> {
+    pub fn line(&self, id: SeriesId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
 
@@ -269,7 +269,7 @@ impl Recorder {
     }
 
     /// Returns the raw sample of a line that is nearest to a point in time.
-    pub fn nearest(&self, line: &Series, time: Time) -> Option<Sample> {
+    pub fn nearest(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest(time)?)
     }
@@ -280,7 +280,7 @@ impl Recorder {
     }
 
     /// Returns the times of the first and last samples of all groups.
-    pub fn recorded(&self) -> Option<(Time, Time)> {
+    pub fn recorded(&self) -> Option<(SampleTime, SampleTime)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
             let all = history.all();
             Some((history.time(all.start)?, history.time(all.end.checked_sub(1)?)?))
@@ -290,7 +290,7 @@ impl Recorder {
 
     /// Discards the samples and ended lines, but keeps active lines, units and the length of the view.
     pub(crate) fn clear(&mut self) {
-        let ended: Vec<LineId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
+        let ended: Vec<SeriesId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));
         for Group { history, stamp, columns, capacity, longest_pause } in self.groups.values_mut() {
             *history = Group::history(columns, *capacity, *longest_pause);
@@ -305,7 +305,7 @@ impl Recorder {
         self.follow();
     }
 
-    fn set_scale(&mut self, id: LineId, scale: usize) {
+    fn set_scale(&mut self, id: SeriesId, scale: usize) {
         self.with_line(id, |line| {
             if scale < line.scales.len() {
                 line.scale = scale;
@@ -316,7 +316,7 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    fn with_line(&mut self, id: LineId, change: impl FnOnce(&mut Series)) {
+    fn with_line(&mut self, id: SeriesId, change: impl FnOnce(&mut Series)) {
         if let Some(line) = self.lines.iter_mut().find(|line| line.id == id) {
             change(line);
         }

@@ -6,12 +6,12 @@ use crate::app::Text;
 
 const MILLISECOND: i64 = 1_000_000;
 
-fn at(milliseconds: i64) -> Time {
-    Time::from_nanoseconds(milliseconds * MILLISECOND)
+fn at(milliseconds: i64) -> SampleTime {
+    SampleTime::from_nanoseconds(milliseconds * MILLISECOND)
 }
 
 /// A recorder with a line of counts, in steps and in degrees (360° are 4096 steps), and one of voltages.
-fn recorder(span: i64) -> (Recorder, GroupId, [LineId; 2]) {
+fn recorder(span: i64) -> (Recorder, GroupId, [SeriesId; 2]) {
     let mut recorder = Recorder::new(span);
     let group = recorder.add_group(&[Kind::Whole, Kind::Real], 100_000, Some(500 * MILLISECOND));
     let degrees = Scale::new("unit.degrees", 360.0 / 4096.0, 3);
@@ -74,7 +74,7 @@ fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     assert_eq!(recorder.span(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
     recorder.act(RecorderAction::Look(at(5), at(5)));
     assert_eq!(recorder.span(), 100);
-    recorder.act(RecorderAction::Look(Time::from_nanoseconds(i64::MIN), Time::from_nanoseconds(i64::MAX)));
+    recorder.act(RecorderAction::Look(SampleTime::from_nanoseconds(i64::MIN), SampleTime::from_nanoseconds(i64::MAX)));
     assert!(recorder.span() > 0);
 }
 
@@ -87,7 +87,7 @@ fn cursors_measure_on_the_raw_samples() {
     ramp(&mut recorder, group, 151, 1000);
     assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
     recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(200))));
-    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
+    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(SampleTime::from_nanoseconds(99_800_000))));
     assert_eq!(recorder.cursor_distance(), Some(-100 * MILLISECOND), "on the samples that are read");
     recorder.act(RecorderAction::SetScale(counts, 1));
     let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
@@ -134,11 +134,11 @@ fn a_held_view_is_not_evicted_by_newer_samples() {
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
     let line = recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "position", scales));
     let feed = |recorder: &mut Recorder, from: i64, to: i64| {
-        let times: Vec<Time> = (from..to).map(at).collect();
+        let times: Vec<SampleTime> = (from..to).map(at).collect();
         let values: Vec<i64> = (from..to).collect();
         recorder.append(group, &times, &[Part::whole(&values)]).unwrap();
     };
-    arm(&mut recorder, line, When::Rising, 5_000.0, false);
+    arm(&mut recorder, line, TriggerCondition::Rising, 5_000.0, false);
     (0..100).for_each(|portion| feed(&mut recorder, portion * 1000, (portion + 1) * 1000));
     let (from, to) = recorder.window();
     assert_eq!((from, to), (at(4_975), at(5_075)));
@@ -155,13 +155,13 @@ fn a_trigger_searches_a_finished_recording_immediately() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.finish();
-    arm(&mut recorder, counts, When::Rising, 600.0, false);
+    arm(&mut recorder, counts, TriggerCondition::Rising, 600.0, false);
     assert_eq!((state(&recorder), recorder.window()), (TriggerState::Held(at(600)), (at(575), at(675))));
-    arm(&mut recorder, counts, When::Falling, 600.0, false);
+    arm(&mut recorder, counts, TriggerCondition::Falling, 600.0, false);
     assert_eq!(state(&recorder), TriggerState::Missed);
 }
 
-fn arm(recorder: &mut Recorder, line: LineId, when: When, level: f64, repeat: bool) {
+fn arm(recorder: &mut Recorder, line: SeriesId, when: TriggerCondition, level: f64, repeat: bool) {
     recorder.act(RecorderAction::Arm(Trigger { line, when, level, before: 0.25, repeat }));
 }
 
@@ -175,7 +175,7 @@ fn a_trigger_shows_the_samples_before_it_and_holds() {
     ramp(&mut recorder, group, 0, 500);
     recorder.act(RecorderAction::SetScale(counts, 1));
     // 600 steps in degrees: a level is in the displayed unit.
-    arm(&mut recorder, counts, When::Rising, 600.0 * 360.0 / 4096.0, false);
+    arm(&mut recorder, counts, TriggerCondition::Rising, 600.0 * 360.0 / 4096.0, false);
     assert_eq!(state(&recorder), TriggerState::Armed);
     ramp(&mut recorder, group, 500, 601);
     assert_eq!(state(&recorder), TriggerState::Fired(at(600)));
@@ -193,13 +193,13 @@ fn a_trigger_shows_the_samples_before_it_and_holds() {
 fn each_trigger_kind_fires_on_its_condition() {
     let values = [5.0, 1.0, 9.0, 3.0];
     for (when, level, fires) in [
-        (When::Rising, 4.0, Some(3)),
-        (When::Falling, 4.0, Some(2)),
-        (When::Above, 8.0, Some(3)),
-        (When::Above, 5.0, Some(1)),
-        (When::Below, 1.0, Some(2)),
-        (When::Rising, 9.5, None),
-        (When::Error, 0.0, Some(4)),
+        (TriggerCondition::Rising, 4.0, Some(3)),
+        (TriggerCondition::Falling, 4.0, Some(2)),
+        (TriggerCondition::Above, 8.0, Some(3)),
+        (TriggerCondition::Above, 5.0, Some(1)),
+        (TriggerCondition::Below, 1.0, Some(2)),
+        (TriggerCondition::Rising, 9.5, None),
+        (TriggerCondition::Error, 0.0, Some(4)),
     ] {
         let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
         arm(&mut recorder, volts, when, level, false);
@@ -215,7 +215,7 @@ fn each_trigger_kind_fires_on_its_condition() {
 #[test]
 fn an_edge_across_a_gap_does_not_trigger() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
-    arm(&mut recorder, volts, When::Rising, 5.0, false);
+    arm(&mut recorder, volts, TriggerCondition::Rising, 5.0, false);
     add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 1, 0, 9.0, Flags::BAD);
     add(&mut recorder, group, 2, 0, 9.0, Flags::NONE);
@@ -225,7 +225,7 @@ fn an_edge_across_a_gap_does_not_trigger() {
     assert_eq!(state(&recorder), TriggerState::Armed);
     recorder.act(RecorderAction::Arm(Trigger {
         line: volts,
-        when: When::Rising,
+        when: TriggerCondition::Rising,
         level: f64::NAN,
         before: 0.0,
         repeat: false,
@@ -236,7 +236,7 @@ fn an_edge_across_a_gap_does_not_trigger() {
 #[test]
 fn a_repeated_trigger_shows_complete_windows() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
-    arm(&mut recorder, volts, When::Rising, 0.0, true);
+    arm(&mut recorder, volts, TriggerCondition::Rising, 0.0, true);
     let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
     (0..400).for_each(|time| add(&mut recorder, group, time, 0, wave(time), Flags::NONE));
     // Edges at 35, 105, 175, …: after 35 + 75 the next picture begins with the edge at 175, then at 315.
@@ -248,7 +248,7 @@ fn a_repeated_trigger_shows_complete_windows() {
 fn removing_the_last_line_removes_its_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 10);
-    arm(&mut recorder, counts, When::Rising, 0.0, false);
+    arm(&mut recorder, counts, TriggerCondition::Rising, 0.0, false);
     recorder.remove_line(counts);
     assert!(recorder.trigger().is_none() && !recorder.is_empty());
     recorder.remove_line(volts);
@@ -325,7 +325,7 @@ fn samples_without_times_are_counted() {
         "sine",
         vec![Scale::new("unit.steps", 1.0, 0)],
     ));
-    let times: Vec<Time> = (0..3).map(|sample| Time::from_nanoseconds(sample * SAMPLE)).collect();
+    let times: Vec<SampleTime> = (0..3).map(|sample| SampleTime::from_nanoseconds(sample * SAMPLE)).collect();
     recorder.append(group, &times, &[Part::real(&[0.5, 1.5, 2.5])]).unwrap();
     assert_eq!(recorder.span(), 100 * SAMPLE);
     assert_eq!(exported(&mut recorder, false).unwrap(), "sample,sine [steps],remark\n0,0.5,\n1,1.5,\n2,2.5,\n");

@@ -1,11 +1,11 @@
 //! The trigger: waits for an event in a line and shows it together with the samples before it.
 
-use super::{GroupId, LineId, Recorder, TimeWindow};
-use crate::analysis::Time;
+use super::{GroupId, Recorder, SeriesId, TimeWindow};
+use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Sample};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum When {
+pub enum TriggerCondition {
     Above,
     Below,
     Rising,
@@ -14,19 +14,25 @@ pub enum When {
     Error,
 }
 
-impl When {
-    pub const ALL: [When; 5] = [When::Rising, When::Falling, When::Above, When::Below, When::Error];
+impl TriggerCondition {
+    pub const ALL: [TriggerCondition; 5] = [
+        TriggerCondition::Rising,
+        TriggerCondition::Falling,
+        TriggerCondition::Above,
+        TriggerCondition::Below,
+        TriggerCondition::Error,
+    ];
 
     pub const fn has_level(self) -> bool {
-        !matches!(self, When::Error)
+        !matches!(self, TriggerCondition::Error)
     }
 }
 
 /// A trigger with its condition and the range displayed around the event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
-    pub line: LineId,
-    pub when: When,
+    pub line: SeriesId,
+    pub when: TriggerCondition,
     pub level: f64,
     /// Fraction of the view before the event, from 0 to 1.
     pub before: f64,
@@ -39,9 +45,9 @@ pub enum TriggerState {
     /// Waiting for the event.
     Armed,
     /// The event occurred at this time, and later samples are still being recorded.
-    Fired(Time),
+    Fired(SampleTime),
     /// The event occurred at this time, and the view is complete.
-    Held(Time),
+    Held(SampleTime),
     /// The event did not occur in a complete recording.
     Missed,
 }
@@ -49,7 +55,7 @@ pub enum TriggerState {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     trigger: Trigger,
-    when: When,
+    when: TriggerCondition,
     level: f64,
     state: TriggerState,
     /// Last valid value, required to detect an edge; `None` after a break.
@@ -67,7 +73,7 @@ impl Watch {
         Watch { state: TriggerState::Armed, last: None, ..self }
     }
 
-    fn window(&self, at: Time) -> (Time, Time) {
+    fn window(&self, at: SampleTime) -> (SampleTime, SampleTime) {
         let from = at.plus(-((self.span as f64 * self.trigger.before) as i64));
         (from, from.plus(self.span))
     }
@@ -81,11 +87,11 @@ impl Watch {
         self.last = value;
         let level = self.level;
         match (self.when, last, value) {
-            (When::Error, ..) => bad || sample.flags.contains(Flags::WARNING),
-            (When::Above, _, Some(value)) => value >= level,
-            (When::Below, _, Some(value)) => value <= level,
-            (When::Rising, Some(last), Some(value)) => last < level && value >= level,
-            (When::Falling, Some(last), Some(value)) => last > level && value <= level,
+            (TriggerCondition::Error, ..) => bad || sample.flags.contains(Flags::WARNING),
+            (TriggerCondition::Above, _, Some(value)) => value >= level,
+            (TriggerCondition::Below, _, Some(value)) => value <= level,
+            (TriggerCondition::Rising, Some(last), Some(value)) => last < level && value >= level,
+            (TriggerCondition::Falling, Some(last), Some(value)) => last > level && value <= level,
             _ => false,
         }
     }
@@ -104,10 +110,10 @@ impl Recorder {
         }
         // In a unit that counts in the opposite direction, rising is falling.
         let when = match trigger.when {
-            When::Above if factor < 0.0 => When::Below,
-            When::Below if factor < 0.0 => When::Above,
-            When::Rising if factor < 0.0 => When::Falling,
-            When::Falling if factor < 0.0 => When::Rising,
+            TriggerCondition::Above if factor < 0.0 => TriggerCondition::Below,
+            TriggerCondition::Below if factor < 0.0 => TriggerCondition::Above,
+            TriggerCondition::Rising if factor < 0.0 => TriggerCondition::Falling,
+            TriggerCondition::Falling if factor < 0.0 => TriggerCondition::Rising,
             when => when,
         };
         let before = if trigger.before.is_finite() { trigger.before.clamp(0.0, 1.0) } else { 0.5 };

@@ -1,7 +1,7 @@
 //! The displayed time range.
 
 use super::Recorder;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Minimum length of a view in nanoseconds.
 const SHORTEST: i64 = 100;
@@ -16,8 +16,8 @@ pub enum TimeWindow {
         span: i64,
     },
     Fixed {
-        from: Time,
-        to: Time,
+        from: SampleTime,
+        to: SampleTime,
     },
 }
 
@@ -36,13 +36,13 @@ impl Recorder {
         matches!(self.view, TimeWindow::Follow { .. })
     }
 
-    pub fn window(&self) -> (Time, Time) {
+    pub fn window(&self) -> (SampleTime, SampleTime) {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),
             TimeWindow::Follow { span } => match self.recorded() {
                 Some((first, last)) if last.nanoseconds_since(first) >= span => (last.plus(-span), last),
                 Some((first, _)) => (first, first.plus(span)),
-                None => (Time::ORIGIN, Time::ORIGIN.plus(span)),
+                None => (SampleTime::ORIGIN, SampleTime::ORIGIN.plus(span)),
             },
         }
     }
@@ -71,7 +71,7 @@ impl Recorder {
         self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
     }
 
-    pub(super) fn zoom_to(&mut self, from: Time, to: Time) {
+    pub(super) fn zoom_to(&mut self, from: SampleTime, to: SampleTime) {
         let (from, to) = (from.min(to), from.max(to));
         let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
         self.view = TimeWindow::Fixed { from, to: from.plus(span) };
@@ -86,7 +86,7 @@ impl Recorder {
     }
 
     /// Zooms around a time. In follow mode the newest sample stays at its position.
-    pub(super) fn zoom(&mut self, about: Time, factor: f64) {
+    pub(super) fn zoom(&mut self, about: SampleTime, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;
         }

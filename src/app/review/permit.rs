@@ -15,7 +15,7 @@ pub enum Permit {
 
 /// A permit that results in a different plan, with whether it is granted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Toggle {
+pub struct PermitToggle {
     pub permit: Permit,
     pub is_on: bool,
 }

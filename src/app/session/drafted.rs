@@ -4,10 +4,10 @@
 #![warn(missing_docs)]
 
 use super::drafts::DRAFT_BACK;
-use super::{DraftEdits, DraftKey, DraftOutcome, HasSession, Kind, Phase, ProfileFile, Saving, Source};
+use super::{DraftEdits, DraftKey, DraftOutcome, HasSession, Kind, Phase, ProfileFile, SaveRequest, Source};
 use crate::app::services::Services;
 use crate::app::{PendingEdits, Severity, Text, explain};
-use crate::profile::Document;
+use crate::profile::ProfileDocument;
 use crate::store::{DeviceKey, FileError};
 
 const NOT_SAVED: &str = "session.not_saved";
@@ -15,7 +15,7 @@ const NOT_SAVED: &str = "session.not_saved";
 type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.
-pub trait Drafted: HasSession {
+pub trait HasDraft: HasSession {
     /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
     /// without an identity.
     fn key(&self) -> Option<DeviceKey>;
@@ -34,7 +34,7 @@ pub trait Drafted: HasSession {
     fn take_edits(&mut self, edits: Edits<Self>);
 
     /// Adopts a profile that was read again from its file. Edits are kept.
-    fn take_document(&mut self, file: ProfileFile, document: Document);
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument);
 
     /// Returns the edits for counting.
     fn pending(&self) -> &dyn PendingEdits;
@@ -48,19 +48,19 @@ pub trait Drafted: HasSession {
     }
 
     /// Handles the successful saving of a connected device's profile to a file.
-    fn note_profile_saved(&mut self, _document: Document) {}
+    fn note_profile_saved(&mut self, _document: ProfileDocument) {}
 
     /// Returns the key of the draft, or `None` for a device that does not identify itself.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
-            Source::File { key, .. } => Some(DraftKey::of_file(Self::Device::KIND, key)),
+            Source::File { key, .. } => Some(DraftKey::for_file(Self::Device::KIND, key)),
             // Files are named by 16 hexadecimal digits.
-            Source::New { suggested } => Some(DraftKey::of_file(Self::Device::KIND, &suggested.to_string_lossy())),
+            Source::New { suggested } => Some(DraftKey::for_file(Self::Device::KIND, &suggested.to_string_lossy())),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
                 let name = || format!("{device_type}-{serial}");
                 let is_virtual = self.session().is_virtual();
-                (!serial.is_empty()).then(|| DraftKey::of_device(Self::Device::KIND, is_virtual, name()))
+                (!serial.is_empty()).then(|| DraftKey::for_device(Self::Device::KIND, is_virtual, name()))
             }
         }
     }
@@ -90,7 +90,7 @@ pub trait Drafted: HasSession {
         let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
         let nameless = key.is_none() && self.type_and_serial().is_some();
         if nameless && !edits.is_nothing() {
-            self.session_mut().drafting.report_no_draft(&name, services);
+            self.session_mut().drafting.report_missing_draft(&name, services);
         }
         if edits.is_nothing() {
             // They were written, saved or discarded.
@@ -111,7 +111,13 @@ pub trait Drafted: HasSession {
     }
 
     /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none.
-    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
+    fn written(
+        &mut self,
+        saving: SaveRequest,
+        file: ProfileFile,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) {
         let name = self.session().name();
         self.session_mut().is_saving = false;
         if let Err(error) = result {
@@ -138,13 +144,13 @@ pub trait Drafted: HasSession {
     }
 
     /// Records that the profile is now stored in the given file.
-    fn adopt_written_file(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
+    fn adopt_written_file(&mut self, file: ProfileFile, document: ProfileDocument, services: &mut Services) {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {
             let before = self.draft_key();
             self.session_mut().drafting.forget(before, services);
         }
-        self.take_document(file, document);
+        self.apply_document(file, document);
         if moves && let Some(key) = self.draft_key() {
             self.session_mut().drafting.begin(key, services);
         }

@@ -29,12 +29,12 @@ pub struct DraftKey {
 
 impl DraftKey {
     /// Creates the key of a device from its type and serial number. Virtual devices have separate keys.
-    pub(in crate::app) fn of_device(kind: &str, is_virtual: bool, name: String) -> Self {
+    pub(in crate::app) fn for_device(kind: &str, is_virtual: bool, name: String) -> Self {
         DraftKey { kind: if is_virtual { format!("{kind}-virtual") } else { kind.to_owned() }, name }
     }
 
     /// Creates the key of a profile from its [`file_key`].
-    pub(in crate::app) fn of_file(kind: &str, key: &str) -> Self {
+    pub(in crate::app) fn for_file(kind: &str, key: &str) -> Self {
         DraftKey { kind: format!("{kind}-files"), name: key.to_owned() }
     }
 }
@@ -233,7 +233,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 
     /// Reports that a device without a serial number has no draft. This is reported once, at the first edit.
-    pub(in crate::app) fn report_no_draft(&mut self, name: &str, services: &mut Services) {
+    pub(in crate::app) fn report_missing_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }

@@ -4,7 +4,7 @@
 #![warn(missing_docs)]
 
 use crate::app::action::OpenFailure;
-use crate::app::services::JobEnd;
+use crate::app::services::JobState;
 use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text, explain};
 use crate::link::LinkUrl;
@@ -73,28 +73,28 @@ pub trait Kind: Device + Sized {
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
     /// Returns the final message about the job from an event of a released session, if the event ends the job.
-    fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
+    fn job_endings(event: &Event<Self>) -> Option<JobCompletion> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
                 let result =
                     Self::result_texts(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
-                (job, JobEnd::Done, result)
+                (job, JobState::Done, result)
             }
-            Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::error_texts(error))),
+            Event::Cancelled(job, error) => (job, JobState::Cancelled, (Severity::Warning, Self::error_texts(error))),
             Event::Failed(job, error) => {
                 let texts = Self::error_texts(error);
-                (job, JobEnd::Failed(first(&texts)), (Severity::Error, texts))
+                (job, JobState::Failed(first(&texts)), (Severity::Error, texts))
             }
             _ => return None,
         };
-        Some(JobEnding { job: *job, end, severity, texts })
+        Some(JobCompletion { job: *job, end, severity, texts })
     }
 }
 
 /// The end of the last job of a released session.
-pub struct JobEnding {
+pub struct JobCompletion {
     pub(in crate::app) job: JobId,
-    pub(in crate::app) end: JobEnd,
+    pub(in crate::app) end: JobState,
     pub(in crate::app) severity: Severity,
     pub(in crate::app) texts: Vec<Text>,
 }

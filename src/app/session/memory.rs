@@ -3,8 +3,8 @@
 
 #![warn(missing_docs)]
 
-use super::{Drafted, EarlyEnd, HasSession, Kind, SessionEvents};
-use crate::app::review::{self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewed, written_texts};
+use super::{EarlyEnd, HasDraft, HasSession, Kind, SessionEvents};
+use crate::app::review::{self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewable, written_texts};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
@@ -13,16 +13,16 @@ use crate::worker::{self, Device, JobInterruption as _};
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 type Error<T> = <<T as HasSession>::Device as Device>::Error;
-type Change<T> = <<T as HasSession>::Device as Reviewed>::Change;
+type Change<T> = <<T as HasSession>::Device as Reviewable>::Change;
 type Op<T> = review::Op<<T as HasSession>::Device>;
-type Prepared<T> = <<T as HasSession>::Device as Reviewed>::Prepared;
-type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::Written>;
+type Prepared<T> = <<T as HasSession>::Device as Reviewable>::Prepared;
+type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewable>::Written>;
 
 /// A plan that the user has approved.
-pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
+pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewable>::Prepared>;
 
 /// A device with writable memory.
-pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
+pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Returns the open review, if any.
     fn review(&self) -> Option<&Review<Self::Device>> {
         self.session().review.as_ref()
@@ -40,7 +40,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
 
     /// Returns the review for display, after `done` operations have been executed.
     fn sheet(&self, done: usize) -> Option<ReviewSheet> {
-        self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
+        self.review().map(|review| review.review_sheet(done, |prepared, op| self.op(prepared, op)))
     }
 
     /// Returns the change that writes the edits, if there are any.
@@ -77,7 +77,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// Returns the reason why a plan cannot be executed, if any.
-    fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
+    fn rejection_reason(&self, _prepared: &Prepared<Self>) -> Option<Text> {
         None
     }
 
@@ -109,7 +109,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Requests a plan for a change, to be reviewed by the user.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         self.prepare_review();
-        if let Some(why) = self.session().why_not_ready() {
+        if let Some(why) = self.session().not_ready_reason() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
         let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_another_type(&change));
@@ -124,7 +124,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// Requests the plan again with one of its permits toggled.
-    fn plan_with(&mut self, permit: Permit, services: &mut Services) {
+    fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
         }
@@ -153,7 +153,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             }
             return self.submit(Self::Device::survey(), services);
         }
-        let objection = self.objection_to(&prepared);
+        let objection = self.rejection_reason(&prepared);
         let Some(review) = self.review_mut() else { return };
         match objection {
             None => review.state = ReviewState::Ready(prepared),
@@ -162,7 +162,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// Handles an exchange of the device. The edits for the previous device stay on disk if it has a serial number.
-    fn replaced_by(&mut self, serial: &str, services: &mut Services) {
+    fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
         if self.pending().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
             let text = if is_kept { "session.other_encoder" } else { "session.edits_gone" };

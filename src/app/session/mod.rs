@@ -16,30 +16,30 @@ use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 use std::time::Duration;
 
-pub use drafted::Drafted;
+pub use drafted::HasDraft;
 pub(in crate::app) use drafts::{ActiveDraft, file_key};
 pub use drafts::{DraftEdits, DraftKey, DraftOutcome};
 pub use has_session::HasSession;
-pub use kind::{JobEnding, Kind};
-pub use memory::{ApprovedPlanOf, WithMemory};
+pub use kind::{JobCompletion, Kind};
+pub use memory::{ApprovedPlanOf, HasMemory};
 pub use profiles::DeviceHistory;
 pub(crate) use saved::some;
-pub use saved::{KnownProfile, Saved, without_edits};
+pub use saved::{HasProfile, KnownProfile, unsaved_edits_remark};
 pub(in crate::app) use saving::DivergedFile;
-pub use saving::{Guard, ProfileFile, Saving};
+pub use saving::{FileSnapshot, ProfileFile, SaveRequest};
 pub(crate) use session_events::first;
 pub use session_events::{EarlyEnd, SessionEvents};
 pub use state::SessionState;
 
 use super::action::Opened;
-use super::kinds::Kinds;
+use super::kinds::KindRegistry;
 use super::live_session::LiveSession;
-use super::services::{JobEnd, Services};
+use super::services::{JobState, Services};
 use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::{Severity, Text};
-use crate::link::{LinkUrl, Scheme};
-use crate::profile::Document;
+use crate::link::{LinkScheme, LinkUrl};
+use crate::profile::ProfileDocument;
 use crate::worker::SubmitError;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ pub enum Source {
         path: PathBuf,
         key: String,
         /// The document without the user's edits.
-        document: Box<Document>,
+        document: Box<ProfileDocument>,
         /// Source text of the file. It is kept because comments, order and line endings belong to the user.
         text: String,
     },
@@ -81,7 +81,7 @@ pub enum Phase {
     Offline,
 }
 
-pub(crate) struct Opening {
+pub(crate) struct PendingOpen {
     pub(crate) attempt: Option<u32>,
     /// Receiver that disconnects when the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
@@ -112,18 +112,18 @@ impl<D: Kind> DerefMut for Session<D> {
 
 impl<D: Kind> Session<D> {
     /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
-    pub fn at_link(id: SessionId, url: LinkUrl, kinds: Kinds) -> Self {
+    pub fn at_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
         own
     }
 
-    pub fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
+    pub fn in_file(id: SessionId, file: ProfileFile, document: ProfileDocument) -> Self {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
     /// Creates a session whose content has not been saved to a file yet.
-    pub(crate) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
+    pub(crate) fn new_unsaved(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)
     }
 
@@ -142,7 +142,7 @@ impl<D: Kind> Session<D> {
 
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
-            || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
+            || matches!(&self.source, Source::Link(url) if url.scheme == LinkScheme::Sim)
     }
 
     pub fn is_busy(&self) -> bool {
@@ -232,7 +232,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Returns the reason why no plan can be made now, or `None` if one can be made.
-    pub(crate) fn why_not_ready(&self) -> Option<Text> {
+    pub(crate) fn not_ready_reason(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
             _ if self.is_busy() => Some(Text::new("session.busy")),
@@ -260,12 +260,12 @@ impl<D: Kind> Session<D> {
 
     /// Releases the thread and records the end of the running job as `end`. A cancelled write ends on its own and
     /// reports its own result.
-    pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    pub(crate) fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
         let (url, about) = (url.clone(), self.name());
         let Some(line) = self.line.take() else { return };
-        let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
+        let write = line.running().filter(|running| running.writes && end == JobState::Cancelled).map(|own| own.id);
         if let Some(running) = line.running().filter(|_| write.is_none()) {
             services.end_job(self.id, running.id, end);
         }
@@ -275,7 +275,7 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // It is displayed where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
-        self.let_go(JobEnd::Failed(why.clone()), services);
+        self.let_go(JobState::Failed(why.clone()), services);
         self.opening = None;
         self.phase = Phase::Lost(why);
     }

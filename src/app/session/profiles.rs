@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::{Guard, ProfileFile, Saving, SessionState, Source};
+use super::{FileSnapshot, ProfileFile, SaveRequest, SessionState, Source};
 use crate::app::action::Done;
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
-use crate::profile::{Body, Document};
+use crate::profile::{Body, ProfileDocument};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
 impl SessionState {
@@ -28,7 +28,7 @@ impl SessionState {
 
     /// Handles values read in order to save them to a file. `edits` is the number of edits that are not saved, and
     /// `remarks` name other missing values.
-    pub fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
+    pub fn save_read_values(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
         let remarks = without.into_iter().chain(remarks).collect();
@@ -36,7 +36,7 @@ impl SessionState {
     }
 
     /// Adopts a profile that was read again from its file or saved to another file.
-    pub fn take_document(&mut self, file: ProfileFile, document: Document) {
+    pub fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         self.source = file.source(document);
     }
 
@@ -53,7 +53,7 @@ impl SessionState {
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
-        document: Document,
+        document: ProfileDocument,
         remarks: Vec<Text>,
         services: &mut Services,
     ) {
@@ -62,11 +62,11 @@ impl SessionState {
         }
         self.is_saving = true;
         let opened = match &self.source {
-            Source::File { key, text, .. } => Some(Guard { key: key.clone(), text: text.clone() }),
+            Source::File { key, text, .. } => Some(FileSnapshot { key: key.clone(), text: text.clone() }),
             Source::Link(_) | Source::New { .. } => None,
         };
         let (document, may_lose, is_merged) = (Box::new(document), false, false);
-        let saving = Saving { session: self.id, path, document, remarks, opened, may_lose, is_merged };
+        let saving = SaveRequest { session: self.id, path, document, remarks, opened, may_lose, is_merged };
         let kinds = services.world.kinds;
         services.tasks.run("save", move || saving.run(kinds));
     }
@@ -88,7 +88,7 @@ impl SessionState {
         });
     }
 
-    pub(in crate::app) fn take_backups(&mut self, listed: DeviceHistory) {
+    pub(in crate::app) fn set_backups(&mut self, listed: DeviceHistory) {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
         self.cycles = listed.cycles;
         self.statuses = listed.statuses;

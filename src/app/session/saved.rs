@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{HasSession, Phase, Source, WithMemory};
+use super::{HasMemory, HasSession, Phase, Source};
 use crate::app::Text;
 use crate::app::action::ReadError;
 use crate::app::documents::{document_of, read_error, read_only_reason};
 use crate::app::services::Services;
-use crate::profile::{Body, Document, ProfileError};
+use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
@@ -16,11 +16,11 @@ type Job<T> = <<T as HasSession>::Device as Device>::Job;
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// Returns the remark that a number of edits is not included, or `None` if there are none.
-pub fn without_edits(count: usize) -> Option<Text> {
+pub fn unsaved_edits_remark(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
-pub trait Saved: WithMemory {
+pub trait HasProfile: HasMemory {
     /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 
@@ -85,7 +85,7 @@ pub trait Saved: WithMemory {
         }
     }
 
-    fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
+    fn apply_backup(&mut self, path: &Path, result: Result<Box<ProfileDocument>, ReadError>, services: &mut Services) {
         let restored = result.and_then(|own| {
             let known = own.known().map_err(ReadError::Profile)?;
             self.restore(known.body, services).map_err(ReadError::Profile)

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::{Source, file_key};
 use crate::app::action::{Action, Done, ReadError};
-use crate::app::diverged::Diverged;
+use crate::app::diverged::ProfileConflict;
 use crate::app::studio::SessionId;
-use crate::app::{Kinds, Text};
-use crate::profile::{Document, Formats};
-use crate::store::{FileError, FileProblem, overwrite_text, read_file};
+use crate::app::{KindRegistry, Text};
+use crate::profile::{ProfileDocument, ProfileFormats};
+use crate::store::{FileError, FileErrorKind, overwrite_text, read_file};
 
 /// A profile file as last read or written.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct ProfileFile {
 }
 
 impl ProfileFile {
-    pub(in crate::app) fn source(self, document: Document) -> Source {
+    pub(in crate::app) fn source(self, document: ProfileDocument) -> Source {
         let ProfileFile { path, key, text } = self;
         Source::File { path, key, document: Box::new(document), text }
     }
@@ -28,7 +28,7 @@ impl ProfileFile {
 
 /// Expected state of a file, checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Guard {
+pub struct FileSnapshot {
     /// Key of the file, which does not depend on the path leading to it.
     pub key: String,
     /// Content of the file when it was opened.
@@ -36,28 +36,28 @@ pub struct Guard {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Saving {
+pub struct SaveRequest {
     pub session: SessionId,
     pub path: PathBuf,
-    pub document: Box<Document>,
+    pub document: Box<ProfileDocument>,
     pub remarks: Vec<Text>,
     /// The open file and its expected state. Any other file is replaced unconditionally.
-    pub opened: Option<Guard>,
+    pub opened: Option<FileSnapshot>,
     /// Whether the user has agreed that comments will be lost.
     pub may_lose: bool,
     /// Whether the edits have been merged with the edits of other users and so no longer count as edits.
     pub is_merged: bool,
 }
 
-impl Saving {
+impl SaveRequest {
     /// Writes the file in a task, or returns the reason why it has not been written yet.
-    pub(in crate::app) fn run(mut self, kinds: Kinds) -> Action {
+    pub(in crate::app) fn run(mut self, kinds: KindRegistry) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
             match changed(&self.path, &guard.text, &self.document, formats) {
-                Ok(text) => self.opened = Some(Guard { key: key.clone(), text }),
-                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found, kinds)))),
+                Ok(text) => self.opened = Some(FileSnapshot { key: key.clone(), text }),
+                Err(found) => return Action::Done(Done::Diverged(Box::new(ProfileConflict::new(self, *found, kinds)))),
             }
         }
         let (text, lost) = match &self.opened {
@@ -83,25 +83,30 @@ pub(in crate::app) struct DivergedFile {
     /// File content, or an empty string if the file cannot be read.
     pub(in crate::app) text: String,
     /// File content parsed as a profile.
-    pub(in crate::app) document: Result<Box<Document>, ReadError>,
+    pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,
 }
 
 /// Returns the content to be replaced, or the file content if it differs both from what was opened and from what is to
 /// be written. A missing file does not count as different.
-fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<DivergedFile>> {
+fn changed(
+    path: &Path,
+    opened: &str,
+    wanted: &ProfileDocument,
+    formats: ProfileFormats,
+) -> Result<String, Box<DivergedFile>> {
     let text = match read_file(path) {
         Ok(text) => text,
-        Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(opened.to_owned()),
+        Err(FileError { problem: FileErrorKind::NotFound, .. }) => return Ok(opened.to_owned()),
         Err(error) => {
             return Err(Box::new(DivergedFile { text: String::new(), document: Err(ReadError::File(error)) }));
         }
     };
-    let normalized = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
+    let normalized = |text: &str| ProfileDocument::parse(text, formats).ok().map(|document| document.emit());
     let found = normalized(&text);
     // A change of comments only: they are kept like any others.
     if text == opened || found.is_some() && (found == normalized(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }
-    let document = Document::parse(&text, formats).map(Box::new).map_err(ReadError::Profile);
+    let document = ProfileDocument::parse(&text, formats).map(Box::new).map_err(ReadError::Profile);
     Err(Box::new(DivergedFile { text, document }))
 }

@@ -5,7 +5,7 @@
 
 use super::{HasSession, Kind};
 use crate::app::live_session::LiveSession;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::{JobState, Services};
 use crate::app::trace::Explained;
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
@@ -68,7 +68,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Handles the end of polling where no request is involved.
-    fn polling_ends(&mut self) {}
+    fn on_polling_end(&mut self) {}
 
     /// Starts a job; reports the reason and returns `false` if it cannot be started.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
@@ -119,7 +119,7 @@ pub trait SessionEvents: HasSession {
             Event::Progress(_, progress) => self.progressed(progress.step),
             Event::Remark(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
-                services.end_job(self.session().id, id, JobEnd::Done);
+                services.end_job(self.session().id, id, JobState::Done);
                 if Self::is_answer(&output) {
                     self.session_mut().answers();
                 }
@@ -135,7 +135,7 @@ pub trait SessionEvents: HasSession {
 
     /// Handles a failed sample, after which polling has stopped.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
-        self.polling_ends();
+        self.on_polling_end();
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
             None => {
@@ -147,7 +147,7 @@ pub trait SessionEvents: HasSession {
 
     /// Handles a cancelled job. Values written before the cancellation are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
-        services.end_job(self.session().id, id, JobEnd::Cancelled);
+        services.end_job(self.session().id, id, JobState::Cancelled);
         self.session_mut().save_to = None;
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
         let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
@@ -161,7 +161,7 @@ pub trait SessionEvents: HasSession {
     /// Handles a failed job.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
-        services.end_job(self.session().id, id, JobEnd::Failed(first(&texts)));
+        services.end_job(self.session().id, id, JobState::Failed(first(&texts)));
         let stands_there = self.ended_early(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {
@@ -190,7 +190,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Releases the thread, records the running job as `end` and discards any plan.
-    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.line_ends();
         self.forget_requests();
         self.session_mut().let_go(end, services);

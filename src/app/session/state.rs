@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{Opening, Phase, Source, first};
-use crate::app::kinds::Kinds;
+use super::{PendingOpen, Phase, Source, first};
+use crate::app::kinds::KindRegistry;
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
@@ -16,8 +16,8 @@ pub struct SessionState {
     pub source: Source,
     pub phase: Phase,
     /// Device kinds, which determine the secret link parameters.
-    pub(super) kinds: Kinds,
-    pub(crate) opening: Option<Opening>,
+    pub(super) kinds: KindRegistry,
+    pub(crate) opening: Option<PendingOpen>,
     pub title: Option<String>,
     pub trace: TraceLog,
     /// Backups, or the reason why there are none.
@@ -44,7 +44,7 @@ impl SessionState {
             id,
             source,
             phase,
-            kinds: Kinds::NONE,
+            kinds: KindRegistry::NONE,
             opening: None,
             title: None,
             trace: TraceLog::default(),

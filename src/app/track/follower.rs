@@ -2,33 +2,33 @@
 //! completed an unnoticed turn.
 
 use super::Meaning;
-use crate::analysis::{Motion, Rates, Time, Unwrap, UnwrappedPosition};
+use crate::analysis::{Motion, MotionRates, PositionUnwrapper, SampleTime, UnwrappedPosition};
 
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 
 #[derive(Debug)]
-pub(super) struct Follower {
+pub(super) struct PositionTracker {
     pub(super) meaning: Meaning,
-    unwrap: Unwrap,
+    unwrap: PositionUnwrapper,
     motion: Motion,
     /// Last position, unwrapped.
-    last: Option<(Time, i64)>,
+    last: Option<(SampleTime, i64)>,
     /// Rate between the last two positions in steps per second, signed by direction.
     pace: Option<f64>,
     /// Whether samples without a position have arrived since the last position.
     has_missed: bool,
 }
 
-impl Follower {
+impl PositionTracker {
     pub(super) fn new(meaning: Meaning) -> Self {
-        let unwrap = meaning.range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear);
-        Follower { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
+        let unwrap = meaning.range.and_then(PositionUnwrapper::rotary).unwrap_or_else(PositionUnwrapper::without_wrap);
+        PositionTracker { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
     }
 
     /// Returns whether the next position is joined to the last one. It must arrive soon enough, and across samples
     /// without a position the shaft must be unable to complete the range unnoticed at its last speed.
-    pub(super) fn continues_track(&self, time: Time, apart: i64) -> bool {
+    pub(super) fn continues_track(&self, time: SampleTime, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
             return false;
@@ -42,7 +42,7 @@ impl Follower {
     }
 
     /// Unwraps the next position and calculates its rates, or returns `None` if it is outside the range.
-    pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(UnwrappedPosition, Rates)> {
+    pub(super) fn next(&mut self, time: SampleTime, word: i64) -> Option<(UnwrappedPosition, MotionRates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {
             self.motion.reset();
@@ -52,8 +52,8 @@ impl Follower {
         Some((next, self.motion.next(time, next.steps)))
     }
 
-    fn follow(&mut self, time: Time, steps: i64) {
-        let pace = |(before, from): (Time, i64)| {
+    fn follow(&mut self, time: SampleTime, steps: i64) {
+        let pace = |(before, from): (SampleTime, i64)| {
             let seconds = time.seconds_since(before);
             (seconds > 0.0).then(|| (steps.saturating_sub(from) as f64 / seconds).abs())
         };

@@ -16,7 +16,7 @@ pub struct Meaning {
 
 impl Meaning {
     /// Creates the meaning of steps whose position within a revolution is unknown.
-    pub fn of_steps(range: Option<i64>) -> Self {
+    pub fn for_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],
             vec![Scale::new("unit.steps_per_second", 1.0, 0)],
@@ -26,7 +26,7 @@ impl Meaning {
     }
 
     /// Creates the meaning of a shaft position with the given number of steps per revolution, which may be fractional.
-    pub fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
+    pub fn for_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
             vec![
@@ -49,7 +49,7 @@ impl Meaning {
     }
 
     /// Creates the meaning of a linear position with the given step length in millimetres.
-    pub fn of_millimetres(millimetres: f64) -> Self {
+    pub fn for_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
             vec![
@@ -71,14 +71,14 @@ impl Meaning {
         own(self) == own(other)
     }
 
-    fn headings(&self) -> [(&'static str, &'static str); 3] {
+    fn column_headings(&self) -> [(&'static str, &'static str); 3] {
         let speed = if self.is_linear { "recorder.speed_linear" } else { "recorder.speed" };
         [("recorder.position", "position"), (speed, "speed"), ("recorder.acceleration", "acceleration")]
     }
 
     pub(super) fn lines(&self, group: GroupId) -> [Series; 3] {
         let [position, speed, acceleration] = self.scales.clone();
-        let [own_position, own_speed, own_acceleration] = self.headings();
+        let [own_position, own_speed, own_acceleration] = self.column_headings();
         let line = |column, (name, heading): (&'static str, &'static str), scales| {
             Series::of(group, column, Text::new(name), heading, scales)
         };

@@ -28,7 +28,7 @@ fn stream(from: u64, count: u64) -> Vec<PositionSample> {
         .collect()
 }
 
-fn samples(track: &Track<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
+fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
     let line = &track.recorder.lines()[line];
     let history = track.recorder.history(line).unwrap();
     let sample = |at| history.sample(line.column(), at).unwrap();
@@ -37,12 +37,12 @@ fn samples(track: &Track<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
 
 #[test]
 fn a_stream_is_recorded_completely() {
-    let meaning = Meaning::of_turns(Some(1000), 1000.0);
-    let mut track = Track::<Nothing>::default();
+    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let mut track = DeviceRecorder::<Nothing>::default();
     // In portions of odd sizes.
     let all = stream(0, 40_000);
     all.chunks(173).for_each(|portion| track.add(portion, &meaning));
-    assert_eq!((track.positions(), track.dropped()), (40_000, 0));
+    assert_eq!((track.positions(), track.dropped_count()), (40_000, 0));
     for (number, (time, steps, flags)) in samples(&track, 0).into_iter().enumerate() {
         assert_eq!((time, steps), (number as i64 * 50_000, number as f64 * 50.0), "the wrap is none");
         assert_eq!(flags, Flags::NONE);
@@ -55,14 +55,14 @@ fn a_stream_is_recorded_completely() {
 
 #[test]
 fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
-    let meaning = Meaning::of_turns(Some(1000), 1000.0);
-    let mut track = Track::<Nothing>::default();
+    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let mut track = DeviceRecorder::<Nothing>::default();
     let mut own = stream(0, 6);
     own[2].position = None;
     own[4].is_bad = true;
     own[5].is_warned = true;
     track.add(&own, &meaning);
-    track.note_dropped(3);
+    track.record_dropped(3);
     track.add(&stream(9, 2), &meaning);
     track.gap();
     track.add(&stream(11, 1), &meaning);
@@ -82,16 +82,16 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
         (550_000, 550.0, broken),
     ];
     assert_eq!(samples(&track, 0), expected);
-    assert_eq!((track.positions(), track.dropped()), (9, 3));
+    assert_eq!((track.positions(), track.dropped_count()), (9, 3));
 }
 
 /// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps
 /// in 50 µs.
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
-    let meaning = Meaning::of_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_turns(Some(1000), 1000.0);
     for damaged in [10, 3] {
-        let mut track = Track::<Nothing>::default();
+        let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 20_000);
         all.iter_mut().skip(1).step_by(damaged).for_each(|own| (own.position, own.is_bad) = (None, true));
         all.chunks(173).for_each(|portion| track.add(portion, &meaning));
@@ -113,9 +113,9 @@ fn damaged_frames_do_not_interrupt_the_speed() {
 /// are not bridged, a few are.
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
-    let meaning = Meaning::of_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_turns(Some(1000), 1000.0);
     for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
-        let mut track = Track::<Nothing>::default();
+        let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 50);
         all.iter_mut().skip(10).take(missing).for_each(|own| (own.position, own.is_bad) = (None, true));
         track.add(&all, &meaning);
@@ -136,12 +136,12 @@ fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
         .collect()
 }
 
-fn names(track: &Track<Nothing>) -> Vec<(String, bool)> {
+fn names(track: &DeviceRecorder<Nothing>) -> Vec<(String, bool)> {
     track.recorder.lines().iter().map(|line| (line.heading.clone(), line.ended)).collect()
 }
 
 /// Returns the positions of lines, by their headings.
-fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
+fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
     let at = track.recorder.lines().iter().position(|line| line.heading == heading).unwrap();
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
@@ -149,12 +149,12 @@ fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
 /// Issue 21.12: another scale. Earlier recordings stay under the old one, in the selected unit, and can be exported.
 #[test]
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
-    let mut track = Track::<Nothing>::default();
+    let mut track = DeviceRecorder::<Nothing>::default();
     track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
-    track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
+    track.add(&seconds(0, 3), &Meaning::for_turns(None, 1000.0));
     let [position, ..] = track.lines;
     track.recorder.act(recorder::RecorderAction::SetScale(position, 1));
-    track.add(&seconds(3, 2), &Meaning::of_turns(None, 400.0));
+    track.add(&seconds(3, 2), &Meaning::for_turns(None, 400.0));
     let current = [("position", false), ("speed", false), ("acceleration", false)];
     let ended = ["position", "speed", "acceleration"].map(|name| (format!("{name} until 09:00:02"), true));
     let expected: Vec<(String, bool)> =
@@ -170,11 +170,11 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
         Some((0, 4_000_000_000))
     );
     // They are drawn where they are, and nowhere else.
-    let drawn = |track: &Track<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
+    let drawn = |track: &DeviceRecorder<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
     track.recorder.act(recorder::RecorderAction::Look(
-        Time::from(Moment::after_start(Duration::from_secs(3))),
-        Time::from_nanoseconds(9_000_000_000),
+        SampleTime::from(Moment::after_start(Duration::from_secs(3))),
+        SampleTime::from_nanoseconds(9_000_000_000),
     ));
     assert_eq!(drawn(&track), 0);
     track.recorder.act(recorder::RecorderAction::Clear);
@@ -185,12 +185,12 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
-        let mut meaning = Meaning::of_turns(None, 1000.0);
+        let mut meaning = Meaning::for_turns(None, 1000.0);
         meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
         meaning
     };
-    let mut track = Track::<Nothing>::default();
-    track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
+    let mut track = DeviceRecorder::<Nothing>::default();
+    track.add(&seconds(0, 3), &Meaning::for_turns(None, 1000.0));
     let [position, ..] = track.lines;
     track.recorder.act(recorder::RecorderAction::SetScale(position, 2));
     for pitch in [1.0, 12.0] {
@@ -206,7 +206,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
 /// Issue 21.12: a value that is no longer watched, and watched again.
 #[test]
 fn a_value_no_longer_watched_keeps_its_samples() {
-    let mut track = Track::<Nothing>::default();
+    let mut track = DeviceRecorder::<Nothing>::default();
     let watching = |second| WatchedValue {
         at: Moment::after_start(Duration::from_secs(second)),
         value: Some(Value::Whole(second as i64)),
@@ -234,9 +234,9 @@ fn a_value_no_longer_watched_keeps_its_samples() {
 /// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
 #[test]
 fn minutes_of_another_device_are_kept() {
-    let meaning = Meaning::of_turns(None, 1000.0);
+    let meaning = Meaning::for_turns(None, 1000.0);
     for (count, lines) in [(120, 3), (121, 6)] {
-        let mut track = Track::<Nothing>::default();
+        let mut track = DeviceRecorder::<Nothing>::default();
         track.add(&seconds(0, count), &meaning);
         track.watch(&[Nothing]);
         track.forget();
@@ -250,11 +250,11 @@ fn minutes_of_another_device_are_kept() {
 /// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
-    let (before, after) = (Meaning::of_turns(None, 1000.0), Meaning::of_turns(None, 400.0));
+    let (before, after) = (Meaning::for_turns(None, 1000.0), Meaning::for_turns(None, 400.0));
     for (kept, ended) in [(5, 0), (4, 3)] {
-        let mut track = Track::<Nothing>::default();
+        let mut track = DeviceRecorder::<Nothing>::default();
         track.add(&seconds(0, 5), &before);
-        track.restart_line(kept);
+        track.restart_decoding(kept);
         track.add(&seconds(5 - kept as u64, kept as u64), &after);
         assert_eq!(track.recorder.lines().iter().filter(|line| line.ended).count(), ended, "{kept}");
         assert_eq!(steps(&track, "position").len(), kept);

@@ -14,7 +14,7 @@ pub trait Watchable: Clone + PartialEq {
     fn line(&self, group: GroupId) -> Series;
 
     /// Returns whether samples of this value continue as samples of `other`, which may be displayed in different units.
-    fn continues(&self, other: &Self) -> bool {
+    fn can_continue_as(&self, other: &Self) -> bool {
         self == other
     }
 }

@@ -2,12 +2,12 @@
 
 use clap::{Args, ValueEnum};
 
-use super::Consenting;
-use crate::cli::commands::OwnOptions;
+use super::ConsentArgs;
+use crate::cli::commands::KindOptions;
 use crate::cli::{Failure, Result};
 
 #[derive(Args)]
-pub struct Do {
+pub struct ActionArgs {
     /// Kind of device.
     pub(in crate::cli) device: String,
     /// Action to carry out
@@ -16,12 +16,12 @@ pub struct Do {
     #[arg(allow_negative_numbers = true)]
     pub(crate) arguments: Vec<String>,
     #[command(flatten)]
-    pub(crate) consent: Consenting,
+    pub(crate) consent: ConsentArgs,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
-impl Do {
+impl ActionArgs {
     /// Returns the action for a kind of device, whose actions are listed in `known`.
     ///
     /// # Errors

@@ -6,21 +6,21 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 
-use super::{COMMON_HEADING, Command, Common, Front};
-use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
+use super::{COMMON_HEADING, Cli, Command, CommonArgs};
+use crate::cli::commands::{CliCommand, CommandId, Commands, DeviceCommands};
 
 /// Display order of options that a kind of device adds. They follow the shared options.
 const AFTER_SHARED: usize = 200;
 
 pub(in crate::cli) struct Arguments {
-    pub(in crate::cli) common: Common,
+    pub(in crate::cli) common: CommonArgs,
     pub(in crate::cli) profile: Option<PathBuf>,
     pub(in crate::cli) command: Option<ParsedCommand>,
 }
 
 pub(in crate::cli) enum ParsedCommand {
     Shared(Command),
-    Own(&'static dyn OwnCommand, ArgMatches),
+    Own(&'static dyn CliCommand, ArgMatches),
 }
 
 /// Parses the arguments of a process, starting with the program name.
@@ -34,8 +34,8 @@ pub(in crate::cli) fn parse_arguments(
 }
 
 fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Error> {
-    let Front { common, profile } = Front::from_arg_matches(matches)?;
-    let common = Common { commands, ..common };
+    let Cli { common, profile } = Cli::from_arg_matches(matches)?;
+    let common = CommonArgs { commands, ..common };
     let own = matches.subcommand().and_then(|(name, own)| {
         let command = commands.own().find(|command| command.command().get_name() == name)?;
         Some(ParsedCommand::Own(command, own.clone()))
@@ -49,7 +49,7 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
 }
 
 pub(crate) fn command(commands: Commands) -> clap::Command {
-    let front = commands.common_options().fold(Front::command(), |front, option| {
+    let front = commands.common_options().fold(Cli::command(), |front, option| {
         // Several kinds of device may have the same option.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
         if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }

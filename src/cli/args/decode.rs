@@ -2,17 +2,17 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::commands::OwnOptions;
+use crate::cli::commands::KindOptions;
 
 #[derive(Args)]
-pub struct Decode {
+pub struct DecodeArgs {
     /// Kind of device that sent or received the bytes, or a protocol.
     pub(in crate::cli) protocol: String,
     /// Frame as hexadecimal bytes; one argument per frame.
     #[arg(required = true)]
     pub(crate) hex: Vec<String>,
     #[command(flatten)]
-    pub(crate) own: OwnOptions,
+    pub(crate) own: KindOptions,
 }
 
 /// Option for the direction of a word, for devices whose words have a different meaning in each direction.

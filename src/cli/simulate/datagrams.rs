@@ -20,7 +20,7 @@ const TRIES: usize = 50;
 const ROOM: usize = 2048;
 
 /// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects one that is free for both.
-pub(super) fn bind(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
+pub(super) fn bind_tcp_and_udp(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
         let SocketAddr::V4(place) = place else { continue };

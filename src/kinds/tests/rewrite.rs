@@ -1,7 +1,7 @@
 //! Tests of profiles saved over edited texts, for every kind.
 
 use super::program;
-use crate::profile::{Carried, Document};
+use crate::profile::{Carried, ProfileDocument};
 
 fn ready_made() -> Vec<(&'static str, String)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
@@ -27,8 +27,9 @@ fn unchanged_text_is_kept_verbatim() {
     for kind in program().studio.formats.kinds() {
         let text = commented(kind);
         for text in [text.replace('\n', "\r\n"), text] {
-            let carried =
-                Document::parse(&text, program().studio.formats).unwrap().emit_over(&text, program().studio.formats);
+            let carried = ProfileDocument::parse(&text, program().studio.formats)
+                .unwrap()
+                .emit_over(&text, program().studio.formats);
             assert_eq!(carried, Carried { text, lost: Vec::new() });
         }
     }
@@ -44,9 +45,12 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
             let lines = text.lines().enumerate().map(|(at, line)| format!("{line}{line_end}// own {at}.{line_end}"));
             let commented: String = lines.collect();
             for (_, other) in all.iter().filter(|(own, _)| own == kind) {
-                let document = Document::parse(other, program().studio.formats).unwrap();
+                let document = ProfileDocument::parse(other, program().studio.formats).unwrap();
                 let carried = document.emit_over(&commented, program().studio.formats);
-                assert_eq!(Document::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
+                assert_eq!(
+                    ProfileDocument::parse(&carried.text, program().studio.formats).unwrap().emit(),
+                    document.emit()
+                );
                 for at in 0..text.lines().count() {
                     let own = format!("own {at}.");
                     let stays = carried.text.contains(&format!("// {own}"));
@@ -56,7 +60,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
                     assert!(!carried.text.replace("\r\n", "").contains('\n'));
                 }
             }
-            let own = Document::parse(text, program().studio.formats)
+            let own = ProfileDocument::parse(text, program().studio.formats)
                 .unwrap()
                 .emit_over(&commented, program().studio.formats);
             assert_eq!(own, Carried { text: commented, lost: Vec::new() });
@@ -125,14 +129,14 @@ proptest::proptest! {
         all.extend(program().studio.formats.kinds().map(|kind| (kind, commented(kind))));
         let (kind, text) = &all[from % all.len()];
         let others: Vec<&String> = all.iter().filter(|(own, _)| own == kind).map(|(_, text)| text).collect();
-        let document = Document::parse(others[to % others.len()], program().studio.formats).unwrap();
+        let document = ProfileDocument::parse(others[to % others.len()], program().studio.formats).unwrap();
         let (spaced, comments) = spaced(text, &picks);
-        let before = Document::parse(&spaced, program().studio.formats).unwrap();
-        proptest::prop_assert_eq!(before.emit(), Document::parse(text, program().studio.formats).unwrap().emit());
+        let before = ProfileDocument::parse(&spaced, program().studio.formats).unwrap();
+        proptest::prop_assert_eq!(before.emit(), ProfileDocument::parse(text, program().studio.formats).unwrap().emit());
         let same = before.emit_over(&spaced, program().studio.formats);
         proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
         let carried = document.emit_over(&spaced, program().studio.formats);
-        proptest::prop_assert_eq!(Document::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
+        proptest::prop_assert_eq!(ProfileDocument::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
         for at in 0..comments {
             let own = format!("own {at}.");
             let stays = carried.text.contains(&own);

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::changes::{Change, Step, means_the_same, steps};
-use super::tree::{Kind, Node, Part, read, trailing_comment};
+use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
 
 /// Applies the changes one after the other, or returns `None` if one of them cannot be placed in the text.
-pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
+pub(in crate::profile) fn apply_all(text: &str, changes: &[Change]) -> Option<String> {
     changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
 }
 
@@ -30,7 +30,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
             {
                 return None;
             }
-            let text = with_comment(text, part.end, &change.comments)?;
+            let text = replace_comment(text, part.end, &change.comments)?;
             replaced(&text, &part.value.span, &indent_value(to, indent_at(&text, part.start()), line_end(&text)))
         }
         (Some(part), None) => without(text, part),
@@ -51,7 +51,7 @@ pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)>
     Some((text.get(part.value.span.clone())?.to_owned(), behind))
 }
 
-fn part_at<'n>(text: &str, node: &'n Node, step: &Step) -> Option<&'n Part> {
+fn part_at<'n>(text: &str, node: &'n SourceNode, step: &Step) -> Option<&'n Part> {
     if let Step::At(at) = step {
         // An element with a name is not addressed by its index.
         return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
@@ -65,7 +65,7 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
 
 /// Moves the comment that this program wrote after an entry along with its value, while a user's own comment stays in
 /// place.
-fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
+fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = trailing_comment(text, at);
     match (found, comments) {
         (Some((place, own)), (Some(from), to)) if own == from => match to {
@@ -98,7 +98,7 @@ fn without(text: &str, part: &Part) -> Option<String> {
 }
 
 /// Returns the text with a new entry inserted after its predecessor.
-fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Option<String> {
+fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str) -> Option<String> {
     if matches!(within.kind, Kind::Plain) || matches!(last, Step::At(_)) {
         return None;
     }
@@ -113,7 +113,7 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
     let stands_in_lines = first_line.contains('\n') || parts.is_empty();
     let comma_before = anchor.is_some_and(|part| !part.comma);
     if !stands_in_lines {
-        let more = format!("{key}{}", one_line(to)?);
+        let more = format!("{key}{}", to_single_line(to)?);
         return match anchor {
             Some(part) if comma_before => replaced(text, &(part.end..part.end), &format!(", {more}")),
             Some(part) => replaced(text, &(part.end..part.end), &format!(" {more},")),
@@ -171,7 +171,7 @@ fn indent_value(value: &str, indent: &str, end: &str) -> String {
 }
 
 /// Joins a multi-line value into one line, or returns `None` if the value contains a comment.
-fn one_line(value: &str) -> Option<String> {
+fn to_single_line(value: &str) -> Option<String> {
     if !value.contains('\n') {
         return Some(value.to_owned());
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use ron::Value;
 use serde::{Deserialize, Serialize};
 
-use super::tree::{Kind, Node, Part, read, trailing_comment};
+use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
 
 /// Entries that identify the elements of a list; the first existing one takes precedence.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
@@ -76,7 +76,7 @@ pub(super) fn means_the_same(one: &str, other: &str) -> bool {
 }
 
 /// Returns the step to each part of a list or structure. Elements without a unique name are identified by their index.
-pub(super) fn steps(text: &str, node: &Node) -> Vec<Step> {
+pub(super) fn steps(text: &str, node: &SourceNode) -> Vec<Step> {
     let slice = |part: &Part| part.key.as_ref().and_then(|key| text.get(key.clone()));
     let parts = node.parts();
     if matches!(node.kind, Kind::Entries(_)) {
@@ -92,7 +92,7 @@ pub(super) fn steps(text: &str, node: &Node) -> Vec<Step> {
     }
 }
 
-fn name_of(text: &str, element: &Node) -> Option<Step> {
+fn name_of(text: &str, element: &SourceNode) -> Option<Step> {
     let entry = |name: &str| {
         let is_it = |part: &&Part| part.key.as_ref().and_then(|key| text.get(key.clone())) == Some(name);
         let part = element.parts().iter().find(is_it)?;
@@ -115,7 +115,7 @@ struct TreeWalk<'t> {
 }
 
 impl TreeWalk<'_> {
-    fn both(&mut self, from: &Node, to: &Node, parts: (Option<&Part>, Option<&Part>), behind: &[Step]) {
+    fn both(&mut self, from: &SourceNode, to: &SourceNode, parts: (Option<&Part>, Option<&Part>), behind: &[Step]) {
         let (own, other) = (steps(self.left, from), steps(self.right, to));
         let same_kind = match (&from.kind, &to.kind) {
             (Kind::Entries(_), Kind::Entries(_)) => true,
@@ -130,7 +130,7 @@ impl TreeWalk<'_> {
         }
     }
 
-    fn inside(&mut self, from: &Node, to: &Node, own: &[Step], other: &[Step]) {
+    fn inside(&mut self, from: &SourceNode, to: &SourceNode, own: &[Step], other: &[Step]) {
         for (step, part) in own.iter().zip(from.parts()).filter(|(step, _)| !other.contains(step)) {
             self.path.push(step.clone());
             self.note((Some(part), None), (self.left.get(part.value.span.clone()), None), &[]);

@@ -11,4 +11,4 @@ pub(in crate::profile) use carry::{carry, lost};
 pub(in crate::profile) use changes::changes;
 pub use changes::{Change, Step};
 
-pub(in crate::profile) use apply::applied;
+pub(in crate::profile) use apply::apply_all;

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
+pub(super) struct SourceNode {
     /// Range of the value in the source text. For `Some(…)`, only the content is included.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
@@ -24,7 +24,7 @@ pub(super) enum Kind {
 pub(super) struct Part {
     /// Range of the key before the colon.
     pub(super) key: Option<Range<usize>>,
-    pub(super) value: Node,
+    pub(super) value: SourceNode,
     /// End of the value, or of the comma after the value.
     pub(super) end: usize,
     pub(super) comma: bool,
@@ -36,7 +36,7 @@ impl Part {
     }
 }
 
-impl Node {
+impl SourceNode {
     pub(super) fn parts(&self) -> &[Part] {
         match &self.kind {
             Kind::Plain => &[],
@@ -46,8 +46,8 @@ impl Node {
 }
 
 /// Parses a text, or returns `None` if its syntax is not supported.
-pub(super) fn read(text: &str) -> Option<Node> {
-    let mut reader = Reader { text, at: 0 };
+pub(super) fn read(text: &str) -> Option<SourceNode> {
+    let mut reader = TreeReader { text, at: 0 };
     reader.skip();
     while reader.takes("#!") {
         reader.at += reader.rest().find(']')? + 1;
@@ -59,7 +59,7 @@ pub(super) fn read(text: &str) -> Option<Node> {
 }
 
 pub(super) fn comments(text: &str) -> Vec<&str> {
-    let mut reader = Reader { text, at: 0 };
+    let mut reader = TreeReader { text, at: 0 };
     let mut found = Vec::new();
     while !reader.rest().is_empty() {
         let before = reader.at;
@@ -76,7 +76,7 @@ pub(super) fn comments(text: &str) -> Vec<&str> {
 pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
-    let mut reader = Reader { text, at: at + blanks };
+    let mut reader = TreeReader { text, at: at + blanks };
     if !reader.rest().starts_with("//") {
         return None;
     }
@@ -84,12 +84,12 @@ pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &
     Some((at + blanks..reader.at, comment))
 }
 
-struct Reader<'t> {
+struct TreeReader<'t> {
     text: &'t str,
     at: usize,
 }
 
-impl<'t> Reader<'t> {
+impl<'t> TreeReader<'t> {
     fn rest(&self) -> &'t str {
         self.text.get(self.at..).unwrap_or_default()
     }
@@ -167,7 +167,7 @@ impl<'t> Reader<'t> {
         rest.get(..length).filter(|word| !word.is_empty())
     }
 
-    fn value(&mut self) -> Option<Node> {
+    fn value(&mut self) -> Option<SourceNode> {
         let start = self.at;
         let kind = match self.rest().chars().next()? {
             '[' => Kind::List(self.parts('[', ']')?.0),
@@ -188,7 +188,7 @@ impl<'t> Reader<'t> {
                 }
             }
         };
-        Some(Node { span: start..self.at, kind })
+        Some(SourceNode { span: start..self.at, kind })
     }
 
     /// Parses a structure, or a tuple as a single value.
@@ -197,7 +197,7 @@ impl<'t> Reader<'t> {
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })
     }
 
-    fn wrapped(&mut self) -> Option<Node> {
+    fn wrapped(&mut self) -> Option<SourceNode> {
         self.takes("(");
         self.skip();
         let node = self.value()?;

@@ -8,7 +8,7 @@ use crate::analysis::capture::Columns;
 use crate::analysis::quality::Family;
 
 #[derive(Args)]
-pub(super) struct Analyse {
+pub(super) struct AnalyseArgs {
     /// Table of time, sine and cosine in seconds and volts. Delimiter, decimal sign, header and units are detected.
     #[arg(value_name = "FILE.csv")]
     pub(super) file: PathBuf,

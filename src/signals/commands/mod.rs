@@ -9,16 +9,16 @@ use crate::signals::state::TEXTS;
 use clap::{ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
-use self::args::Analyse;
+use self::args::AnalyseArgs;
 use crate::analysis::capture::{Capture, Layout, TableHints};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
-use crate::analysis::position_error::{Basis, Samples, harmonics};
+use crate::analysis::position_error::{ErrorBasis, Samples, harmonics};
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::explain;
-use crate::cli::args::Common;
-use crate::cli::commands::{OwnCommand, parse};
+use crate::cli::args::CommonArgs;
+use crate::cli::commands::{CliCommand, parse};
 use crate::cli::output::{Lines, Output};
 use crate::cli::runner::{Bar, failed};
 use crate::cli::{Done, Failure, Result};
@@ -26,18 +26,18 @@ use crate::store::read_capture;
 
 pub(crate) struct AnalyseCommand;
 
-impl OwnCommand for AnalyseCommand {
+impl CliCommand for AnalyseCommand {
     fn command(&self) -> clap::Command {
-        Analyse::augment_args(clap::Command::new("analyse"))
+        AnalyseArgs::augment_args(clap::Command::new("analyse"))
             .about("Analyse a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error")
     }
 
-    fn run(&self, _: &Common, output: &Output, matches: &ArgMatches) -> Result {
+    fn run(&self, _: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
         analyse(output, &parse(matches)?)
     }
 }
 
-fn analyse(output: &Output, arguments: &Analyse) -> Result {
+fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
     let path = &arguments.file;
     let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
@@ -137,7 +137,7 @@ impl CaptureReport<'_> {
             "octants": coverage.octants,
             "vector_min_v": least,
             "vector_max_v": most,
-            "error_pp_deg_raw": error.raw_pp_deg(),
+            "error_pp_deg_raw": error.raw_peak_to_peak_deg(),
             "error_pp_deg_corrected": error.corrected_pp_deg,
             "error_basis": basis(error.basis),
             "harmonics_deg_raw": harmonics(&error.raw_deg),
@@ -189,7 +189,7 @@ impl CaptureReport<'_> {
             .add("gain ratio", format!("{:.4} (cosine / sine)", ellipse.gain_ratio))
             .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
             .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
-            .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_pp_deg()))
+            .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_peak_to_peak_deg()))
             .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_words(error.basis)));
         if let Some(Revolution { raw, corrected }) = &self.revolution {
             let both = |raw: f64, corrected: f64| {
@@ -212,16 +212,16 @@ impl CaptureReport<'_> {
     }
 }
 
-fn basis(basis: Basis) -> &'static str {
+fn basis(basis: ErrorBasis) -> &'static str {
     match basis {
-        Basis::Motion { .. } => "motion",
-        Basis::Ellipse => "ellipse",
+        ErrorBasis::Motion { .. } => "motion",
+        ErrorBasis::Ellipse => "ellipse",
     }
 }
 
-fn basis_words(basis: Basis) -> String {
+fn basis_words(basis: ErrorBasis) -> String {
     match basis {
-        Basis::Motion { noise_deg } => format!("noise {noise_deg:.3}° rms"),
-        Basis::Ellipse => "estimated from the residual: the motion is too short or not uniform".to_owned(),
+        ErrorBasis::Motion { noise_deg } => format!("noise {noise_deg:.3}° rms"),
+        ErrorBasis::Ellipse => "estimated from the residual: the motion is too short or not uniform".to_owned(),
     }
 }

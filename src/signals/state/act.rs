@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::{self, Reading};
-use super::synchronise::Synchronise;
+use super::synchronise::SynchroniseState;
 use super::{
-    Done, Failed, Judge, Measurement, Read, Results, Scope, SignalsAction, Source, SourceAction, Table, TableSource,
-    task_guard,
+    DiagnosisSettings, Done, FailedTask, Measurement, MeasurementResult, Read, Scope, SignalsAction, Source,
+    SourceAction, Table, TableSource, task_guard,
 };
 use crate::analysis::capture::TableHints;
-use crate::analysis::diagnosis::{Changes, DiagnosisFinding, compare};
+use crate::analysis::diagnosis::{DiagnosisChanges, DiagnosisFinding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder::Recorder;
@@ -26,10 +26,10 @@ pub struct Signals {
     /// Whether the number of periods comes from the virtual encoder and thus does not apply to a capture.
     periods_of_source: bool,
     pub(crate) source: Source,
-    synchronise: Synchronise,
+    synchronise: SynchroniseState,
     pub(super) scope: Scope,
     measurement: Option<Arc<Measurement>>,
-    comparison: Option<Arc<Results>>,
+    comparison: Option<Arc<MeasurementResult>>,
     table: Option<Table>,
     problem: Option<Text>,
     reading: Option<Reading>,
@@ -44,7 +44,7 @@ impl Default for Signals {
             periods: None,
             periods_of_source: false,
             source: Source::default(),
-            synchronise: Synchronise::default(),
+            synchronise: SynchroniseState::default(),
             scope: Scope::live(true),
             measurement: None,
             comparison: None,
@@ -140,7 +140,7 @@ impl Signals {
         self.periods
     }
 
-    pub fn synchronise(&self) -> &Synchronise {
+    pub fn synchronise(&self) -> &SynchroniseState {
         &self.synchronise
     }
 
@@ -153,7 +153,7 @@ impl Signals {
     }
 
     /// Returns the results of the capture used for comparison, if any.
-    pub fn comparison(&self) -> Option<&Arc<Results>> {
+    pub fn comparison(&self) -> Option<&Arc<MeasurementResult>> {
         self.comparison.as_ref()
     }
 
@@ -181,7 +181,7 @@ impl Signals {
     }
 
     /// Returns the changes since the capture used for comparison. Both captures are judged by the same limits.
-    pub fn changes(&self) -> Option<Changes> {
+    pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.from_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
         Some(compare(&before, &own.diagnosis))
@@ -210,8 +210,8 @@ impl Signals {
 
     pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
-            SignalsAction::Open(path) => self.open_at(TableSource::File(path), services),
-            SignalsAction::Example(example) => self.open_at(TableSource::Example(example), services),
+            SignalsAction::Open(path) => self.open_source(TableSource::File(path), services),
+            SignalsAction::Example(example) => self.open_source(TableSource::Example(example), services),
             SignalsAction::SetDelimiter(delimiter) => {
                 self.reread_table(services, |hints| hints.delimiter = Some(delimiter))
             }
@@ -227,7 +227,7 @@ impl Signals {
             SignalsAction::SetColumn(column, number) => {
                 let settled = self.settled();
                 if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
-                    self.read_again(settled, services);
+                    self.reread(settled, services);
                 }
             }
             SignalsAction::Cancel => self.give_up(),
@@ -265,15 +265,17 @@ impl Signals {
         }
     }
 
-    fn failed(&mut self, failed: Failed, services: &mut Services) {
+    fn failed(&mut self, failed: FailedTask, services: &mut Services) {
         let what = match failed {
-            Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
+            FailedTask::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
                 self.forget_reading();
                 "signals.reading_failed"
             }
-            Failed::Measure(number) if self.not_measured(number, services) => "signals.measuring_failed",
-            Failed::Judge => "signals.judging_failed",
-            Failed::Read(_) | Failed::Measure(_) => return,
+            FailedTask::Measure(number) if self.handle_measurement_failure(number, services) => {
+                "signals.measuring_failed"
+            }
+            FailedTask::Judge => "signals.judging_failed",
+            FailedTask::Read(_) | FailedTask::Measure(_) => return,
         };
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
@@ -339,17 +341,17 @@ impl Signals {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
             change(&mut table.hints);
-            self.read_again(settled, services);
+            self.reread(settled, services);
         }
     }
 
-    fn read_again(&mut self, settled: Option<Table>, services: &mut Services) {
+    fn reread(&mut self, settled: Option<Table>, services: &mut Services) {
         if let Some(table) = &self.table {
             self.read(table.place.clone(), table.hints.clone(), settled, services);
         }
     }
 
-    fn open_at(&mut self, place: TableSource, services: &mut Services) {
+    fn open_source(&mut self, place: TableSource, services: &mut Services) {
         let settled = self.settled();
         if std::mem::take(&mut self.periods_of_source) {
             self.periods = None;
@@ -357,15 +359,15 @@ impl Signals {
         self.read(place, TableHints::default(), settled, services);
     }
 
-    pub(super) fn judge(&self) -> Judge {
-        Judge { family: self.family, periods: self.periods }
+    pub(super) fn judge(&self) -> DiagnosisSettings {
+        DiagnosisSettings { family: self.family, periods: self.periods }
     }
 
     pub(super) fn reevaluate(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());
-        task_guard::run(&services.tasks, "judge", Done::Failed(Failed::Judge), move || Done::Judged {
+        task_guard::run(&services.tasks, "judge", Done::Failed(FailedTask::Judge), move || Done::Judged {
             number,
             measurement: Box::new(measurement.judged(judge)),
         });
@@ -378,7 +380,7 @@ impl Signals {
         let (reading, progress) = Reading::new(number, place.clone(), settled);
         self.reading = Some(reading);
         let judge = self.judge();
-        task_guard::run(&services.tasks, "capture", Done::Failed(Failed::Read(number)), move || Done::Read {
+        task_guard::run(&services.tasks, "capture", Done::Failed(FailedTask::Read(number)), move || Done::Read {
             number,
             read: Box::new(reading::read(place, hints, judge, &progress)),
         });

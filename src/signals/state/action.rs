@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Column, Example, Measurement, Scope, SourceAction, Table, synchronise};
+use super::{Column, ExampleCapture, Measurement, Scope, SourceAction, Table, synchronise};
 use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::analysis::quality::Family;
 use crate::store::ReadCaptureError;
@@ -11,7 +11,7 @@ use crate::store::ReadCaptureError;
 pub enum SignalsAction {
     Open(PathBuf),
     /// Reads one of the example captures that ship with the program.
-    Example(Example),
+    Example(ExampleCapture),
     /// Replaces the detected delimiter.
     SetDelimiter(Delimiter),
     /// Sets whether numbers have a decimal comma.
@@ -53,13 +53,13 @@ pub enum Done {
         measurement: Box<Measurement>,
     },
     /// Reports that a task could not be started or ended without a result.
-    Failed(Failed),
+    Failed(FailedTask),
     /// Reports that a large value has been dropped.
     LetGo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Failed {
+pub enum FailedTask {
     Read(u32),
     /// Judges the displayed capture again.
     Judge,

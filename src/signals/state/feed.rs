@@ -11,25 +11,25 @@ use crate::analysis::wiring::Wires;
 use crate::app::services::Services;
 use crate::app::{Text, explain};
 use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
-use crate::buses::bridge::procedures::{Streaming, TapError};
+use crate::buses::bridge::procedures::{AdapterStreamError, Streaming};
 use crate::buses::bridge::state as bridge;
 use crate::kinds::at_adapter;
-use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
-use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
+use crate::worker::stream::{AnalogueSource, Batch, End, Producer, Stream};
 
 /// Both signals in volts, with the same number of samples.
 #[derive(Clone, Debug)]
-pub(super) struct Channels {
+pub(super) struct ChannelSamples {
     pub(super) sine_v: Vec<f64>,
     pub(super) cosine_v: Vec<f64>,
     /// Voltages of the single wires, if known.
     pub(super) wires: Option<Wires>,
 }
 
-impl Channels {
+impl ChannelSamples {
     pub(super) fn len(&self) -> usize {
         self.sine_v.len()
     }
@@ -40,20 +40,20 @@ impl Channels {
     }
 }
 
-impl From<Wires> for Channels {
+impl From<Wires> for ChannelSamples {
     fn from(wires: Wires) -> Self {
-        Channels { sine_v: wires.sine_v(), cosine_v: wires.cosine_v(), wires: Some(wires) }
+        ChannelSamples { sine_v: wires.sine_v(), cosine_v: wires.cosine_v(), wires: Some(wires) }
     }
 }
 
-impl From<Pair> for Channels {
+impl From<Pair> for ChannelSamples {
     fn from(pair: Pair) -> Self {
-        Channels { sine_v: pair.sine_v, cosine_v: pair.cosine_v, wires: None }
+        ChannelSamples { sine_v: pair.sine_v, cosine_v: pair.cosine_v, wires: None }
     }
 }
 
-pub(super) enum Feed {
-    Virtual(Stream<Analogue>),
+pub(super) enum SignalFeed {
+    Virtual(Stream<AnalogueSource>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
         /// The adapter and its actual sampling, once they are known.
@@ -94,7 +94,7 @@ impl AdapterLink {
         supply: Option<SupplyVoltage>,
         earlier: Option<Receiver<()>>,
         services: &Services,
-    ) -> Result<Feed, Text> {
+    ) -> Result<SignalFeed, Text> {
         let AdapterLink { url, clock, margin, open } = self;
         let (before, patience) = (services.closing_workers_on(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
@@ -110,51 +110,51 @@ impl AdapterLink {
         });
         let bridge = Bridge::new(SineCosine { sample_hz }, supply, margin, open);
         let streaming = bridge.streaming();
-        Ok(Feed::Adapter { stream: spawn(bridge, clock, services)?, streaming, url })
+        Ok(SignalFeed::Adapter { stream: spawn(bridge, clock, services)?, streaming, url })
     }
 }
 
 /// Maximum number of samples waiting for the window: two seconds at 100 kHz.
 const WAITING: usize = 200_000;
 
-impl Feed {
+impl SignalFeed {
     /// Starts the virtual encoder.
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
     pub(super) fn from_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-        let producer = Analogue::new(checked, clock.now());
-        Ok(Feed::Virtual(spawn(producer, clock, services)?))
+        let producer = AnalogueSource::new(checked, clock.now());
+        Ok(SignalFeed::Virtual(spawn(producer, clock, services)?))
     }
 
     /// Returns the batches received since the last call.
-    pub(super) fn take(&self) -> Vec<Batch<Channels>> {
+    pub(super) fn take(&self) -> Vec<Batch<ChannelSamples>> {
         match self {
-            Feed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
-            Feed::Adapter { stream, .. } => stream.take().into_iter().map(channels).collect(),
+            SignalFeed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
+            SignalFeed::Adapter { stream, .. } => stream.take().into_iter().map(channels).collect(),
         }
     }
 
     pub(super) fn lost(&self) -> u64 {
         match self {
-            Feed::Virtual(stream) => stream.lost(),
-            Feed::Adapter { stream, .. } => stream.lost(),
+            SignalFeed::Virtual(stream) => stream.lost(),
+            SignalFeed::Adapter { stream, .. } => stream.lost(),
         }
     }
 
     pub(super) fn is_ended(&self) -> bool {
         match self {
-            Feed::Virtual(stream) => stream.is_ended(),
-            Feed::Adapter { stream, .. } => stream.is_ended(),
+            SignalFeed::Virtual(stream) => stream.is_ended(),
+            SignalFeed::Adapter { stream, .. } => stream.is_ended(),
         }
     }
 
     pub(super) fn end_reason(&self) -> Text {
         match self {
-            Feed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
-            Feed::Virtual(_) => TEXTS.text("virtual.ended"),
-            Feed::Adapter { stream, .. } => match stream.take_error() {
+            SignalFeed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
+            SignalFeed::Virtual(_) => TEXTS.text("virtual.ended"),
+            SignalFeed::Adapter { stream, .. } => match stream.take_error() {
                 Some(error) => failed(&error),
                 None => TEXTS.text("virtual.ended"),
             },
@@ -165,20 +165,20 @@ impl Feed {
     /// unknown.
     pub(super) fn streaming(&self) -> Option<&Streaming> {
         match self {
-            Feed::Virtual(_) => None,
-            Feed::Adapter { streaming, .. } => streaming.get(),
+            SignalFeed::Virtual(_) => None,
+            SignalFeed::Adapter { streaming, .. } => streaming.get(),
         }
     }
 
     pub(super) fn is_virtual(&self) -> bool {
         match self {
-            Feed::Virtual(_) => true,
-            Feed::Adapter { url, .. } => url.scheme == Scheme::Sim,
+            SignalFeed::Virtual(_) => true,
+            SignalFeed::Adapter { url, .. } => url.scheme == LinkScheme::Sim,
         }
     }
 
     pub(super) fn change(&self, checked: Checked) {
-        if let Feed::Virtual(stream) = self {
+        if let SignalFeed::Virtual(stream) = self {
             stream.change(checked);
         }
     }
@@ -187,14 +187,14 @@ impl Feed {
     #[cfg(test)]
     pub(super) fn stop(&self) {
         match self {
-            Feed::Virtual(stream) => stream.stop(),
-            Feed::Adapter { stream, .. } => stream.stop(),
+            SignalFeed::Virtual(stream) => stream.stop(),
+            SignalFeed::Adapter { stream, .. } => stream.stop(),
         }
     }
 
     /// Stops the feed without waiting for the adapter to end its stream.
     pub(super) fn let_go(self, services: &mut Services) {
-        if let Feed::Adapter { stream, url, .. } = self {
+        if let SignalFeed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();
             drop(stream);
             services.leave_stream(end, url);
@@ -207,7 +207,7 @@ fn spawn<P: Producer>(producer: P, clock: Arc<dyn Clock>, services: &Services) -
     Stream::spawn(producer, WAITING, clock, services.tasks.wake()).map_err(refused)
 }
 
-fn channels<S: Into<Channels>>(batch: Batch<S>) -> Batch<Channels> {
+fn channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples> {
     let Batch { first, time, period_ns, lost, samples } = batch;
     Batch { first, time, period_ns, lost, samples: samples.into() }
 }
@@ -215,9 +215,9 @@ fn channels<S: Into<Channels>>(batch: Batch<S>) -> Batch<Channels> {
 fn failed(error: &BridgeError) -> Text {
     match error {
         BridgeError::Open(error) => refused(error),
-        BridgeError::Tap(TapError::Link(error)) => explain::link(error),
-        BridgeError::Tap(TapError::Adapter(error)) => bridge::adapter(error),
-        BridgeError::Tap(TapError::Cancelled) => TEXTS.text("virtual.ended"),
+        BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link(error),
+        BridgeError::Tap(AdapterStreamError::Adapter(error)) => bridge::adapter(error),
+        BridgeError::Tap(AdapterStreamError::Cancelled) => TEXTS.text("virtual.ended"),
     }
 }
 

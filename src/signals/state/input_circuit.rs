@@ -1,9 +1,9 @@
 //! Calculator for the input circuit of a drive: the signal frequency at a speed, and the effect of the filter there and
 //! up to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
 
-use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
+use crate::analysis::input_circuit::{BANDWIDTH_HZ, FilterResponse, InputFilter, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
-use crate::app::number::{MOST_PERIODS, quantity_within, whole, within};
+use crate::app::number::{MOST_PERIODS, parse_quantity, whole, within};
 use crate::signals::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,17 +18,17 @@ pub struct Form {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct OperatingPoint {
     pub speed_rpm: f64,
     pub frequency_hz: f64,
-    pub response: Response,
+    pub response: FilterResponse,
     /// Lag of the shaft angle in mechanical degrees.
     pub shaft_deg: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
-    pub here: Point,
+    pub here: OperatingPoint,
     /// Speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
     /// Frequency in hertz at which the filter leaves 71 % of the amplitude.
@@ -55,9 +55,9 @@ impl Form {
     pub fn circuit(&self) -> Result<Circuit, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
-        let ohms = quantity_within(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
+        let ohms = parse_quantity(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
         let farads =
-            quantity_within(TEXTS.text("input.capacitance"), &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
+            parse_quantity(TEXTS.text("input.capacitance"), &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
         let filter = InputFilter { resistance_ohm: ohms, capacitance_f: farads };
         let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MOST_RPM);
         let corner_hz = 1.0 / (std::f64::consts::TAU * ohms * farads);
@@ -71,7 +71,7 @@ impl Circuit {
     }
 
     /// Returns the response at `count` evenly spaced speeds above zero, the last at the encoder's bandwidth.
-    pub fn course(&self, count: u32) -> Vec<Point> {
+    pub fn course(&self, count: u32) -> Vec<OperatingPoint> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
     }
@@ -83,10 +83,10 @@ impl Circuit {
     }
 }
 
-fn point(periods: u32, filter: InputFilter, speed_rpm: f64) -> Point {
+fn point(periods: u32, filter: InputFilter, speed_rpm: f64) -> OperatingPoint {
     let frequency_hz = signal_frequency_hz(periods, speed_rpm);
     let response = filter.at(frequency_hz);
-    Point { speed_rpm, frequency_hz, response, shaft_deg: response.phase_deg / f64::from(periods.max(1)) }
+    OperatingPoint { speed_rpm, frequency_hz, response, shaft_deg: response.phase_deg / f64::from(periods.max(1)) }
 }
 
 #[cfg(test)]
@@ -114,7 +114,7 @@ mod tests {
         ];
         for (periods, speed, farads, frequency, phase, steps, gain, most) in rows {
             let circuit = form(periods, speed, "10k", farads).circuit().unwrap();
-            let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
+            let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
             assert!((frequency_hz - frequency).abs() < 1e-6 && circuit.is_within(), "{circuit:?}");
             assert!((response.phase_deg - phase).abs() < 6e-4 && (response.gain - gain).abs() < 6e-6, "{circuit:?}");
             assert!((response.lag_in_steps() - steps).abs() < 6e-4, "{circuit:?}");

@@ -23,7 +23,7 @@ pub struct TableError {
 
 /// Phase of one pair of voltages, calculated exactly and by table lookup.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interpolated {
+pub struct InterpolatedPhase {
     pub exact: Phase,
     pub table: Phase,
     /// Difference between table phase and exact phase in electrical degrees, within ±180.
@@ -53,13 +53,13 @@ fn table_error(intervals: usize) -> TableError {
 ///
 /// # Errors
 /// Returns an error if an entry is not a number, or if both are zero.
-pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
+pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<InterpolatedPhase, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
     let (exact, table) = both.ok_or_else(|| TEXTS.text("octant.no_signal"))?;
     let apart = table.degrees() - exact.degrees();
     let difference_deg = apart - DEGREES * (apart / DEGREES).round();
-    Ok(Interpolated { exact, table, difference_deg })
+    Ok(InterpolatedPhase { exact, table, difference_deg })
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use crate::signals::state::TEXTS;
 
 use crossbeam_channel::Receiver;
 
-use super::feed::{AdapterLink, Feed};
+use super::feed::{AdapterLink, SignalFeed};
 use super::recent::{MOST, RecentSamples};
-use super::{Done, Failed, Measurement, Origin, Scope, Signals, task_guard};
-use crate::analysis::Time;
+use super::{Done, FailedTask, Measurement, Origin, Scope, Signals, task_guard};
+use crate::analysis::SampleTime;
 use crate::analysis::quality::Family;
 use crate::analysis::wiring::Wire;
 use crate::app::services::Services;
@@ -74,12 +74,12 @@ pub struct Source {
 }
 
 struct Live {
-    feed: Feed,
+    feed: SignalFeed,
     recent: RecentSamples,
     held: bool,
     measuring: bool,
     /// Time of the last sample in the latest measurement.
-    measured: Option<Time>,
+    measured: Option<SampleTime>,
 }
 
 /// Range of window lengths that can be measured, in milliseconds.
@@ -168,7 +168,7 @@ impl Source {
     }
 
     /// Returns the measured length in milliseconds if the maximum number of samples makes it shorter than the setting.
-    pub fn shortened_ms(&self) -> Option<f64> {
+    pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
             SourceKind::Adapter => self.streaming()?.period_ns,
@@ -215,7 +215,7 @@ impl Source {
                 return false;
             }
         };
-        match Feed::from_encoder(checked, services) {
+        match SignalFeed::from_encoder(checked, services) {
             Ok(feed) => {
                 self.run(SourceKind::Encoder, feed, services);
                 true
@@ -238,7 +238,7 @@ impl Source {
 
     /// Releases the adapter if an encoder search needs its connection.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
-        let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if shares_wire(own, url));
+        let holds = |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if shares_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
             self.refuse(TEXTS.text("adapter.let_go"));
@@ -269,7 +269,7 @@ impl Source {
         }
     }
 
-    fn run(&mut self, kind: SourceKind, feed: Feed, services: &mut Services) {
+    fn run(&mut self, kind: SourceKind, feed: SignalFeed, services: &mut Services) {
         self.stop(services);
         self.kind = kind;
         self.runs = self.runs.wrapping_add(1);
@@ -282,8 +282,8 @@ impl Source {
 impl Live {
     fn origin(&self) -> Option<Origin> {
         match &self.feed {
-            Feed::Virtual(_) => Some(Origin::Virtual),
-            Feed::Adapter { .. } => {
+            SignalFeed::Virtual(_) => Some(Origin::Virtual),
+            SignalFeed::Adapter { .. } => {
                 let name = self.feed.streaming()?.hello.name.clone();
                 Some(Origin::Adapter { name, is_virtual: self.feed.is_virtual() })
             }
@@ -380,7 +380,7 @@ impl Signals {
         let Some((window, origin)) = live.recent.window(window_ms).zip(live.origin()) else { return };
         live.measuring = true;
         live.measured = live.recent.newest();
-        task_guard::run(&services.tasks, "measure", Done::Failed(Failed::Measure(number)), move || {
+        task_guard::run(&services.tasks, "measure", Done::Failed(FailedTask::Measure(number)), move || {
             let measurement = Measurement::of(origin, Arc::new(window.capture()), judge);
             Done::Measured { number, measurement: Box::new(measurement) }
         });
@@ -411,7 +411,7 @@ impl Signals {
     }
 
     /// Handles a failed measurement of the newest samples, so that it is not retried four times per second.
-    pub(super) fn not_measured(&mut self, number: u32, services: &mut Services) -> bool {
+    pub(super) fn handle_measurement_failure(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {
             self.source.stop(services);

@@ -5,11 +5,11 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{AbsoluteOffset, Example, Nonlinearities, OffsetError, Spectra, reference_comparison};
+use super::{AbsoluteOffset, ExampleCapture, Nonlinearities, OffsetError, Spectra, reference_comparison};
 use crate::analysis::capture::Capture;
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
-use crate::analysis::ellipse::Correction;
-use crate::analysis::lissajous::{Density, Square};
+use crate::analysis::ellipse::EllipseCorrection;
+use crate::analysis::lissajous::{PlotSquare, SampleDensity};
 use crate::analysis::position_error::Samples;
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::RevolutionError;
@@ -28,7 +28,7 @@ pub enum Origin {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableSource {
     File(PathBuf),
-    Example(Example),
+    Example(ExampleCapture),
 }
 
 impl Origin {
@@ -62,17 +62,17 @@ impl TableSource {
 #[derive(Clone, Debug)]
 pub struct Measurement {
     pub capture: Arc<Capture>,
-    results: Arc<Results>,
+    results: Arc<MeasurementResult>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Results {
+pub struct MeasurementResult {
     pub origin: Origin,
     /// Number of table rows omitted because they contain no value.
     pub rows_left_out: u64,
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
-    pub judge: Judge,
+    pub judge: DiagnosisSettings,
     /// Mean levels of REFSIN and REFCOS in volts, or `None` if they were not recorded.
     pub levels_v: Option<(f64, f64)>,
     /// Amplitudes over frequency, or the reason why they cannot be determined.
@@ -84,13 +84,13 @@ pub struct Results {
     /// without an absolute position.
     pub absolute_offset: Option<Result<AbsoluteOffset, OffsetError>>,
     /// Image of all samples with sine plotted over cosine, or `None` if the values are too large for an image.
-    pub raw: Option<Density>,
+    pub raw: Option<SampleDensity>,
     /// Image of all samples after the ellipse correction, or `None` without an ellipse.
-    pub corrected: Option<Density>,
+    pub corrected: Option<SampleDensity>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Judge {
+pub struct DiagnosisSettings {
     pub family: Family,
     /// Signal periods per revolution, or `None` if unknown.
     pub periods: Option<u32>,
@@ -106,11 +106,11 @@ const LEAST_HALF_V: f64 = 0.75;
 
 impl Measurement {
     /// Measures a capture, which takes about 100 ms for a million samples.
-    pub fn of(origin: Origin, capture: Arc<Capture>, judge: Judge) -> Self {
+    pub fn of(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
         let samples = samples(&capture);
         let analysis = Analysis::of(samples);
         let mean = |column: &[f64]| column.iter().sum::<f64>() / column.len().max(1) as f64;
-        let results = Results {
+        let results = MeasurementResult {
             diagnosis: diagnosis(&capture, &analysis, judge),
             judge,
             rows_left_out: capture.left_out,
@@ -126,13 +126,13 @@ impl Measurement {
         Measurement { capture, results: Arc::new(results) }
     }
 
-    pub fn results(&self) -> &Arc<Results> {
+    pub fn results(&self) -> &Arc<MeasurementResult> {
         &self.results
     }
 
     #[must_use]
-    pub fn judged(&self, judge: Judge) -> Self {
-        let results = Results {
+    pub fn judged(&self, judge: DiagnosisSettings) -> Self {
+        let results = MeasurementResult {
             diagnosis: diagnosis(&self.capture, &self.analysis, judge),
             nonlinearities: compare_with_reference(&self.capture, &self.analysis, judge),
             judge,
@@ -143,14 +143,14 @@ impl Measurement {
 }
 
 impl Deref for Measurement {
-    type Target = Results;
+    type Target = MeasurementResult;
 
-    fn deref(&self) -> &Results {
+    fn deref(&self) -> &MeasurementResult {
         &self.results
     }
 }
 
-impl Results {
+impl MeasurementResult {
     /// Returns the reason why the capture could not be analysed, or `None` if it was analysed.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
@@ -162,7 +162,7 @@ fn samples(capture: &Capture) -> Samples<'_> {
     Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v }
 }
 
-fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: Judge) -> Diagnosis {
+fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: DiagnosisSettings) -> Diagnosis {
     let references_v = capture.references_v();
     let record = Record { samples: samples(capture), references_v, periods: judge.periods };
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
@@ -171,13 +171,13 @@ fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judg
 fn compare_with_reference(
     capture: &Capture,
     analysis: &Result<Analysis, AnalysisError>,
-    judge: Judge,
+    judge: DiagnosisSettings,
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
 /// Returns an image of all samples centred on zero, corrected if a correction is given.
-fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
+fn density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
     /// Number of samples corrected at a time.
     const PORTION: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;
@@ -185,7 +185,7 @@ fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Densi
     // In steps, so that a live picture does not change its scale continuously.
     let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(LEAST_HALF_V);
     let side = if sine_v.len() > FEW { CELLS } else { CELLS_OF_FEW };
-    let mut density = Density::new(Square::centred(half_v), side)?;
+    let mut density = SampleDensity::new(PlotSquare::centred(half_v), side)?;
     let Some(correction) = correction else {
         density.add(sine_v, cosine_v);
         return Some(density);
@@ -210,13 +210,13 @@ mod tests {
             cosine_v: (0..10_000).map(|at| 0.5 * angle(at).cos() - 0.05).collect(),
             ..Capture::default()
         };
-        let measurement = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default());
+        let measurement = Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default());
         for density in [&measurement.raw, &measurement.corrected] {
             let density = density.as_ref().unwrap();
             assert_eq!(density.counts().iter().sum::<u32>(), 10_000);
             assert_eq!((density.side(), density.square().half_v), (240, 0.75));
         }
-        for lengths in measurement.corrected.as_ref().unwrap().lengths() {
+        for lengths in measurement.corrected.as_ref().unwrap().vector_lengths() {
             assert!((lengths.least_v - 0.5).abs() < 1e-6 && (lengths.most_v - 0.5).abs() < 1e-6, "{lengths:?}");
         }
     }

@@ -44,11 +44,11 @@ impl ToolAction for SignalsAction {
 }
 
 pub use act::Signals;
-pub use action::{Done, Failed, Read, SignalsAction};
+pub use action::{Done, FailedTask, Read, SignalsAction};
 pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
-pub use measurement::{Judge, Measurement, Origin, Results, TableSource};
-pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
-pub use reading::{Example, Reading};
+pub use measurement::{DiagnosisSettings, Measurement, MeasurementResult, Origin, TableSource};
+pub use quantities::{Quantity, QuantityLimit, Unit, error_quantities, quantities};
+pub use reading::{ExampleCapture, Reading};
 pub use reference_comparison::{AbsoluteOffset, Nonlinearities, OffsetError, nonlinearity_quantities};
 pub use scope::{Scope, TimeAxisError};
 pub use spectra::{ChannelSpectrum, Spectra, decibel_volts};

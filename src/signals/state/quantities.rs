@@ -1,7 +1,7 @@
 //! Measured quantities of a signal, each with its unit, limit and verdict. Limits as in `signal::quality`; SICK 8010701
 //! for amplitudes and bandwidth.
 
-use super::Results;
+use super::MeasurementResult;
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::analysis::quality::{Family, Verdict};
 use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
@@ -14,7 +14,7 @@ pub struct Quantity {
     pub decimals: usize,
     pub unit: Unit,
     pub also: Option<(f64, usize, Unit)>,
-    pub bound: Option<Bound>,
+    pub bound: Option<QuantityLimit>,
     /// Whether the value is within its limit, or `None` without a limit.
     pub verdict: Option<Verdict>,
 }
@@ -37,7 +37,7 @@ pub enum Unit {
 
 /// A limit in the unit of its quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bound {
+pub enum QuantityLimit {
     Between(f64, f64),
     /// Within plus or minus the given value.
     Within(f64),
@@ -63,16 +63,16 @@ impl Unit {
     }
 }
 
-impl Bound {
+impl QuantityLimit {
     /// Returns whether a value is within the limit, including the limit itself.
     pub fn holds(self, value: f64) -> bool {
         /// Tolerance that keeps rounding from moving a value on the limit beyond it.
         const SLACK: f64 = 1e-9;
         match self {
-            Bound::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
-            Bound::Within(most) => value.abs() <= most + SLACK,
-            Bound::AtMost(most) => value <= most + SLACK,
-            Bound::AtLeast(least) => value >= least - SLACK,
+            QuantityLimit::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
+            QuantityLimit::Within(most) => value.abs() <= most + SLACK,
+            QuantityLimit::AtMost(most) => value <= most + SLACK,
+            QuantityLimit::AtLeast(least) => value >= least - SLACK,
         }
     }
 }
@@ -82,13 +82,13 @@ impl Quantity {
         Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }
     }
 
-    pub(super) fn also(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
+    pub(super) fn with_secondary_value(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
         self.also = Some((value, decimals, unit));
         self
     }
 
     /// Judges the quantity by a limit that may be exceeded with only a warning, because the position is still correct.
-    fn bounded(mut self, bound: Bound) -> Self {
+    fn bounded(mut self, bound: QuantityLimit) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
         self
@@ -102,18 +102,18 @@ impl Quantity {
 
 /// Returns the quantities judged by the limits of a family. The number of `periods` per revolution converts the
 /// frequency into a speed. Without an ellipse, the list is empty.
-pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -> Vec<Quantity> {
+pub fn quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
-    let mut list = of_ellipse(analysis, family);
+    let mut list = ellipse_quantities(analysis, family);
     let (least, most) = family.limits().level_v;
     for (word, level) in [("quality.level_sine", 0), ("quality.level_cosine", 1)] {
         let volts = measurement.levels_v.map(|(sine, cosine)| if level == 0 { sine } else { cosine });
-        let level = |volts| Quantity::new(word, volts, 3, Unit::Volts).bounded(Bound::Between(least, most));
+        let level = |volts| Quantity::new(word, volts, 3, Unit::Volts).bounded(QuantityLimit::Between(least, most));
         list.extend(volts.map(level));
     }
     if let Some(frequency_hz) = analysis.frequency_hz() {
         let frequency = Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
-            .bounded(Bound::Within(BANDWIDTH_HZ / 1e3));
+            .bounded(QuantityLimit::Within(BANDWIDTH_HZ / 1e3));
         list.push(if analysis.is_followed() { frequency } else { frequency.judged(Verdict::Warn) });
         let speed = periods.and_then(|periods| speed_rpm_at(periods, frequency_hz));
         list.extend(speed.map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
@@ -129,19 +129,19 @@ pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -
     list
 }
 
-fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
+fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     let limits = family.limits();
     let Analysis { ellipse, coverage, .. } = analysis;
     let volts = |word, peak: f64, factor: f64| {
         let (least, most) = limits.ok_v;
         let quantity = Quantity::new(word, factor * peak, 4, Unit::Volts);
-        quantity.bounded(Bound::Between(factor * least, factor * most)).judged(limits.amplitude(peak))
+        quantity.bounded(QuantityLimit::Between(factor * least, factor * most)).judged(limits.amplitude_verdict(peak))
     };
     let percent = |word, share: f64, decimals| Quantity::new(word, 100.0 * share, decimals, Unit::Percent);
     let offset = |word, offset_v: f64| {
         percent(word, offset_v / ellipse.amplitude_v, 2)
-            .also(1000.0 * offset_v, 1, Unit::Millivolts)
-            .bounded(Bound::Within(100.0 * limits.offset))
+            .with_secondary_value(1000.0 * offset_v, 1, Unit::Millivolts)
+            .bounded(QuantityLimit::Within(100.0 * limits.offset))
     };
     let (least, most) = coverage.vector_v;
     vec![
@@ -152,12 +152,12 @@ fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
         offset("quality.offset_sine", ellipse.offset_sine_v),
         offset("quality.offset_cosine", ellipse.offset_cosine_v),
         Quantity::new("quality.gain", ellipse.gain_ratio, 4, Unit::One)
-            .bounded(Bound::Between(limits.gain_ratio.0, limits.gain_ratio.1)),
+            .bounded(QuantityLimit::Between(limits.gain_ratio.0, limits.gain_ratio.1)),
         Quantity::new("quality.phase", ellipse.phase_error_deg(), 2, Unit::Degrees)
-            .bounded(Bound::Within(limits.phase_deg)),
-        percent("quality.residual", coverage.residual_rms, 2).bounded(Bound::AtMost(100.0 * limits.residual)),
+            .bounded(QuantityLimit::Within(limits.phase_deg)),
+        percent("quality.residual", coverage.residual_rms, 2).bounded(QuantityLimit::AtMost(100.0 * limits.residual)),
         Quantity::new("quality.octants", f64::from(coverage.octants), 0, Unit::One)
-            .bounded(Bound::AtLeast(f64::from(LEAST_OCTANTS))),
+            .bounded(QuantityLimit::AtLeast(f64::from(LEAST_OCTANTS))),
         Quantity::new("quality.periods", coverage.periods, 2, Unit::One),
     ]
 }
@@ -171,12 +171,12 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
     let peak_to_peak = |word, degrees: f64| {
         let quantity = Quantity::new(word, degrees, 3, Unit::Degrees);
         match a_degree {
-            Some(a_degree) => quantity.also(degrees * a_degree, 2, Unit::ArcSeconds),
+            Some(a_degree) => quantity.with_secondary_value(degrees * a_degree, 2, Unit::ArcSeconds),
             None => quantity,
         }
     };
     let mut list = vec![
-        peak_to_peak("error.raw_pp", analysis.error.raw_pp_deg()),
+        peak_to_peak("error.raw_pp", analysis.error.raw_peak_to_peak_deg()),
         peak_to_peak("error.corrected_pp", analysis.error.corrected_pp_deg),
     ];
     list.extend(a_degree.map(|own| Quantity::new("error.period", 360.0 * own, 2, Unit::ArcSeconds)));
@@ -187,7 +187,7 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
 mod tests {
     use super::*;
     use crate::analysis::capture::Capture;
-    use crate::signals::state::{Judge, Measurement, Origin};
+    use crate::signals::state::{DiagnosisSettings, Measurement, Origin};
     use std::sync::Arc;
 
     /// Returns the example of section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°, with 1000 samples over two
@@ -201,7 +201,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos() + 0.02).collect(),
             ..Capture::default()
         };
-        Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default())
+        Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default())
     }
 
     #[test]
@@ -239,7 +239,7 @@ mod tests {
         assert!(bare.len() + 1 == list.len() && bare.iter().all(|own| own.unit != Unit::Rpm), "issue 22.13");
         let wide = quantities(&section_7(), Family::AfsAfm60, Some(50));
         let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
-        assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(Bound::Between(0.4, 0.6))));
+        assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(QuantityLimit::Between(0.4, 0.6))));
     }
 
     /// A sine offset of 1 % causes ±0.5730°, 1.1459° peak to peak, and 4.029″ at 1024 periods (section 6).
@@ -251,7 +251,8 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
             ..Capture::default()
         };
-        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.clone().unwrap();
+        let analysis =
+            Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default()).analysis.clone().unwrap();
         // Issue 22.13: without the periods per turn there are no mechanical angles and no speed.
         let bare = error_quantities(&analysis, None);
         assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
@@ -266,10 +267,10 @@ mod tests {
     #[test]
     fn limits_are_inclusive() {
         for (bound, inside, outside) in [
-            (Bound::Between(0.9, 1.1), [0.9, 1.1], [0.89, 1.11]),
-            (Bound::Within(5.0), [-5.0, 5.0], [-5.1, f64::NAN]),
-            (Bound::AtMost(2.0), [2.0, -9.0], [2.1, f64::INFINITY]),
-            (Bound::AtLeast(6.0), [6.0, 8.0], [5.0, f64::NAN]),
+            (QuantityLimit::Between(0.9, 1.1), [0.9, 1.1], [0.89, 1.11]),
+            (QuantityLimit::Within(5.0), [-5.0, 5.0], [-5.1, f64::NAN]),
+            (QuantityLimit::AtMost(2.0), [2.0, -9.0], [2.1, f64::INFINITY]),
+            (QuantityLimit::AtLeast(6.0), [6.0, 8.0], [5.0, f64::NAN]),
         ] {
             assert_eq!(inside.map(|value| bound.holds(value)), [true, true], "{bound:?}");
             assert_eq!(outside.map(|value| bound.holds(value)), [false, false], "{bound:?}");

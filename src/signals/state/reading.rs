@@ -4,39 +4,39 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::{Judge, Measurement, Origin, Read, Scope, Table, TableSource};
+use super::{DiagnosisSettings, Measurement, Origin, Read, Scope, Table, TableSource};
 use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, TableHints};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
 /// A capture that ships with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Example {
+pub enum ExampleCapture {
     Healthy,
     /// A capture with offsets, unequal amplitudes and a phase error.
     WithErrors,
 }
 
-impl Example {
-    pub const ALL: [Example; 2] = [Example::Healthy, Example::WithErrors];
+impl ExampleCapture {
+    pub const ALL: [ExampleCapture; 2] = [ExampleCapture::Healthy, ExampleCapture::WithErrors];
 
     pub fn word(self) -> &'static str {
         match self {
-            Example::Healthy => "signals.example_healthy",
-            Example::WithErrors => "signals.example_errors",
+            ExampleCapture::Healthy => "signals.example_healthy",
+            ExampleCapture::WithErrors => "signals.example_errors",
         }
     }
 
     pub(super) fn file_name(self) -> &'static str {
         match self {
-            Example::Healthy => "healthy.csv",
-            Example::WithErrors => "offset-gain-phase.csv",
+            ExampleCapture::Healthy => "healthy.csv",
+            ExampleCapture::WithErrors => "offset-gain-phase.csv",
         }
     }
 
     fn bytes(self) -> &'static [u8] {
         match self {
-            Example::Healthy => include_bytes!("../../../profiles/signals/healthy.csv"),
-            Example::WithErrors => include_bytes!("../../../profiles/signals/offset-gain-phase.csv"),
+            ExampleCapture::Healthy => include_bytes!("../../../profiles/signals/healthy.csv"),
+            ExampleCapture::WithErrors => include_bytes!("../../../profiles/signals/offset-gain-phase.csv"),
         }
     }
 }
@@ -86,11 +86,11 @@ impl Drop for Reading {
 }
 
 /// Reads and measures a capture. The duration depends on the file size.
-pub(super) fn read(place: TableSource, hints: TableHints, judge: Judge, progress: &Progress) -> Read {
+pub(super) fn read(place: TableSource, hints: TableHints, judge: DiagnosisSettings, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {
             let bytes = example.bytes();
-            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &hints))
+            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import_capture(bytes, &hints))
         }
         TableSource::File(path) => match capture_head(path) {
             Ok(head) => (head, read_file(path, &hints, progress)),
@@ -113,7 +113,7 @@ fn read_file(path: &Path, hints: &TableHints, progress: &Progress) -> Result<Cap
     read_capture(path, hints, &progress.cancel, &mut tell).map(|(_, capture)| capture)
 }
 
-fn import(bytes: &[u8], hints: &TableHints) -> Result<Capture, ReadCaptureError> {
+fn import_capture(bytes: &[u8], hints: &TableHints) -> Result<Capture, ReadCaptureError> {
     let read = || -> Result<Capture, CaptureError> {
         let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), hints)?;
         import.feed(bytes)?;

@@ -4,8 +4,8 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::feed::Channels;
-use crate::analysis::Time;
+use super::feed::ChannelSamples;
+use crate::analysis::SampleTime;
 use crate::analysis::capture::Capture;
 use crate::analysis::wiring::Wires;
 use crate::worker::stream::Batch;
@@ -13,15 +13,15 @@ use crate::worker::stream::Batch;
 /// Newest samples received without gaps.
 #[derive(Default)]
 pub(super) struct RecentSamples {
-    chunks: VecDeque<Arc<Channels>>,
+    chunks: VecDeque<Arc<ChannelSamples>>,
     count: usize,
-    newest: Option<Time>,
+    newest: Option<SampleTime>,
     period_ns: i64,
 }
 
 /// Newest samples that span a given number of milliseconds.
 pub(super) struct Window {
-    chunks: Vec<Arc<Channels>>,
+    chunks: Vec<Arc<ChannelSamples>>,
     /// Number of samples in the first chunk that are too old.
     skip: usize,
     period_ns: i64,
@@ -32,7 +32,7 @@ pub(super) const MOST: usize = 500_000;
 const EVERY_NS: i64 = 250_000_000;
 
 impl RecentSamples {
-    pub(super) fn add(&mut self, batch: Batch<Channels>) {
+    pub(super) fn add(&mut self, batch: Batch<ChannelSamples>) {
         if batch.lost > 0 || batch.period_ns != self.period_ns {
             (self.chunks, self.count) = (VecDeque::new(), 0);
         }
@@ -49,12 +49,12 @@ impl RecentSamples {
         }
     }
 
-    pub(super) fn newest(&self) -> Option<Time> {
+    pub(super) fn newest(&self) -> Option<SampleTime> {
         self.newest
     }
 
     /// Returns whether enough samples have arrived since the last measurement.
-    pub(super) fn is_due(&self, measured: Option<Time>) -> bool {
+    pub(super) fn is_due(&self, measured: Option<SampleTime>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,
             (newest, None) => newest.is_some(),
@@ -67,7 +67,7 @@ impl RecentSamples {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
         let mut skip = self.count.checked_sub(count)?;
-        let too_old = |chunk: &&Arc<Channels>| {
+        let too_old = |chunk: &&Arc<ChannelSamples>| {
             let is_too_old = chunk.len() <= skip;
             skip -= if is_too_old { chunk.len() } else { 0 };
             is_too_old
@@ -80,7 +80,7 @@ impl RecentSamples {
 impl Window {
     /// Copies the samples into a capture whose times begin at zero.
     pub(super) fn capture(&self) -> Capture {
-        let column = |of: fn(&Channels) -> &[f64]| -> Vec<f64> {
+        let column = |of: fn(&ChannelSamples) -> &[f64]| -> Vec<f64> {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
         };
         let (sine_v, cosine_v) = (column(|own| &own.sine_v), column(|own| &own.cosine_v));
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use crate::buses::bridge::jobs::Pair;
 
-    fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<Channels> {
+    fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<ChannelSamples> {
         let column = |at: f64| (0..count).map(|own| (first as f64 + own as f64) * at).collect();
         let samples = Wires {
             sin_v: column(2.0),
@@ -120,7 +120,7 @@ mod tests {
             refcos_v: column(1.0),
             reference_deg: column(0.5),
         };
-        let time = Time::from_nanoseconds(first as i64 * period_ns);
+        let time = SampleTime::from_nanoseconds(first as i64 * period_ns);
         Batch { first, time, period_ns, lost, samples: samples.into() }
     }
 
@@ -128,7 +128,7 @@ mod tests {
     fn signals_without_wire_samples_are_measured() {
         let mut recent = RecentSamples::default();
         let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
-        recent.add(Batch { first: 0, time: Time::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
+        recent.add(Batch { first: 0, time: SampleTime::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
         let window = recent.window(2).unwrap().capture();
         assert_eq!((window.sine_v, window.cosine_v), (vec![2.0, 3.0], vec![5.0, 6.0]));
         assert!(window.wires.is_none() && window.reference_deg.is_none());

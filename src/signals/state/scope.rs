@@ -1,8 +1,8 @@
 //! Signals over time as recorder lines: differences, the length of the amplitude vector, and the four wires if
 //! recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
-use super::feed::Channels;
-use crate::analysis::Time;
+use super::feed::ChannelSamples;
+use crate::analysis::SampleTime;
 use crate::analysis::capture::Capture;
 use crate::analysis::history::{Kind, Part, Refused};
 use crate::analysis::wiring::Wires;
@@ -86,10 +86,10 @@ impl Scope {
     fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), Refused> {
         let part = |column: &[f64]| column.get(range.clone()).unwrap_or_default().to_vec();
         let times = range.clone().map(|at| match capture.time_s.get(at) {
-            Some(seconds) if !self.recorder.counts() => Time::from_nanoseconds((seconds * 1e9).round() as i64),
-            _ => Time::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(SAMPLE)),
+            Some(seconds) if !self.recorder.counts() => SampleTime::from_nanoseconds((seconds * 1e9).round() as i64),
+            _ => SampleTime::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(SAMPLE)),
         });
-        let times: Vec<Time> = times.collect();
+        let times: Vec<SampleTime> = times.collect();
         let (sine, cosine) = (part(&capture.sine_v), part(&capture.cosine_v));
         let wires = capture.wires.as_ref().map(|wires| Wires {
             sin_v: part(&wires.sin_v),
@@ -107,13 +107,13 @@ impl Scope {
     }
 
     /// Adds received samples and returns how many of them could not be stored.
-    pub(super) fn add(&mut self, batch: &Batch<Channels>) -> u64 {
+    pub(super) fn add(&mut self, batch: &Batch<ChannelSamples>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();
         }
         let count = i64::try_from(batch.samples.len()).unwrap_or(0);
-        let times: Vec<Time> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
-        let Channels { sine_v, cosine_v, wires } = &batch.samples;
+        let times: Vec<SampleTime> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
+        let ChannelSamples { sine_v, cosine_v, wires } = &batch.samples;
         match self.append(&times, sine_v, cosine_v, wires.as_ref()) {
             Ok(()) => 0,
             Err(_) => {
@@ -123,7 +123,13 @@ impl Scope {
         }
     }
 
-    fn append(&mut self, times: &[Time], sine: &[f64], cosine: &[f64], wires: Option<&Wires>) -> Result<(), Refused> {
+    fn append(
+        &mut self,
+        times: &[SampleTime],
+        sine: &[f64],
+        cosine: &[f64],
+        wires: Option<&Wires>,
+    ) -> Result<(), Refused> {
         let vector: Vec<f64> = sine.iter().zip(cosine).map(|(sine, cosine)| sine.hypot(*cosine)).collect();
         let mut parts = vec![Part::real(sine), Part::real(cosine), Part::real(&vector)];
         if let Some(wires) = wires {
@@ -144,7 +150,7 @@ mod tests {
 
     fn value(scope: &Scope, line: usize, nanoseconds: i64) -> f64 {
         let line = &scope.recorder.lines()[line];
-        let sample = scope.recorder.nearest(line, Time::from_nanoseconds(nanoseconds)).unwrap();
+        let sample = scope.recorder.nearest(line, SampleTime::from_nanoseconds(nanoseconds)).unwrap();
         line.value(&sample)
     }
 
@@ -174,7 +180,7 @@ mod tests {
         assert!(!scope.recorder.counts() && scope.refused.is_none());
     }
 
-    fn batch(first: i64, count: usize) -> Batch<Channels> {
+    fn batch(first: i64, count: usize) -> Batch<ChannelSamples> {
         let column = vec![1.0; count];
         let samples = Wires {
             sin_v: column.clone(),
@@ -183,7 +189,7 @@ mod tests {
             refcos_v: column,
             reference_deg: Vec::new(),
         };
-        Batch { first: 0, time: Time::from_nanoseconds(first), period_ns: 10, lost: 0, samples: samples.into() }
+        Batch { first: 0, time: SampleTime::from_nanoseconds(first), period_ns: 10, lost: 0, samples: samples.into() }
     }
 
     #[test]

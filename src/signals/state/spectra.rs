@@ -46,13 +46,13 @@ impl Spectra {
         Ok(Spectra {
             spacing_hz: sine.spacing_hz(),
             samples: count - from,
-            sine: thin_out(&sine),
-            cosine: thin_out(&cosine),
+            sine: decimate(&sine),
+            cosine: decimate(&cosine),
         })
     }
 }
 
-fn thin_out(spectrum: &Spectrum) -> ChannelSpectrum {
+fn decimate(spectrum: &Spectrum) -> ChannelSpectrum {
     let amplitudes = spectrum.amplitudes_v();
     let stretch = amplitudes.len().div_ceil(LINES).max(1);
     let highest = |(number, lines): (usize, &[f64])| {

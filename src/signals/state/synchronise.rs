@@ -4,8 +4,8 @@
 
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
-use crate::analysis::synchronise::{AmbiguousPeriod, STEPS, SynchronisedPosition, Synchroniser, measure_offset};
-use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
+use crate::analysis::synchronise::{AmbiguousPeriodError, STEPS, SynchronisedPosition, Synchroniser, measure_offset};
+use crate::app::number::{MOST_PERIODS, parse_number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signals::state::TEXTS;
 
@@ -53,7 +53,7 @@ pub enum PhaseInput {
 }
 
 #[derive(Debug, Default)]
-pub struct Synchronise {
+pub struct SynchroniseState {
     pub form: Form,
     /// Reason why the last reading of an encoder failed, if it failed.
     pub problem: Option<Text>,
@@ -72,7 +72,7 @@ pub struct Synchronisation {
     /// only the result.
     pub difference_steps: f64,
     /// Fine position, or the reason why it cannot be determined.
-    pub result: Result<SynchronisedPosition, AmbiguousPeriod>,
+    pub result: Result<SynchronisedPosition, AmbiguousPeriodError>,
     pub periods: u32,
 }
 
@@ -107,7 +107,7 @@ impl Form {
     pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
-        let absolute = number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
+        let absolute = parse_number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
         let phase = self.phase()?;
         let step = absolute % STEPS;
         Ok(Synchronisation {
@@ -131,7 +131,7 @@ impl Form {
         }
         let (_, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * 4 - 1;
-        let quarters = number_or_hex(TEXTS.text("synchronise.quarters"), &self.quarters, last)?;
+        let quarters = parse_number_or_hex(TEXTS.text("synchronise.quarters"), &self.quarters, last)?;
         let (period, phase) = synchroniser.with_quadrature(quarters, self.phase()?);
         Ok(Some(period as f64 + phase.periods()))
     }
@@ -160,10 +160,10 @@ impl Form {
         let no_signal = || TEXTS.text("synchronise.no_signal");
         match self.phase_input {
             PhaseInput::Periods => {
-                Phase::of_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?)
+                Phase::from_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?)
             }
             PhaseInput::Degrees => {
-                Phase::of_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
+                Phase::from_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
             }
             PhaseInput::Volts => exact(
                 within(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
@@ -183,7 +183,7 @@ impl Synchronisation {
 
     pub fn words(&self) -> (Verdict, Text) {
         match self.result {
-            Err(AmbiguousPeriod) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
+            Err(AmbiguousPeriodError) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
             Ok(fine) => {
                 let id = match fine.verdict {
                     Verdict::Ok => "synchronise.good",
@@ -197,7 +197,7 @@ impl Synchronisation {
     }
 }
 
-impl Synchronise {
+impl SynchroniseState {
     pub(super) fn act(&mut self, action: SynchroniseAction) {
         match action {
             SynchroniseAction::Edit(form) => {
@@ -247,7 +247,7 @@ impl Synchronise {
         (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
         (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
         let length = sine_v.hypot(cosine_v);
-        match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude(length) != Verdict::Fault) {
+        match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude_verdict(length) != Verdict::Fault) {
             Some(phase) if reading.valid => self.readings.push((reading.position.into(), phase)),
             Some(_) => self.problem = Some(Text::new("commutation.invalid")),
             None => self.problem = Some(TEXTS.text("synchronise.no_signal")),
@@ -310,7 +310,7 @@ mod tests {
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
         }
         let told = form("0", "0.5", "16", "1").synchronisation().unwrap();
-        assert_eq!((told.result, told.degrees()), (Err(AmbiguousPeriod), None));
+        assert_eq!((told.result, told.degrees()), (Err(AmbiguousPeriodError), None));
         assert_eq!(told.words().1.id(), "synchronise.impossible");
     }
 
@@ -362,7 +362,7 @@ mod tests {
     /// Two readings half a step apart in opposite directions are both 2.5 steps ahead on average.
     #[test]
     fn readings_measure_the_offset() {
-        let mut page = Synchronise::default();
+        let mut page = SynchroniseState::default();
         let range = Some(SineCosineRange { periods: 128, turns: 4096 });
         let at = |position, degrees: f64| {
             let (sine, cosine) = degrees.to_radians().sin_cos();

@@ -114,10 +114,10 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signals::state::Example;
+    use crate::signals::state::ExampleCapture;
 
     fn table(text: &str) -> Table {
-        Table::of(TableSource::Example(Example::Healthy), text.as_bytes(), TableHints::default())
+        Table::of(TableSource::Example(ExampleCapture::Healthy), text.as_bytes(), TableHints::default())
     }
 
     #[test]

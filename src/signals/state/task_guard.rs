@@ -3,7 +3,7 @@
 
 use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
-use crate::app::tasks::{Mailbox, Tasks};
+use crate::app::tasks::{Mailbox, TaskRunner};
 
 /// Guard that sends a message if the task ends without returning.
 struct CompletionGuard {
@@ -20,30 +20,30 @@ impl CompletionGuard {
 impl Drop for CompletionGuard {
     fn drop(&mut self) {
         if let Some(failed) = self.failed.take() {
-            self.mailbox.send(action(failed));
+            self.mailbox.send(done_action(failed));
         }
     }
 }
 
-fn action(done: Done) -> Action {
+fn done_action(done: Done) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
 /// Runs a task on a thread and returns `failed` if the task produces no result.
-pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
+pub(super) fn run(tasks: &TaskRunner, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
     let promise = CompletionGuard { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
         let done = task();
         promise.task_returned();
-        action(done)
+        done_action(done)
     });
 }
 
 /// Drops a large value on a separate thread, since releasing its memory takes a while.
-pub(super) fn let_go(tasks: &Tasks, large: impl Send + 'static) {
+pub(super) fn let_go(tasks: &TaskRunner, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);
-        action(Done::LetGo)
+        done_action(Done::LetGo)
     });
 }
 
@@ -51,10 +51,10 @@ pub(super) fn let_go(tasks: &Tasks, large: impl Send + 'static) {
 mod tests {
     use std::sync::Arc;
 
-    use super::super::Failed;
+    use super::super::FailedTask;
     use super::*;
 
-    fn next(tasks: &Tasks) -> Option<Failed> {
+    fn next(tasks: &TaskRunner) -> Option<FailedTask> {
         let began = std::time::Instant::now();
         loop {
             match tasks.next() {
@@ -71,11 +71,11 @@ mod tests {
 
     #[test]
     fn only_a_panicking_task_is_reported_as_failed() {
-        let tasks = Tasks::new(Arc::new(|| ()));
-        run(&tasks, "ends", Done::Failed(Failed::Judge), || Done::Failed(Failed::Measure(1)));
-        assert_eq!(next(&tasks), Some(Failed::Measure(1)));
-        run(&tasks, "breaks off", Done::Failed(Failed::Read(7)), || std::panic::resume_unwind(Box::new(())));
-        assert_eq!(next(&tasks), Some(Failed::Read(7)));
+        let tasks = TaskRunner::new(Arc::new(|| ()));
+        run(&tasks, "ends", Done::Failed(FailedTask::Judge), || Done::Failed(FailedTask::Measure(1)));
+        assert_eq!(next(&tasks), Some(FailedTask::Measure(1)));
+        run(&tasks, "breaks off", Done::Failed(FailedTask::Read(7)), || std::panic::resume_unwind(Box::new(())));
+        assert_eq!(next(&tasks), Some(FailedTask::Read(7)));
         assert!(tasks.next().is_none());
     }
 }

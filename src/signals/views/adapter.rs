@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    button, card_with, choice, entry, icon_button, paragraph, primary, problem_below, text_entry,
+    button, card_with, choice, entry, icon_button, paragraph, primary, show_error_below, text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -47,14 +47,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         let word = say(theme, "adapter.supply");
         entry(ui, theme, &word, |ui| {
             let mut supply = source.supply();
-            let families = Family::ALL.map(|family| (Some(family), supply_of(theme, family)));
+            let families = Family::ALL.map(|family| (Some(family), supply_text(theme, family)));
             let elsewhere = (None, say(theme, "adapter.supply_elsewhere"));
             if choice(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
                 ask(SourceAction::SetSupply(supply));
             }
         });
         paragraph(ui, theme.caption(say(theme, "adapter.link_hint")));
-        problem_below(ui, theme, source.adapter_problem());
+        show_error_below(ui, theme, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
             started |= primary(ui, theme, true, icons::PLAY, &say(theme, "adapter.start")).clicked();
             if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(theme, "adapter.use_virtual")).clicked()
@@ -72,7 +72,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     started || closed
 }
 
-fn supply_of(theme: &Theme, family: Family) -> String {
+fn supply_text(theme: &Theme, family: Family) -> String {
     let voltage = family.supply();
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
     let text = TEXTS.text("adapter.supply_of").with("family", family.name());

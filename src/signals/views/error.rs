@@ -3,9 +3,9 @@
 use egui::Ui;
 
 use super::{SignalsUiState, nonlinearity, numbers, octant, quality, source};
-use crate::analysis::position_error::{Basis, PositionError, harmonics};
+use crate::analysis::position_error::{ErrorBasis, PositionError, harmonics};
 use crate::app::{Action, Text};
-use crate::signals::state::{Results, Signals, TEXTS, error_quantities};
+use crate::signals::state::{MeasurementResult, Signals, TEXTS, error_quantities};
 use crate::signals::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, split};
@@ -38,7 +38,9 @@ pub(super) fn page_ui(
             card(ui, theme, TEXTS.text("error.numbers"), |ui| {
                 quality::periods_ui(ui, theme, signals, periods, actions);
                 ui.add_space(theme.space.inside);
-                let of = |own: &Results| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
+                let of = |own: &MeasurementResult| {
+                    own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()))
+                };
                 let others = compared.and_then(|own| of(own));
                 let own = error_quantities(analysis, signals.periods());
                 numbers::rows_ui(ui, theme, "error.numbers", &own, others.as_deref());
@@ -54,19 +56,19 @@ pub(super) fn page_ui(
     octant::card_ui(ui, theme, &mut view.octant);
 }
 
-fn basis(basis: Basis) -> Text {
+fn basis(basis: ErrorBasis) -> Text {
     match basis {
-        Basis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),
-        Basis::Ellipse => TEXTS.text("error.basis_ellipse"),
+        ErrorBasis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),
+        ErrorBasis::Ellipse => TEXTS.text("error.basis_ellipse"),
     }
 }
 
 /// Returns the position error of the compared capture, if any.
-fn other(compared: Option<&Results>) -> Option<&PositionError> {
+fn other(compared: Option<&MeasurementResult>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
 
-fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
+fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&MeasurementResult>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
@@ -74,7 +76,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
     };
     let traces = series(error, other(compared), trace);
     card(ui, theme, TEXTS.text("error.curve"), |ui| {
-        let value = TEXTS.text("error.curve_value").with_number("raw", error.raw_pp_deg(), 3).with_number(
+        let value = TEXTS.text("error.curve_value").with_number("raw", error.raw_peak_to_peak_deg(), 3).with_number(
             "corrected",
             error.corrected_pp_deg,
             3,
@@ -95,7 +97,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
     });
 }
 
-fn bars_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
+fn bars_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&MeasurementResult>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
         Trace { name: say(theme, id), points, colour, dashed }

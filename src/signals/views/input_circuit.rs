@@ -4,10 +4,10 @@ use egui::{RichText, Ui};
 
 use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
-use crate::signals::state::input_circuit::{Circuit, Form, Point};
+use crate::signals::state::input_circuit::{Circuit, Form, OperatingPoint};
 use crate::signals::state::{TEXTS, Unit};
 use crate::signals::views::say;
-use crate::ui::controls::{card, labelled_entry, paragraph, problem_below, row, split};
+use crate::ui::controls::{card, labelled_entry, paragraph, row, show_error_below, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
@@ -54,7 +54,7 @@ fn entries_ui(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text
         ] {
             labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
         }
-        problem_below(ui, theme, refused);
+        show_error_below(ui, theme, refused);
     });
 }
 
@@ -67,7 +67,7 @@ fn notes_ui(ui: &mut Ui, theme: &Theme) {
 }
 
 fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
-    let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
+    let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
     card(ui, theme, TEXTS.text("input.here"), |ui| {
         ui.label(theme.value(format!("{} {}", theme.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
@@ -127,7 +127,7 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
 
 fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     let course = circuit.course(POINTS);
-    let trace = |id, colour, dashed, value: fn(&Point) -> f64| Trace {
+    let trace = |id, colour, dashed, value: fn(&OperatingPoint) -> f64| Trace {
         name: say(theme, id),
         points: course.iter().map(|point| (point.speed_rpm, value(point))).collect(),
         colour,

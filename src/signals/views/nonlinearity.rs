@@ -4,14 +4,19 @@ use egui::Ui;
 
 use super::numbers;
 use crate::app::explain;
-use crate::signals::state::{Nonlinearities, Results, TEXTS, nonlinearity_quantities};
+use crate::signals::state::{MeasurementResult, Nonlinearities, TEXTS, nonlinearity_quantities};
 use crate::signals::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
 /// Draws the card, including the values of a compared capture, if given.
-pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    measurement: &MeasurementResult,
+    compared: Option<&MeasurementResult>,
+) {
     card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(nonlinearities)) => {
             curve_ui(ui, theme, nonlinearities);

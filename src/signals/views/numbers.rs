@@ -3,7 +3,7 @@
 use egui::{RichText, Ui, WidgetInfo};
 
 use crate::analysis::quality::Verdict;
-use crate::signals::state::{Bound, Quantity, Unit};
+use crate::signals::state::{Quantity, QuantityLimit, Unit};
 use crate::signals::views::say;
 use crate::ui::{Theme, controls};
 
@@ -84,7 +84,7 @@ fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<
 }
 
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
-    unit_behind(theme.number(rounded(value, decimals), decimals), unit)
+    append_unit(theme.number(rounded(value, decimals), decimals), unit)
 }
 
 /// Rounds to the displayed decimals; a value displayed as zero has no sign.
@@ -93,18 +93,18 @@ fn rounded(value: f64, decimals: usize) -> f64 {
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
-fn bound_words(theme: &Theme, bound: Bound, unit: Unit) -> String {
+fn bound_words(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
     let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {
-        Bound::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
-        Bound::Within(most) => format!("± {}", plain(most)),
-        Bound::AtMost(most) => format!("≤ {}", plain(most)),
-        Bound::AtLeast(least) => format!("≥ {}", plain(least)),
+        QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
+        QuantityLimit::Within(most) => format!("± {}", plain(most)),
+        QuantityLimit::AtMost(most) => format!("≤ {}", plain(most)),
+        QuantityLimit::AtLeast(least) => format!("≥ {}", plain(least)),
     };
-    unit_behind(words, unit)
+    append_unit(words, unit)
 }
 
-fn unit_behind(words: String, unit: Unit) -> String {
+fn append_unit(words: String, unit: Unit) -> String {
     match unit.sign() {
         "" => words,
         sign @ ("°" | "″") => format!("{words}{sign}"),

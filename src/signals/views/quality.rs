@@ -8,14 +8,14 @@ use crate::signals::views::say;
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{SignalsUiState, numbers, source};
-use crate::analysis::diagnosis::{Changes, DiagnosisFinding, Severity};
-use crate::analysis::lissajous::Square;
+use crate::analysis::diagnosis::{DiagnosisChanges, DiagnosisFinding, Severity};
+use crate::analysis::lissajous::PlotSquare;
 use crate::analysis::quality::Family;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
-use crate::signals::state::{Measurement, Results, Signals, SignalsAction as Signals_, forms, quantities};
+use crate::signals::state::{Measurement, MeasurementResult, Signals, SignalsAction as Signals_, forms, quantities};
 use crate::ui::controls::{card, card_with, choice, committed_entry, entry, name, paragraph, problem, split};
-use crate::ui::widgets::{Figure, Lissajous, density_image, lissajous, series};
+use crate::ui::widgets::{Lissajous, LissajousFigure, density_image, lissajous, series};
 use crate::ui::{Theme, icons};
 
 /// Common numbers of periods per revolution.
@@ -82,7 +82,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
         });
         let picture = own.of(ui, theme, measurement.results(), corrected, 0);
         let shown = figure_text(measurement, corrected, picture, (0, false));
-        let figures: Vec<Figure> = compared.into_iter().chain([shown]).collect();
+        let figures: Vec<LissajousFigure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
         let lissajous_ = Lissajous {
             figures: &figures,
@@ -98,21 +98,21 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
 
 /// The samples of a capture as a texture, cached until the samples or the colour change.
 #[derive(Default)]
-pub(super) struct Picture(Option<(Arc<Results>, bool, Color32, TextureHandle)>);
+pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
 impl Picture {
     fn of(
         &mut self,
         ui: &Ui,
         theme: &Theme,
-        measurement: &Arc<Results>,
+        measurement: &Arc<MeasurementResult>,
         corrected: bool,
         colour: usize,
-    ) -> Option<(TextureId, Square)> {
+    ) -> Option<(TextureId, PlotSquare)> {
         let colour = series(theme, colour);
         let density = if corrected { &measurement.corrected } else { &measurement.raw };
         let density = density.as_ref()?;
-        let same = |(own, own_corrected, own_colour, _): &(Arc<Results>, bool, Color32, TextureHandle)| {
+        let same = |(own, own_corrected, own_colour, _): &(Arc<MeasurementResult>, bool, Color32, TextureHandle)| {
             Arc::ptr_eq(own, measurement) && *own_corrected == corrected && *own_colour == colour
         };
         if !self.0.as_ref().is_some_and(same) {
@@ -126,20 +126,20 @@ impl Picture {
 }
 
 fn figure_text(
-    measurement: &Results,
+    measurement: &MeasurementResult,
     corrected: bool,
-    picture: Option<(TextureId, Square)>,
+    picture: Option<(TextureId, PlotSquare)>,
     (colour, dashed): (usize, bool),
-) -> Figure {
+) -> LissajousFigure {
     let curve = |analysis: &Analysis| {
-        let ellipse = if corrected { analysis.ellipse.corrected() } else { analysis.ellipse };
+        let ellipse = if corrected { analysis.ellipse.corrected_ellipse() } else { analysis.ellipse };
         ellipse.outline(CURVE)
     };
-    Figure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
+    LissajousFigure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
 /// Draws the reason why a capture cannot be measured, along with its findings.
-pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &Results) {
+pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
@@ -187,7 +187,7 @@ fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measu
 
 /// Draws the changes since another capture. The note that nothing has become worse appears only if everything could be
 /// compared.
-fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
+fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChanges) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(theme.space.inside);
         ui.label(theme.caption(theme.words(&TEXTS.text(id).with_text("name", name.clone()))));
@@ -229,7 +229,7 @@ fn values_ui(
         });
         periods_ui(ui, theme, signals, &mut view.periods, actions);
         ui.add_space(theme.space.inside);
-        let of = |own: &Results| quantities(own, signals.family(), signals.periods());
+        let of = |own: &MeasurementResult| quantities(own, signals.family(), signals.periods());
         let others = signals.comparison().map(|own| of(own));
         numbers::rows_ui(ui, theme, "quality.numbers", &of(measurement), others.as_deref());
     });

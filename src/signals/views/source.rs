@@ -6,7 +6,7 @@ use super::{adapter, table, virtual_encoder};
 use crate::app::Action;
 use crate::buses::bridge::protocol::Capabilities;
 use crate::signals::state::{
-    Example, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
+    ExampleCapture, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
 };
 use crate::signals::views::say;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
@@ -270,7 +270,7 @@ fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions:
             ui.close();
         }
         ui.label(theme.caption(say(theme, "signals.examples")));
-        for example in Example::ALL {
+        for example in ExampleCapture::ALL {
             if button(ui, icons::FILE_TEXT, &say(theme, example.word())).clicked() {
                 chosen = Some(Action::tool(Signals_::Example(example)));
             }
@@ -305,7 +305,7 @@ fn nothing_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUi
         }
         theme.gap(ui);
         ui.label(theme.caption(say(theme, "signals.try_example")));
-        for example in Example::ALL {
+        for example in ExampleCapture::ALL {
             if button(ui, icons::WAVE_SINE, &say(theme, example.word())).clicked() {
                 actions.push(Action::tool(Signals_::Example(example)));
             }

@@ -3,12 +3,12 @@
 use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
-use crate::signals::state::synchronise::{Form, PhaseInput, Synchronise, SynchroniseAction as Page};
+use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as Page, SynchroniseState};
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, problem_below,
-    row, split, verdict_ui,
+    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
+    show_error_below, split, verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series, step_ring};
 use crate::ui::{Theme, controls, icons};
@@ -75,7 +75,7 @@ fn positions_ui(
     ui: &mut Ui,
     theme: &Theme,
     form: &mut Form,
-    state: &Synchronise,
+    state: &SynchroniseState,
     refused: Option<&Text>,
     device: Option<&dyn SineCosineSource>,
     actions: &mut Vec<Action>,
@@ -103,7 +103,7 @@ fn positions_ui(
         typed_ui(ui, theme, "synchronise.offset", &mut form.offset, "0");
         ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
             .on_hover_text(say(theme, "synchronise.half_step_hint"));
-        problem_below(ui, theme, refused.or(state.problem.as_ref()));
+        show_error_below(ui, theme, refused.or(state.problem.as_ref()));
         let ready = device.is_some_and(SineCosineSource::is_ready);
         let read = enabled_button(ui, ready, icons::CROSSHAIR, &say(theme, "synchronise.read"));
         if read.on_disabled_hover_text(say(theme, "synchronise.read_hint")).clicked() {
@@ -112,7 +112,7 @@ fn positions_ui(
     });
 }
 
-fn measured_ui(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<Action>) {
+fn measured_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &mut Vec<Action>) {
     let count = state.readings();
     let mut forget = false;
     let aside = |ui: &mut Ui| {

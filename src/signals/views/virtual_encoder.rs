@@ -7,7 +7,7 @@ use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
-use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem_below, two_columns};
+use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, show_error_below, two_columns};
 use crate::ui::{Theme, icons};
 
 /// Slider of a setting, with its end values (values beyond them can be typed) and number of decimals.
@@ -62,7 +62,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();
-        problem_below(ui, theme, source.problem());
+        show_error_below(ui, theme, source.problem());
         two_columns(
             ui,
             theme,
@@ -150,7 +150,7 @@ fn window(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(Sour
             ask(SourceAction::SetWindow(window));
         }
     });
-    if let Some(ms) = source.shortened_ms() {
+    if let Some(ms) = source.limited_window_ms() {
         let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
         paragraph(ui, theme.caption(theme.words(&text)));
     }

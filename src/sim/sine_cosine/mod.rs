@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 
 pub use settings::{Checked, Quantity, ReferenceLevel, SettingError, Settings};
 
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::wiring::{Wire, Wires};
 
 /// Parts per turn, chosen so that 0.001 rev/min corresponds to one part per nanosecond.
@@ -34,7 +34,7 @@ const REMEMBERED: usize = 64;
 /// An analogue source whose samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
-    start: Time,
+    start: SampleTime,
     /// Segments in chronological order, never empty.
     segments: VecDeque<Segment>,
 }
@@ -51,7 +51,7 @@ struct Segment {
 
 impl Source {
     /// Creates a source whose first sample is taken at `start`, at angle 0.
-    pub fn new(checked: Checked, start: Time) -> Self {
+    pub fn new(checked: Checked, start: SampleTime) -> Self {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
@@ -75,7 +75,7 @@ impl Source {
     }
 
     /// Returns the time of a sample, or `None` if the changes before the sample are no longer stored.
-    pub fn time(&self, index: u64) -> Option<Time> {
+    pub fn time(&self, index: u64) -> Option<SampleTime> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
@@ -131,9 +131,9 @@ impl Segment {
         let line = |hertz: f64| {
             let millihertz = (hertz * 1_000.0).round() as i128;
             let (now, step) = (elapsed * millihertz, i128::from(self.period()) * millihertz);
-            Wheel { at: remainder(now, CYCLE), step: remainder(step, CYCLE), whole: CYCLE }
+            PhaseAccumulator { at: remainder(now, CYCLE), step: remainder(step, CYCLE), whole: CYCLE }
         };
-        let mut shaft = Wheel { at: self.turn_at(first), step: self.step(), whole: TURN };
+        let mut shaft = PhaseAccumulator { at: self.turn_at(first), step: self.step(), whole: TURN };
         let (mut interference, mut hum) = (line(settings.interference_hz), line(settings.hum_hz));
         for index in first..first + count {
             let common = settings.hum_v * hum.angle().sin();
@@ -146,20 +146,20 @@ impl Segment {
             wires.cos_v.push(cos);
             wires.refcos_v.push(refcos);
             wires.reference_deg.push(360.0 * shaft.share());
-            [&mut shaft, &mut interference, &mut hum].into_iter().for_each(Wheel::turn);
+            [&mut shaft, &mut interference, &mut hum].into_iter().for_each(PhaseAccumulator::turn);
         }
     }
 }
 
 /// A rotation in equal steps of whole parts.
 #[derive(Clone, Copy)]
-struct Wheel {
+struct PhaseAccumulator {
     at: u64,
     step: u64,
     whole: u64,
 }
 
-impl Wheel {
+impl PhaseAccumulator {
     fn turn(&mut self) {
         self.at += self.step;
         self.at -= if self.at >= self.whole { self.whole } else { 0 };
@@ -200,11 +200,11 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the sine and cosine channels in volts, without disturbances.
-    fn channels(&self, shaft: Wheel) -> (f64, f64) {
+    fn channels(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle().sin_cos();
         // The periods are multiplied while the angle is still whole parts: 65 536 turns fit into 64 bits.
-        let signal = Wheel { at: shaft.at * self.periods % TURN, ..shaft };
+        let signal = PhaseAccumulator { at: shaft.at * self.periods % TURN, ..shaft };
         let angle = signal.angle() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
         let cosine = angle.cos() - self.third * (3.0 * angle).cos();
@@ -230,8 +230,8 @@ impl<'a> Model<'a> {
             Some(Wire::Refcos) => refcos = hanging(cos),
         }
         if self.noise > 0.0 {
-            let [a, b] = gaussian(self.settings.seed, 2 * index);
-            let [c, d] = gaussian(self.settings.seed, 2 * index + 1);
+            let [a, b] = gaussian_pair(self.settings.seed, 2 * index);
+            let [c, d] = gaussian_pair(self.settings.seed, 2 * index + 1);
             sin += self.noise * a;
             refsin += self.noise * b;
             cos += self.noise * c;
@@ -247,7 +247,7 @@ fn remainder(number: i128, whole: u64) -> u64 {
 }
 
 /// Returns two independent, normally distributed numbers that depend only on `seed` and `place` (Box and Muller 1958).
-fn gaussian(seed: u64, place: u64) -> [f64; 2] {
+fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
     let first = scramble(seed ^ scramble(place));
     let second = scramble(first ^ seed);
     // 53 bits each, the first of them above 0.

@@ -8,7 +8,7 @@ fn silence_duration() -> Settings {
 }
 
 fn source(settings: Settings) -> Source {
-    Source::new(settings.checked().unwrap(), Time::ORIGIN)
+    Source::new(settings.checked().unwrap(), SampleTime::ORIGIN)
 }
 
 #[track_caller]
@@ -58,7 +58,7 @@ fn any_range_of_samples_is_reproducible_after_days() {
     assert_eq!(part.refcos_v, whole.refcos_v[1234..1734]);
     // Ten days at 100 kHz, by whole numbers from the start.
     let days = 86_400_000_000;
-    assert_eq!(source.time(days).unwrap(), Time::from_nanoseconds(864_000_000_000_000));
+    assert_eq!(source.time(days).unwrap(), SampleTime::from_nanoseconds(864_000_000_000_000));
     let turn = 1_234_567_i128 * 10_000 * i128::from(days) % 60_000_000_000_000;
     let late = source.samples(days, 1).unwrap();
     near(late.reference_deg[0], 360.0 * turn as f64 / 6e13, 1e-9);
@@ -81,8 +81,8 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     for (found, expected) in wires.reference_deg.iter().zip([179.64, 180.0, 179.64, 179.28]) {
         near(*found, expected, 1e-9);
     }
-    assert_eq!(source.time(500).unwrap(), Time::from_nanoseconds(500_000_000));
-    assert_eq!(source.time(501).unwrap(), Time::from_nanoseconds(500_100_000));
+    assert_eq!(source.time(500).unwrap(), SampleTime::from_nanoseconds(500_000_000));
+    assert_eq!(source.time(501).unwrap(), SampleTime::from_nanoseconds(500_100_000));
     // Sample 500 is half a turn later: 512 whole periods, cosine 1.
     near(wires.cosine_v()[1], 0.6, 1e-9);
     assert_eq!(source.samples(0, 10_000).unwrap().len(), 10_000);

@@ -11,11 +11,11 @@ use crate::store::FileError;
 #[error("logbook {}: {problem}", path.display())]
 pub struct LogbookError {
     pub path: PathBuf,
-    pub problem: LogbookProblem,
+    pub problem: LogbookErrorKind,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum LogbookProblem {
+pub enum LogbookErrorKind {
     #[error(transparent)]
     Folder(FileError),
     /// The file cannot be opened because a folder has its name or because permission is missing.
@@ -50,31 +50,31 @@ pub enum LogbookProblem {
     },
 }
 
-impl LogbookProblem {
+impl LogbookErrorKind {
     pub(super) fn of(self, path: &Path) -> LogbookError {
         LogbookError { path: path.to_owned(), problem: self }
     }
 }
 
-impl From<rusqlite::Error> for LogbookProblem {
+impl From<rusqlite::Error> for LogbookErrorKind {
     fn from(error: rusqlite::Error) -> Self {
         use rusqlite::Error as Cause;
         let what = error.to_string();
         match error {
             Cause::SqliteFailure(failure, _) => match failure.code {
-                ErrorCode::CannotOpen | ErrorCode::PermissionDenied => LogbookProblem::NoAccess,
-                ErrorCode::ReadOnly => LogbookProblem::WriteProtected,
-                ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked => LogbookProblem::Locked,
-                ErrorCode::DiskFull => LogbookProblem::DiskFull,
-                ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt => LogbookProblem::Damaged { what },
-                _ => LogbookProblem::Database { code: Some(failure.extended_code), what },
+                ErrorCode::CannotOpen | ErrorCode::PermissionDenied => LogbookErrorKind::NoAccess,
+                ErrorCode::ReadOnly => LogbookErrorKind::WriteProtected,
+                ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked => LogbookErrorKind::Locked,
+                ErrorCode::DiskFull => LogbookErrorKind::DiskFull,
+                ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt => LogbookErrorKind::Damaged { what },
+                _ => LogbookErrorKind::Database { code: Some(failure.extended_code), what },
             },
             // The table contains a value that the schema does not allow.
             Cause::FromSqlConversionFailure(..)
             | Cause::IntegralValueOutOfRange(..)
             | Cause::InvalidColumnType(..)
-            | Cause::Utf8Error(..) => LogbookProblem::Damaged { what },
-            _ => LogbookProblem::Database { code: None, what },
+            | Cause::Utf8Error(..) => LogbookErrorKind::Damaged { what },
+            _ => LogbookErrorKind::Database { code: None, what },
         }
     }
 }

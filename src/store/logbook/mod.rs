@@ -15,7 +15,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use rusqlite::{Connection, Row, named_params};
 
-pub use error::{LogbookError, LogbookProblem};
+pub use error::{LogbookError, LogbookErrorKind};
 
 /// Maximum time to wait for another window that is writing.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -76,11 +76,11 @@ pub struct Entry {
     pub backup: Option<PathBuf>,
     /// Conclusion of the write, or `None` while the write is running and permanently if the program died in the
     /// meantime.
-    pub conclusion: Option<Conclusion>,
+    pub conclusion: Option<WriteResult>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Conclusion {
+pub struct WriteResult {
     pub at: Timestamp,
     pub outcome: Outcome,
     /// Number of write cycles spent, including those of a write that failed half-way.
@@ -141,9 +141,9 @@ impl Logbook {
     /// Records how an intended write ended.
     ///
     /// # Errors
-    /// Returns [`LogbookProblem::NotOpen`] if the intent does not exist or is already concluded, or another error if
+    /// Returns [`LogbookErrorKind::NotOpen`] if the intent does not exist or is already concluded, or another error if
     /// the logbook cannot be written.
-    pub fn conclude(
+    pub fn record_outcome(
         &mut self,
         id: EntryId,
         at: Timestamp,
@@ -166,7 +166,7 @@ impl Logbook {
             ":id": id.0,
         };
         match self.database.execute(sql, parameters).map_err(|error| self.failed(error))? {
-            0 => Err(LogbookProblem::NotOpen { entry: id }.of(&self.path)),
+            0 => Err(LogbookErrorKind::NotOpen { entry: id }.of(&self.path)),
             _ => Ok(()),
         }
     }
@@ -235,7 +235,7 @@ impl Logbook {
     }
 
     fn failed(&self, error: rusqlite::Error) -> LogbookError {
-        LogbookProblem::from(error).of(&self.path)
+        LogbookErrorKind::from(error).of(&self.path)
     }
 }
 
@@ -256,7 +256,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
     })
 }
 
-fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<Conclusion>> {
+fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<WriteResult>> {
     let Some(at) = row.get::<_, Option<String>>("concluded_at")? else { return Ok(None) };
     let outcome = match row.get::<_, String>("outcome")?.as_str() {
         "done" => Outcome::Done,
@@ -264,7 +264,7 @@ fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<Conclusion>> {
         // The schema allows no fourth word.
         _ => Outcome::Failed(row.get::<_, Option<String>>("failure")?.unwrap_or_default()),
     };
-    Ok(Some(Conclusion {
+    Ok(Some(WriteResult {
         at: schema::parse_time(&at)?,
         outcome,
         cycles_spent: row.get("cycles_spent").and_then(schema::parse_cycles)?,

@@ -8,7 +8,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::types::Type;
 use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 
-use super::LogbookProblem;
+use super::LogbookErrorKind;
 use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Migrations may be added but never changed, because logbooks created by them
@@ -51,9 +51,9 @@ const STEPS: [&str; 2] = [
 
 pub(super) const KNOWN: i64 = STEPS.len() as i64;
 
-pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookProblem> {
+pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookErrorKind> {
     if let Some(folder) = path.parent() {
-        create_folder(folder).map_err(LogbookProblem::Folder)?;
+        create_folder(folder).map_err(LogbookErrorKind::Folder)?;
     }
     // Without SQLITE_OPEN_URI: a file may be called "file:x?mode=memory".
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
@@ -92,7 +92,7 @@ fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
     database.pragma_update(None, "synchronous", "FULL")
 }
 
-fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
+fn migrate(database: &mut Connection) -> Result<(), LogbookErrorKind> {
     // In almost all cases the schema is current, and no lock is needed.
     if check_version(database)? == STEPS.len() {
         return Ok(());
@@ -108,10 +108,10 @@ fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
 }
 
 /// Returns how many migrations have been applied to the database.
-fn check_version(database: &Connection) -> Result<usize, LogbookProblem> {
+fn check_version(database: &Connection) -> Result<usize, LogbookErrorKind> {
     let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
     match usize::try_from(found) {
         Ok(done) if done <= STEPS.len() => Ok(done),
-        _ => Err(LogbookProblem::Newer { found, known: KNOWN }),
+        _ => Err(LogbookErrorKind::Newer { found, known: KNOWN }),
     }
 }

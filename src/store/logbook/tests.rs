@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::*;
-use crate::store::{FileProblem, Store};
+use crate::store::{FileErrorKind, Store};
 
 fn at(second: i64) -> Timestamp {
     Timestamp::from_second(1_795_263_287 + second).unwrap()
@@ -25,7 +25,7 @@ fn place() -> (tempfile::TempDir, PathBuf) {
     (root, path)
 }
 
-fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookProblem {
+fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookErrorKind {
     result.unwrap_err().problem
 }
 
@@ -43,7 +43,7 @@ fn cycles_add_up_for_each_device() {
     assert_eq!(logbook.write_cycles(&own), Ok(0));
     for (spent, outcome) in [(8, Outcome::Done), (3, Outcome::Failed("no reply".into())), (0, Outcome::Cancelled)] {
         let id = logbook.intend(at(0), &own, "data field 1", 8, None).unwrap();
-        logbook.conclude(id, at(1), outcome, spent).unwrap();
+        logbook.record_outcome(id, at(1), outcome, spent).unwrap();
     }
     assert_eq!(logbook.write_cycles(&own), Ok(11));
     for other in &others {
@@ -74,10 +74,10 @@ fn history_is_newest_first_and_complete() {
     let first = logbook.intend(at(0), &own, "first", 1, Some(&backup)).unwrap();
     let second = logbook.intend(at(5), &own, "second", 2, None).unwrap();
     logbook.intend(at(6), &device("2"), "another", 1, None).unwrap();
-    logbook.conclude(first, at(1), Outcome::Failed(String::new()), 1).unwrap();
+    logbook.record_outcome(first, at(1), Outcome::Failed(String::new()), 1).unwrap();
 
     let history = logbook.history(&own, 10).unwrap();
-    let conclusion = Conclusion { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
+    let conclusion = WriteResult { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
     let expected = [
         Entry {
             id: second,
@@ -106,10 +106,10 @@ fn an_entry_is_concluded_once() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     let id = logbook.intend(at(0), &device("1"), "x", 8, None).unwrap();
-    logbook.conclude(id, at(1), Outcome::Done, 8).unwrap();
-    let not_open = LogbookProblem::NotOpen { entry: id };
-    assert_eq!(problem(logbook.conclude(id, at(2), Outcome::Cancelled, 0)), not_open);
-    assert!(logbook.conclude(EntryId(99), at(2), Outcome::Done, 0).is_err());
+    logbook.record_outcome(id, at(1), Outcome::Done, 8).unwrap();
+    let not_open = LogbookErrorKind::NotOpen { entry: id };
+    assert_eq!(problem(logbook.record_outcome(id, at(2), Outcome::Cancelled, 0)), not_open);
+    assert!(logbook.record_outcome(EntryId(99), at(2), Outcome::Done, 0).is_err());
     assert_eq!(logbook.write_cycles(&device("1")), Ok(8));
 }
 
@@ -131,7 +131,7 @@ fn two_windows_share_a_logbook() {
     let id = first.intend(at(0), &device("1"), "x", 8, None).unwrap();
     assert_eq!(second.write_cycles(&device("1")), Ok(8));
     second.intend(at(0), &device("1"), "y", 1, None).unwrap();
-    second.conclude(id, at(1), Outcome::Done, 2).unwrap();
+    second.record_outcome(id, at(1), Outcome::Done, 2).unwrap();
     assert_eq!(first.write_cycles(&device("1")), Ok(3));
 }
 
@@ -158,7 +158,7 @@ fn a_locked_logbook_is_reported() {
     let mut logbook = Logbook::open_with_timeout(&path, patience).unwrap();
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
-    assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookProblem::Locked);
+    assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookErrorKind::Locked);
     // Reading, and opening to read, do not wait.
     assert_eq!(Logbook::open_with_timeout(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
     other.execute_batch("ROLLBACK").unwrap();
@@ -172,7 +172,7 @@ fn a_newer_logbook_is_not_changed() {
     for found in [schema::KNOWN + 1, i64::from(i32::MAX), -1] {
         Connection::open(&path).unwrap().pragma_update(None, "user_version", found).unwrap();
         let before = fs::read(&path).unwrap();
-        assert_eq!(problem(Logbook::open(&path)), LogbookProblem::Newer { found, known: schema::KNOWN });
+        assert_eq!(problem(Logbook::open(&path)), LogbookErrorKind::Newer { found, known: schema::KNOWN });
         assert_eq!(fs::read(&path).unwrap(), before, "{found}");
     }
 }
@@ -187,7 +187,7 @@ fn the_write_ahead_log_of_a_newer_version_is_kept() {
     drop(newer);
     let wal = path.with_extension("sqlite-wal");
     let before = [&path, &wal].map(|path| fs::read(path).unwrap());
-    assert!(matches!(problem(Logbook::open(&path)), LogbookProblem::Newer { found: 77, .. }));
+    assert!(matches!(problem(Logbook::open(&path)), LogbookErrorKind::Newer { found: 77, .. }));
     assert_eq!([&path, &wal].map(|path| fs::read(path).unwrap()), before);
 }
 
@@ -212,7 +212,7 @@ fn a_damaged_logbook_is_an_error_and_is_kept() {
             logbook.write_cycles(&device("1"))
         });
         assert!(
-            matches!(&result, Err(LogbookError { problem: LogbookProblem::Damaged { .. }, .. })),
+            matches!(&result, Err(LogbookError { problem: LogbookErrorKind::Damaged { .. }, .. })),
             "{label}: {result:?}"
         );
         assert_eq!(fs::read(&path).unwrap(), content, "{label}");
@@ -225,7 +225,7 @@ fn an_invalid_value_is_reported_as_damage() {
     let mut logbook = Logbook::open(&path).unwrap();
     logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
     Connection::open(&path).unwrap().execute("UPDATE entry SET at = 'yesterday'", []).unwrap();
-    assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookProblem::Damaged { .. }));
+    assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookErrorKind::Damaged { .. }));
     assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
 }
 
@@ -233,9 +233,9 @@ fn an_invalid_value_is_reported_as_damage() {
 fn a_logbook_without_a_folder_is_an_error() {
     let (root, path) = place();
     fs::create_dir_all(&path).unwrap();
-    assert_eq!(problem(Logbook::open(&path)), LogbookProblem::NoAccess);
+    assert_eq!(problem(Logbook::open(&path)), LogbookErrorKind::NoAccess);
     let file = root.path().join("file");
     fs::write(&file, "x").unwrap();
-    let LogbookProblem::Folder(error) = problem(Logbook::open(&file.join("logbook.sqlite"))) else { panic!() };
-    assert_eq!(error.problem, FileProblem::NotFolder);
+    let LogbookErrorKind::Folder(error) = problem(Logbook::open(&file.join("logbook.sqlite"))) else { panic!() };
+    assert_eq!(error.problem, FileErrorKind::NotFolder);
 }

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, is_missing};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, is_missing};
 use crate::app::{Action, Studio, Tab, Text};
 use crate::link::LinkUrl;
 use crate::ui::controls::{
@@ -75,7 +75,7 @@ pub(in crate::ui) fn connect_ui(
 }
 
 fn devices_ui(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
-    for own in tabs.of_devices() {
+    for own in tabs.device_tabs() {
         let word = tabs.title(theme, own);
         let text = RichText::new(&word).font(theme.strong(theme.sizes.body));
         let response = ui.add(egui::Button::selectable(device == own, text));

@@ -2,9 +2,9 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::diverged::{Diverged, Resolve, Row, Side};
+use crate::app::diverged::{ConflictResolution, ProfileConflict, Row, Side};
 use crate::app::{Action, Studio, Text};
-use crate::profile::Changed;
+use crate::profile::ChangedSide;
 use crate::ui::controls::{at_the_right, button, enabled_button, modal, options, paragraph, primary, problem};
 use crate::ui::{Theme, icons};
 
@@ -37,9 +37,9 @@ pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &St
 fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Action>) {
     let place = row.place();
     let who = match row.changed {
-        Changed::There => "diverged.there",
-        Changed::Here => "diverged.here",
-        Changed::Both => "diverged.both",
+        ChangedSide::There => "diverged.there",
+        ChangedSide::Here => "diverged.here",
+        ChangedSide::Both => "diverged.both",
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(theme.mono(&place));
@@ -58,7 +58,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
     if options(ui, &place, &mut take, choices)
         && let Some(side) = take
     {
-        actions.push(Action::Resolve(Resolve::Take(at, side)));
+        actions.push(Action::Resolve(ConflictResolution::Take(at, side)));
     }
     ui.add_space(theme.space.between);
 }
@@ -73,20 +73,20 @@ fn shortened(value: &str) -> String {
     format!("{}…", line.chars().take(SHOWN).collect::<String>())
 }
 
-fn buttons_ui(ui: &mut Ui, theme: &Theme, diverged: &Diverged, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, diverged: &ProfileConflict, actions: &mut Vec<Action>) {
     at_the_right(ui, |ui| {
         let can_merge = diverged.can_merge();
         if primary(ui, theme, can_merge, icons::FLOPPY_DISK, &theme.say("diverged.merge")).clicked() {
-            actions.push(Action::Resolve(Resolve::Merge));
+            actions.push(Action::Resolve(ConflictResolution::Merge));
         }
         if enabled_button(ui, diverged.can_keep_mine(), "", &theme.say("diverged.keep_mine")).clicked() {
-            actions.push(Action::Resolve(Resolve::KeepMine));
+            actions.push(Action::Resolve(ConflictResolution::KeepMine));
         }
         if enabled_button(ui, diverged.can_reload(), "", &theme.say("diverged.reload")).clicked() {
-            actions.push(Action::Resolve(Resolve::Reload));
+            actions.push(Action::Resolve(ConflictResolution::Reload));
         }
         if button(ui, "", &theme.say("file.cancel")).clicked() {
-            actions.push(Action::Resolve(Resolve::Close));
+            actions.push(Action::Resolve(ConflictResolution::Close));
         }
     });
 }

@@ -5,7 +5,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::{Action, FileQuestion, Mailbox, Text};
-use crate::store::Folders;
+use crate::store::BaseFolders;
 use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
 use crate::ui::{Theme, icons};
 
@@ -32,7 +32,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
     let fallback = (question.clone(), mailbox.clone());
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
-        let dialog = rfd::FileDialog::new().add_filter(filter, question.endings());
+        let dialog = rfd::FileDialog::new().add_filter(filter, question.file_extensions());
         // Loggers use many extensions for their tables, and users name traces freely.
         let any = matches!(question, FileQuestion::OpenCapture | FileQuestion::Recording);
         let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
@@ -96,8 +96,8 @@ fn title(question: &FileQuestion) -> Text {
 
 impl FileView {
     /// Creates the state for typing a path. The path starts at the user's home unless the question specifies a folder.
-    pub(in crate::ui) fn new(question: FileQuestion, folders: &Folders) -> Self {
-        let home = folders.home().unwrap_or(Path::new(""));
+    pub(in crate::ui) fn new(question: FileQuestion, folders: &BaseFolders) -> Self {
+        let home = folders.home_folder().unwrap_or(Path::new(""));
         let path = home.join(question.suggested().unwrap_or(Path::new("")));
         let working = folders.working().map(Path::to_owned);
         FileView { question, path: path.display().to_string(), working, fresh: true }

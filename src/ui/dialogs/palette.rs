@@ -4,7 +4,7 @@ use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui,
 
 use crate::app::palette::fit;
 use crate::ui::Theme;
-use crate::ui::commands::{Command, Effect};
+use crate::ui::commands::{Command, CommandEffect};
 use crate::ui::controls::{modal, paragraph};
 use crate::ui::entries::text_entry;
 
@@ -24,7 +24,7 @@ pub(in crate::ui) fn palette_ui(
     theme: &Theme,
     state: &mut PaletteUiState,
     commands: Vec<Command>,
-) -> Option<Effect> {
+) -> Option<CommandEffect> {
     let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     let steps =
         [(Key::ArrowDown, 1), (Key::ArrowUp, -1), (Key::PageDown, ROWS as isize), (Key::PageUp, -(ROWS as isize))];

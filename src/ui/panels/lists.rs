@@ -3,8 +3,8 @@
 use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use crate::app::{JobEnd, Studio};
-use crate::ui::controls::{empty, severity};
+use crate::app::{JobState, Studio};
+use crate::ui::controls::{empty_placeholder, severity};
 use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
@@ -15,7 +15,7 @@ const TIME: &str = "%H:%M:%S";
 pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let jobs: Vec<_> = studio.services.jobs().rev().collect();
     if jobs.is_empty() {
-        empty(ui, theme, &theme.say("jobs.nothing"), None);
+        empty_placeholder(ui, theme, &theme.say("jobs.nothing"), None);
         return;
     }
     let palette = theme.palette;
@@ -42,10 +42,10 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
                     }
                 });
                 let (icon, colour, words) = match &job.end {
-                    JobEnd::Running => (icons::SPINNER, palette.accent, theme.say("jobs.running")),
-                    JobEnd::Done => (icons::CHECK_CIRCLE, palette.good, String::new()),
-                    JobEnd::Failed(why) => (icons::X_CIRCLE, palette.bad, theme.words(why)),
-                    JobEnd::Cancelled => (icons::STOP, palette.warn, theme.say("jobs.cancelled")),
+                    JobState::Running => (icons::SPINNER, palette.accent, theme.say("jobs.running")),
+                    JobState::Done => (icons::CHECK_CIRCLE, palette.good, String::new()),
+                    JobState::Failed(why) => (icons::X_CIRCLE, palette.bad, theme.words(why)),
+                    JobState::Cancelled => (icons::STOP, palette.warn, theme.say("jobs.cancelled")),
                 };
                 row.col(|ui| {
                     ui.label(RichText::new(icon).color(colour));
@@ -63,7 +63,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let palette = theme.palette;
     if studio.services.log.notices().len() == 0 {
-        empty(ui, theme, &theme.say("log.nothing"), None);
+        empty_placeholder(ui, theme, &theme.say("log.nothing"), None);
         return;
     }
     ScrollArea::vertical().id_salt("log").auto_shrink(false).show(ui, |ui| {

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, RecorderOwner, Rgb, Studio, Text};
-use crate::ui::controls::{choice, empty, enabled_button, icon_button, label_width, name, row};
+use crate::ui::controls::{choice, empty_placeholder, enabled_button, icon_button, label_width, name, row};
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
@@ -36,7 +36,7 @@ pub(in crate::ui) fn live_ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(device) = studio.selected_device() else {
-        empty(ui, theme, &theme.say("live.nothing"), None);
+        empty_placeholder(ui, theme, &theme.say("live.nothing"), None);
         return;
     };
     let paused = is_paused(ui, device);
@@ -85,7 +85,7 @@ pub(in crate::ui) fn plot_ui(
     let empty = theme.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
     let owner = RecorderOwner::Device(device.id());
     plot::plot_ui(ui, theme, device.recorder(), owner, &mut views.plot, &empty, actions);
-    let dropped = device.dropped();
+    let dropped = device.dropped_count();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);
         ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(theme.palette.warn));

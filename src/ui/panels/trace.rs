@@ -6,7 +6,7 @@ use egui_extras::{Column, TableBuilder};
 
 use crate::app::{SessionId, Studio, Text, TraceFault};
 use crate::link::Direction;
-use crate::ui::controls::{empty, name};
+use crate::ui::controls::{empty_placeholder, name};
 use crate::ui::{Theme, Views, icons};
 
 const ROW: f32 = 18.0;
@@ -23,7 +23,7 @@ pub(in crate::ui) struct TraceView {
 pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let shown = studio.selected_device().filter(|device| !device.trace().lines().is_empty());
     let Some((session, trace)) = shown.map(|device| (device.id(), device.trace())) else {
-        empty(ui, theme, &theme.say("trace.nothing"), None);
+        empty_placeholder(ui, theme, &theme.say("trace.nothing"), None);
         return;
     };
     let palette = theme.palette;
@@ -41,8 +41,8 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views
         let follow = egui::Button::selectable(follows, format!("{}  {word}", icons::FAST_FORWARD));
         let follow = name(ui.add(follow.frame_when_inactive(true)), true, &word);
         follows |= follow.on_hover_text(theme.say("trace.follow_hint")).clicked();
-        if trace.dropped() > 0 {
-            let text = Text::new("trace.dropped").with("count", trace.dropped());
+        if trace.dropped_count() > 0 {
+            let text = Text::new("trace.dropped").with("count", trace.dropped_count());
             ui.label(RichText::new(theme.words(&text)).color(palette.warn));
         }
     });
@@ -76,7 +76,7 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views
                     (None, Direction::Received) => palette.text,
                 };
                 row.col(|ui| {
-                    let time = trace.time_of(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
+                    let time = trace.line_time(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
                     ui.label(theme.mono(time).color(palette.muted));
                 });
                 row.col(|ui| {

@@ -1,6 +1,6 @@
 //! Ticks and their labels: round steps of values, and of time in a suitable unit. Pure.
 
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
 use crate::app::{Language, decimal};
 
@@ -57,14 +57,14 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
-    pub(super) ticks: Vec<(Time, String)>,
+    pub(super) ticks: Vec<(SampleTime, String)>,
     /// Reference time of the labels, or `None` if they count from the beginning.
     pub(super) base: Option<String>,
 }
 
 const SECOND: i64 = 1_000_000_000;
 
-pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
+pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
     // Labels that would differ in their last digits only count from a round point before them.
@@ -75,7 +75,7 @@ pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) 
     let mut ticks = Vec::new();
     for count in first..=first.saturating_add(most as i64 + 3) {
         let offset = count.saturating_mul(step);
-        let at = Time::from_nanoseconds(origin.saturating_add(offset));
+        let at = SampleTime::from_nanoseconds(origin.saturating_add(offset));
         if at > to {
             break;
         }
@@ -88,15 +88,15 @@ pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) 
 }
 
 /// Returns ticks that are labelled with sample numbers instead of times.
-pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
-    let number = |time: Time| time.nanoseconds() as f64 / SAMPLE as f64;
+pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
+    let number = |time: SampleTime| time.nanoseconds() as f64 / SAMPLE as f64;
     let step = step(number(to) - number(from), most as f64).max(1.0);
-    let tick = |value: f64| (Time::from_nanoseconds((value * SAMPLE as f64) as i64), decimal(value, 0, language));
+    let tick = |value: f64| (SampleTime::from_nanoseconds((value * SAMPLE as f64) as i64), decimal(value, 0, language));
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
 /// Returns the base time at or before `from`, a multiple of 0.1 s for steps below 1 ms and of 10 s otherwise.
-fn coarse_base(from: Time, step: i64) -> i64 {
+fn coarse_base(from: SampleTime, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
 }
@@ -174,7 +174,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
 }
 
 /// Formats a point in time with the precision of a picture that spans `span` nanoseconds.
-pub(super) fn time_of_day(time: Time, span: i64, language: Language) -> String {
+pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
     let decimals = digits.map_or(9, |(_, digits)| digits);
@@ -188,7 +188,7 @@ pub(super) fn time_of_day(time: Time, span: i64, language: Language) -> String {
     }
 }
 
-pub(super) fn sample_number(time: Time) -> String {
+pub(super) fn sample_number(time: SampleTime) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }
 
@@ -260,7 +260,8 @@ mod tests {
     }
 
     fn labels(from: i64, to: i64) -> (Vec<String>, Option<String>) {
-        let ticks = time_ticks(Time::from_nanoseconds(from), Time::from_nanoseconds(to), 4, Language::English);
+        let ticks =
+            time_ticks(SampleTime::from_nanoseconds(from), SampleTime::from_nanoseconds(to), 4, Language::English);
         (ticks.ticks.into_iter().map(|(_, label)| label).collect(), ticks.base)
     }
 
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn sample_ticks_are_whole_numbers() {
-        let at = |sample: i64| Time::from_nanoseconds(sample * 1_000);
+        let at = |sample: i64| SampleTime::from_nanoseconds(sample * 1_000);
         let ticks = |from, to| sample_ticks(at(from), at(to), 4, Language::English).ticks;
         assert_eq!(ticks(0, 1000).into_iter().map(|own| own.1).collect::<Vec<_>>(), ["0", "500", "1000"]);
         assert_eq!(ticks(7, 9), [(at(7), "7".to_owned()), (at(8), "8".to_owned()), (at(9), "9".to_owned())]);
@@ -307,8 +308,12 @@ mod tests {
         // A hundred days: no view is longer.
         while span < 8_640_000 * SECOND {
             for from in [0, -span, 123_456_789_012, i64::MAX / 2] {
-                let ticks =
-                    time_ticks(Time::from_nanoseconds(from), Time::from_nanoseconds(from + span), 6, Language::German);
+                let ticks = time_ticks(
+                    SampleTime::from_nanoseconds(from),
+                    SampleTime::from_nanoseconds(from + span),
+                    6,
+                    Language::German,
+                );
                 assert!(ticks.ticks.len() <= 8, "{from} {span}: {}", ticks.ticks.len());
                 assert!(ticks.ticks.is_sorted_by(|a, b| a.0 < b.0));
             }
@@ -324,9 +329,9 @@ mod tests {
             (12_345_678_901, 5_000_000, "12.345678 s"),
             (901, 1_000, "0.000000901 s"),
         ] {
-            assert_eq!(time_of_day(Time::from_nanoseconds(nanoseconds), span, Language::English), expected);
+            assert_eq!(time_of_day(SampleTime::from_nanoseconds(nanoseconds), span, Language::English), expected);
         }
-        assert_eq!(sample_number(Time::from_nanoseconds(7_999)), "7");
+        assert_eq!(sample_number(SampleTime::from_nanoseconds(7_999)), "7");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, ve
 
 use super::lanes::{Lane, Layout, Reduced};
 use super::pointer::Drag;
-use super::trace::{self, Pen};
+use super::trace::{self, TraceStyle};
 use super::{Context, axes};
 use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
@@ -120,7 +120,7 @@ fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: 
         let (Some(line), Some(picture)) = (context.recorder.line(*id), reduced.picture(*id)) else { continue };
         let colour = colour(context.theme, line);
         let (bad, warning) = (palette.bad.into(), palette.warn.into());
-        let pen = Pen { colour, factor: line.factor(), marks: !line.derived, bad, warning };
+        let pen = TraceStyle { colour, factor: line.factor(), marks: !line.derived, bad, warning };
         trace::shapes(picture, lane.rect, &layout.time, &axis, &pen, &mut shapes);
     }
     clipped.extend(shapes);
@@ -176,7 +176,7 @@ fn paint_dot(
     layout: &Layout,
     lane: &Lane,
     line: &Series,
-    time: crate::analysis::Time,
+    time: crate::analysis::SampleTime,
 ) {
     let Some(sample) = context.recorder.at(line, time) else { return };
     let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));

@@ -7,8 +7,8 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
-use crate::analysis::history::{Grid, GridCut, Picture};
-use crate::app::recorder::{LineId, Recorder, Series, Stamp};
+use crate::analysis::history::{Grid, GridColumns, Picture};
+use crate::app::recorder::{Recorder, Series, SeriesId, Stamp};
 
 /// Gap between two lanes, in points.
 const BETWEEN: f32 = 6.0;
@@ -25,7 +25,7 @@ const LETTER: f32 = 6.7;
 
 pub(super) struct Lane {
     pub(super) rect: Rect,
-    pub(super) lines: Vec<LineId>,
+    pub(super) lines: Vec<SeriesId>,
     pub(super) range: (f64, f64),
     pub(super) step: f64,
     pub(super) empty: bool,
@@ -46,8 +46,8 @@ pub(super) struct Layout {
 /// Reduced samples, cached between redraws.
 #[derive(Default)]
 pub(super) struct Reduced {
-    pictures: Vec<(LineId, Picture)>,
-    made: Vec<(LineId, PictureInputs)>,
+    pictures: Vec<(SeriesId, Picture)>,
+    made: Vec<(SeriesId, PictureInputs)>,
     gutter: f32,
 }
 
@@ -60,16 +60,16 @@ struct PictureInputs {
 }
 
 impl Reduced {
-    pub(super) fn picture(&self, line: LineId) -> Option<&Picture> {
+    pub(super) fn picture(&self, line: SeriesId) -> Option<&Picture> {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
     /// Updates the pictures of the displayed lines if any input has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
-        let shown = |id: &LineId| recorder.visible_series().any(|line| line.id == *id);
+        let shown = |id: &SeriesId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, _)| shown(id));
-        let mut cuts: Vec<(PictureInputs, GridCut)> = Vec::new();
+        let mut cuts: Vec<(PictureInputs, GridColumns)> = Vec::new();
         for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
             let wanted = PictureInputs { samples: recorder.stamp(line), all: history.all(), grid: *grid };
@@ -183,7 +183,7 @@ fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Time;
+    use crate::analysis::SampleTime;
     use crate::analysis::history::{Kind, Part};
     use crate::app::Text;
     use crate::app::recorder::{RecorderAction, Scale};
@@ -194,7 +194,7 @@ mod tests {
         let group = recorder.add_group(&[Kind::Real], 10_000, None);
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
         recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "value", scales));
-        let times: Vec<Time> = (0..1000).map(|at| Time::from_nanoseconds(at * 1000)).collect();
+        let times: Vec<SampleTime> = (0..1000).map(|at| SampleTime::from_nanoseconds(at * 1000)).collect();
         recorder.append(group, &times, &[Part::real(&[value; 1000])]).unwrap();
         recorder
     }

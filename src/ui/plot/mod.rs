@@ -17,7 +17,7 @@ mod trigger;
 use egui::{Rect, Sense, Ui, WidgetInfo, vec2};
 
 use super::Theme;
-use super::controls::empty;
+use super::controls::empty_placeholder;
 use crate::app::recorder::{self, Recorder};
 use crate::app::{Action, RecorderOwner};
 
@@ -108,7 +108,7 @@ fn chart_ui(
     view: &mut PlotUiState,
     height: f32,
     invitation: &str,
-) -> Option<crate::analysis::Time> {
+) -> Option<crate::analysis::SampleTime> {
     let (theme, recorder) = (context.theme, context.recorder);
     let size = vec2(ui.available_width().max(0.0), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -122,13 +122,13 @@ fn chart_ui(
         let words = if recorder.is_empty() { invitation.to_owned() } else { theme.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));
-        empty(&mut inner, theme, &words, None);
+        empty_placeholder(&mut inner, theme, &words, None);
         return None;
     }
     let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
     let is_free = view.drag.is_none() && !view.shot.is_wanted();
     let hovered = response.hover_pos().filter(|place| layout.chart.contains(*place) && is_free);
-    pointer::interact(ui, &response, context, &layout, &mut view.drag);
+    pointer::handle_interaction(ui, &response, context, &layout, &mut view.drag);
     let painter = ui.painter().with_clip_rect(rect);
     chart::paint(&painter, context, &layout, &view.reduced, view.drag.as_ref(), hovered);
     if response.has_focus() {

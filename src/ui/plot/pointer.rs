@@ -4,7 +4,7 @@ use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui}
 
 use super::Context;
 use super::lanes::Layout;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::app::recorder::{Cursor, RecorderAction};
 
 /// Distance in points within which the pointer grabs a cursor.
@@ -21,12 +21,12 @@ pub(super) enum Drag {
     },
     /// The picture itself, with the time that was under the pointer when the drag began.
     Picture {
-        under: Time,
-        window: (Time, Time),
+        under: SampleTime,
+        window: (SampleTime, SampleTime),
     },
 }
 
-pub(super) fn interact(
+pub(super) fn handle_interaction(
     ui: &Ui,
     response: &Response,
     context: &mut Context<'_>,
@@ -57,7 +57,7 @@ pub(super) fn interact(
     if response.double_clicked() {
         context.act(RecorderAction::Fit);
     }
-    hover(ui, response, context, layout, drag.is_some());
+    handle_hover(ui, response, context, layout, drag.is_some());
     keys(ui, response, context, layout);
 }
 
@@ -114,7 +114,7 @@ fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     }
 }
 
-fn hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout, dragging: bool) {
+fn handle_hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout, dragging: bool) {
     let Some(place) = response.hover_pos().filter(|place| layout.chart.contains(*place)) else { return };
     if !dragging && cursor_at(context, layout, place).is_some() {
         ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);

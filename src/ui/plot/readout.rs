@@ -4,12 +4,12 @@
 use egui::{RichText, Sense, Ui, vec2};
 
 use super::{Context, axes, chart};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Sample};
 use crate::app::recorder::{Measured, SAMPLE, Series};
 use crate::ui::Theme;
 
-pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if recorder.is_empty() {
         return;
@@ -51,7 +51,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
 /// Width in points from which the numbers of all lines are stacked.
 const WIDE: f32 = 640.0;
 
-fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(words));
@@ -88,7 +88,7 @@ fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
 }
 
 /// Draws a table with one column per line and one row per number, for narrow panels.
-fn columns_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+fn columns_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let lines: Vec<(&Series, Option<Measured>)> =
         recorder.visible_series().map(|line| (line, recorder.measure(line))).collect();
@@ -137,7 +137,7 @@ fn swatch_ui(ui: &mut Ui, theme: &Theme, line: &Series) {
 }
 
 /// Formats the raw sample under the pointer, or the newest sample if the pointer is elsewhere.
-fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
+fn now(context: &Context<'_>, line: &Series, hovered: Option<SampleTime>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
 }

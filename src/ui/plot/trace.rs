@@ -4,7 +4,7 @@
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Picture};
 
 const WIDTH: f32 = 1.5;
@@ -15,7 +15,7 @@ const DOTS: f32 = 8.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
-    pub(super) from: Time,
+    pub(super) from: SampleTime,
     pub(super) left: f32,
     /// Points per nanosecond.
     pub(super) scale: f64,
@@ -24,17 +24,17 @@ pub(super) struct TimeAxis {
 }
 
 impl TimeAxis {
-    pub(super) fn x(&self, time: Time) -> f32 {
+    pub(super) fn x(&self, time: SampleTime) -> f32 {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
     /// Returns the left edge of the pixel column for a time. Columns have fixed positions, wherever the samples
     /// lie within them.
-    fn column(&self, time: Time) -> f32 {
+    fn column(&self, time: SampleTime) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }
 
-    pub(super) fn time(&self, x: f32) -> Time {
+    pub(super) fn time(&self, x: f32) -> SampleTime {
         self.from.plus((f64::from(x - self.left) / self.scale) as i64)
     }
 }
@@ -66,7 +66,7 @@ impl ValueAxis {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pen {
+pub(super) struct TraceStyle {
     pub(super) colour: Color32,
     /// Factor from the unit of the samples to the displayed unit.
     pub(super) factor: f64,
@@ -81,13 +81,13 @@ pub(super) fn shapes(
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
-    pen: &Pen,
+    pen: &TraceStyle,
     out: &mut Vec<Shape>,
 ) {
     if picture.raw {
         sparse(picture, lane, time, value, pen, out)
     } else {
-        dense(picture, lane, time, value, pen, out)
+        draw_dense_trace(picture, lane, time, value, pen, out)
     }
     if pen.marks {
         marks(picture, lane, time, pen, out);
@@ -96,7 +96,14 @@ pub(super) fn shapes(
 
 /// Draws one vertical bar per pixel column, from the minimum to the maximum of its samples, extended to join the end of
 /// the previous column.
-fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
+fn draw_dense_trace(
+    picture: &Picture,
+    lane: Rect,
+    time: &TimeAxis,
+    value: &ValueAxis,
+    pen: &TraceStyle,
+    out: &mut Vec<Shape>,
+) {
     let mut mesh = Mesh::default();
     mesh.reserve_vertices(picture.pixels.len() * 4);
     mesh.reserve_triangles(picture.pixels.len() * 2);
@@ -135,7 +142,7 @@ fn bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
     }
 }
 
-fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
+fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let smooth = picture.pixels.len() <= SMOOTH;
     let dots = picture.pixels.len() as f32 * DOTS < lane.width();
     let around = lane.expand(WIDTH * 4.0);
@@ -156,7 +163,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
         if (dots || lonely) && lane.contains(here) {
             out.push(Shape::circle_filled(here, 2.0, pen.colour));
         }
-        match before.filter(|_| pixel.joined).and_then(|before| clip(before, here, around)) {
+        match before.filter(|_| pixel.joined).and_then(|before| clip_segment(before, here, around)) {
             Some((from, to)) if smooth => {
                 if run.last() != Some(&from) {
                     end(&mut run, out);
@@ -190,7 +197,7 @@ fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
 }
 
 /// Returns the part of a line segment inside a rectangle (Liang–Barsky clipping).
-fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
+fn clip_segment(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     if rect.contains(from) && rect.contains(to) {
         return Some((from, to));
     }
@@ -216,7 +223,7 @@ fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
 }
 
 /// Draws ticks at the bottom of the lane for invalid samples and warnings, regardless of the zoom.
-fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
+fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
         let (colour, height) = if pixel.flags.contains(Flags::BAD) {
@@ -241,29 +248,32 @@ mod tests {
     use crate::analysis::history::{Grid, History, Kind, Part};
 
     const LANE: Rect = Rect { min: Pos2::ZERO, max: pos2(100.0, 50.0) };
-    const PEN: Pen =
-        Pen { colour: Color32::WHITE, factor: 1.0, marks: true, bad: Color32::RED, warning: Color32::YELLOW };
+    const PEN: TraceStyle =
+        TraceStyle { colour: Color32::WHITE, factor: 1.0, marks: true, bad: Color32::RED, warning: Color32::YELLOW };
 
     #[test]
     fn a_segment_is_clipped_at_the_lane() {
-        assert_eq!(clip(pos2(-100.0, 25.0), pos2(200.0, 25.0), LANE), Some((pos2(0.0, 25.0), pos2(100.0, 25.0))));
-        assert_eq!(clip(pos2(10.0, 10.0), pos2(20.0, 10.0), LANE), Some((pos2(10.0, 10.0), pos2(20.0, 10.0))));
-        assert_eq!(clip(pos2(10.0, -10.0), pos2(20.0, -10.0), LANE), None);
-        assert_eq!(clip(pos2(-10.0, 10.0), pos2(-5.0, 40.0), LANE), None);
-        assert_eq!(clip(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
+        assert_eq!(
+            clip_segment(pos2(-100.0, 25.0), pos2(200.0, 25.0), LANE),
+            Some((pos2(0.0, 25.0), pos2(100.0, 25.0)))
+        );
+        assert_eq!(clip_segment(pos2(10.0, 10.0), pos2(20.0, 10.0), LANE), Some((pos2(10.0, 10.0), pos2(20.0, 10.0))));
+        assert_eq!(clip_segment(pos2(10.0, -10.0), pos2(20.0, -10.0), LANE), None);
+        assert_eq!(clip_segment(pos2(-10.0, 10.0), pos2(-5.0, 40.0), LANE), None);
+        assert_eq!(clip_segment(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
     }
 
     /// Draws `count` samples spread evenly over 100 columns of one nanosecond each, some of them flagged.
     fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
         let mut history = History::new(&[Kind::Real], 1_000_000);
-        let times: Vec<Time> = (0..count).map(|at| Time::from_nanoseconds(at * 100_000 / count)).collect();
+        let times: Vec<SampleTime> = (0..count).map(|at| SampleTime::from_nanoseconds(at * 100_000 / count)).collect();
         let values: Vec<f64> = (0..count).map(value).collect();
         let flags: Vec<Flags> = (0..count).map(flags).collect();
         history.append(&times, &[Part::real(&values).flagged(&flags)]).unwrap();
-        let grid = Grid::new(Time::ORIGIN, Time::from_nanoseconds(100_000), 100);
+        let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(100_000), 100);
         let mut picture = Picture::default();
         history.picture(0, &history.cut(&grid), &mut picture);
-        let time = TimeAxis { from: Time::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
+        let time = TimeAxis { from: SampleTime::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
         let mut shapes = Vec::new();
         super::shapes(&picture, LANE, &time, &ValueAxis::new(LANE, (0.0, 1.0)), &PEN, &mut shapes);
         shapes

@@ -3,13 +3,13 @@
 use egui::{RichText, Ui};
 
 use crate::app::Text;
-use crate::app::recorder::{LineId, Recorder, RecorderAction, Trigger, When};
+use crate::app::recorder::{Recorder, RecorderAction, SeriesId, Trigger, TriggerCondition};
 use crate::ui::controls::{entry, options, primary, text_entry};
 use crate::ui::{Theme, icons};
 
 pub(super) struct Form {
-    line: LineId,
-    when: When,
+    line: SeriesId,
+    when: TriggerCondition,
     level: String,
     before: u32,
     repeat: bool,
@@ -19,8 +19,8 @@ pub(super) struct Form {
 impl Default for Form {
     fn default() -> Self {
         Form {
-            line: LineId::default(),
-            when: When::Rising,
+            line: SeriesId::default(),
+            when: TriggerCondition::Rising,
             level: "0".to_owned(),
             before: 25,
             repeat: false,
@@ -29,13 +29,13 @@ impl Default for Form {
     }
 }
 
-fn word(when: When) -> &'static str {
+fn word(when: TriggerCondition) -> &'static str {
     match when {
-        When::Above => "trigger.above",
-        When::Below => "trigger.below",
-        When::Rising => "trigger.rising",
-        When::Falling => "trigger.falling",
-        When::Error => "trigger.error",
+        TriggerCondition::Above => "trigger.above",
+        TriggerCondition::Below => "trigger.below",
+        TriggerCondition::Rising => "trigger.rising",
+        TriggerCondition::Falling => "trigger.falling",
+        TriggerCondition::Error => "trigger.error",
     }
 }
 
@@ -57,11 +57,11 @@ pub(super) fn form_ui(
         theme.say(id)
     };
     let word_of = label(ui, "trigger.line");
-    let lines: Vec<(LineId, String)> =
+    let lines: Vec<(SeriesId, String)> =
         recorder.visible_series().map(|line| (line.id, theme.words(&line.name))).collect();
     options(ui, &word_of, &mut form.line, lines);
     let word_of = label(ui, "trigger.when");
-    options(ui, &word_of, &mut form.when, When::ALL.map(|when| (when, theme.say(word(when)))));
+    options(ui, &word_of, &mut form.when, TriggerCondition::ALL.map(|when| (when, theme.say(word(when)))));
     let mut enter = false;
     if form.when.has_level() {
         entry(ui, theme, &theme.say("trigger.level"), |ui| {

@@ -20,7 +20,7 @@ use super::series;
 use crate::analysis::quality::Verdict;
 use crate::ui::{Theme, controls};
 
-use place::{Placed, SpaceNeeded, place};
+use place::{Placed, RequiredSpace, place};
 
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
@@ -53,7 +53,7 @@ const VALUE: f32 = 18.0;
 pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
     let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, theme, field)).collect();
     let wants =
-        strip.fields.iter().zip(&words).map(|(field, words)| SpaceNeeded { bits: field.bits, words: words.width() });
+        strip.fields.iter().zip(&words).map(|(field, words)| RequiredSpace { bits: field.bits, words: words.width() });
     let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
     let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
     let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + theme.space.inside;
@@ -95,7 +95,7 @@ impl StripField {
         if self.value.is_empty() { self.name.clone() } else { format!("{}: {}", self.name, self.value) }
     }
 
-    fn ink(&self, theme: &Theme) -> Color32 {
+    fn display_colour(&self, theme: &Theme) -> Color32 {
         match (self.lit, self.colour) {
             (Some(own), _) => controls::verdict(theme, own).1.into(),
             (None, Some(colour)) => series(theme, colour),
@@ -116,7 +116,7 @@ impl Words {
             Some(own) => format!("{} {}", controls::verdict(theme, own).0, field.name),
             None => field.name.clone(),
         };
-        let ink = if field.lit.is_some() { field.ink(theme) } else { theme.palette.muted.into() };
+        let ink = if field.lit.is_some() { field.display_colour(theme) } else { theme.palette.muted.into() };
         let name = ui.painter().layout_no_wrap(name, FontId::proportional(theme.sizes.caption), ink);
         let font = FontId::monospace(theme.sizes.body);
         let value = ui.painter().layout_no_wrap(field.value.clone(), font, theme.palette.text.into());
@@ -144,7 +144,7 @@ fn paint_cells(
     field: &StripField,
     bits: impl Iterator<Item = Option<bool>>,
 ) {
-    let ink = field.ink(theme);
+    let ink = field.display_colour(theme);
     for (at, bit) in bits.enumerate() {
         let left = rect.left() + piece.offset(at, field.bits, cell);
         let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL));

@@ -149,7 +149,7 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
             let cell = grid.cell(rect.min, view.column, view.cursor());
             ui.scroll_to_rect_animation(cell, None, egui::style::ScrollAnimation::none());
         }
-        let hovered = response.hover_pos().and_then(|pos| grid.hit(rect.min, pos));
+        let hovered = response.hover_pos().and_then(|pos| grid.cell_under_pointer(rect.min, pos));
         paint::lines(ui, theme, grid, rect.min, model, view, &response, hovered);
         if let Some((column, at)) = hovered {
             // The tooltip is beside the byte.

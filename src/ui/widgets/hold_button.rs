@@ -16,7 +16,7 @@ use egui::{
 };
 
 use super::focus_ring;
-use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
+use crate::app::{HoldContext, HoldEvent, HoldInput, HoldState};
 use crate::ui::keys::press_key;
 use crate::ui::{Theme, stop_debounce};
 
@@ -39,7 +39,7 @@ pub(in crate::ui) struct HoldSurroundings {
 }
 
 #[derive(Clone, Copy, Default)]
-struct HoldMemory {
+struct HoldButtonState {
     state: HoldState,
     /// Number of the pass in which the button was last drawn.
     pass: u64,
@@ -48,7 +48,7 @@ struct HoldMemory {
 
 /// State of the hold buttons in the previous frame, as seen by the window.
 #[derive(Clone, Copy, Default)]
-struct DrawnButtons {
+struct HoldButtonFrame {
     /// Button with the keyboard focus, and the last pass in which it had the focus.
     keyboard: Option<(Id, u64)>,
     pointer: Option<u64>,
@@ -73,11 +73,11 @@ pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
     drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
-fn drawn(ctx: &Context) -> DrawnButtons {
-    ctx.data(|data| data.get_temp(DrawnButtons::id())).unwrap_or_default()
+fn drawn(ctx: &Context) -> HoldButtonFrame {
+    ctx.data(|data| data.get_temp(HoldButtonFrame::id())).unwrap_or_default()
 }
 
-impl DrawnButtons {
+impl HoldButtonFrame {
     fn id() -> Id {
         Id::unique("hold buttons")
     }
@@ -91,10 +91,10 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     let (_, response) = ui.allocate_exact_size(size, sense);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, button.enabled, button.label));
     let pass = ui.ctx().cumulative_pass_nr();
-    let HoldMemory { mut state, pass: last, mut modifiers } =
+    let HoldButtonState { mut state, pass: last, mut modifiers } =
         ui.data(|data| data.get_temp(response.id)).unwrap_or_default();
     let now = ui.input(|input| input.time);
-    let scene = HoldScene {
+    let scene = HoldContext {
         enabled,
         window: ui.input(|input| input.focused),
         keyboard: response.has_focus(),
@@ -120,15 +120,15 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         (input.pointer.any_down(), pressed_here && at.is_some_and(|at| place.contains(at)))
     });
     let event = state.end(now, down, inside);
-    if let Some(seconds) = state.next_picture() {
+    if let Some(seconds) = state.repaint_delay() {
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }
     if event == Some(HoldEvent::Stop) {
         stop_debounce::means_motion(ui.ctx(), true, now);
     }
     ui.data_mut(|data| {
-        data.insert_temp(response.id, HoldMemory { state, pass, modifiers });
-        let drawn: &mut DrawnButtons = data.get_temp_mut_or_default(DrawnButtons::id());
+        data.insert_temp(response.id, HoldButtonState { state, pass, modifiers });
+        let drawn: &mut HoldButtonFrame = data.get_temp_mut_or_default(HoldButtonFrame::id());
         if scene.keyboard {
             drawn.keyboard = Some((response.id, pass));
         }

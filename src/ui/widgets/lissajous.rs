@@ -13,14 +13,14 @@ use egui::{
     Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, TextureId, Ui, Vec2, WidgetInfo,
 };
 
-use crate::analysis::lissajous::{Density, Square};
+use crate::analysis::lissajous::{PlotSquare, SampleDensity};
 use crate::app::Text;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
-    pub figures: &'a [Figure],
+    pub figures: &'a [LissajousFigure],
     /// Limits of the good range for the length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
     /// Limits for the length of the amplitude vector, in volts, outside which the signal is faulty.
@@ -30,9 +30,9 @@ pub struct Lissajous<'a> {
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Figure {
+pub struct LissajousFigure {
     /// Picture of the samples in the series colour, with the square that the picture covers.
-    pub picture: Option<(TextureId, Square)>,
+    pub picture: Option<(TextureId, PlotSquare)>,
     /// Fitted closed curve as (cosine, sine) points, in volts.
     pub curve: Vec<(f64, f64)>,
     /// Colour index of the series.
@@ -97,7 +97,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 
 /// Returns a single-colour picture of a sample density. More samples are brighter, and even a single sample stays
 /// visible.
-pub fn density_image(density: &Density, colour: Color32) -> ColorImage {
+pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
     let side = density.side();
@@ -187,16 +187,16 @@ fn paint_rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Liss
     }
 }
 
-fn paint_samples(painter: &Painter, place: &PlotArea, figure: &Figure) {
+fn paint_samples(painter: &Painter, place: &PlotArea, figure: &LissajousFigure) {
     let Some((texture, square)) = figure.picture else { return };
-    let Square { cosine_v, sine_v, half_v } = square;
+    let PlotSquare { cosine_v, sine_v, half_v } = square;
     let corners = [(cosine_v - half_v, sine_v + half_v), (cosine_v + half_v, sine_v - half_v)];
     let rect = Rect::from_two_pos(place.at(corners[0]), place.at(corners[1]));
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
     painter.image(texture, rect, whole, Color32::WHITE);
 }
 
-fn paint_curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) {
+fn paint_curve(painter: &Painter, place: &PlotArea, figure: &LissajousFigure, colour: Color32) {
     let points: Vec<Pos2> = figure.curve.iter().map(|point| place.at(*point)).collect();
     if figure.dashed {
         painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, colour), 7.0, 4.0));

@@ -26,7 +26,7 @@ pub use hold_button::{HoldButton, hold_button};
 pub(in crate::ui) use hold_button::{
     HoldSurroundings, has_hold_button_keyboard, is_hold_button_held, surround_hold_buttons,
 };
-pub use lissajous::{Figure, Lissajous, density_image, lissajous};
+pub use lissajous::{Lissajous, LissajousFigure, density_image, lissajous};
 pub use register_table::{
     RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
     RegisterTable, RegisterView, register_table,
@@ -41,7 +41,7 @@ pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: 
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
 }
 
-pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
+pub(crate) fn draw_hatching(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();
     while x < rect.right() {

@@ -32,7 +32,7 @@ use crate::ui::{Theme, controls};
 use columns::Columns;
 use lines::{LineKind, Lines};
 pub use view::RegisterView;
-use view::Selected;
+use view::SelectedRow;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
@@ -244,7 +244,7 @@ fn body(
             }
         }
         if let Some(edit) = &view.edit
-            && let Some(line) = lines.line_of(Selected::Row(edit.place))
+            && let Some(line) = lines.line_of(SelectedRow::Row(edit.place))
             && let Some(range) = columns.range(columns::Column::Value)
         {
             let own = at(line);
@@ -276,7 +276,7 @@ fn heading(
 ) {
     let Some(own) = table.groups.get(group) else { return };
     let response = ui.interact(rect, id.with("group").with(group), Sense::CLICK);
-    let selected = view.selected == Some(Selected::Group(group));
+    let selected = view.selected == Some(SelectedRow::Group(group));
     response.widget_info(|| {
         let mut info = value_info(Role::Button, &own.title, &own.note);
         info.selected = Some(selected);
@@ -285,7 +285,7 @@ fn heading(
     if response.clicked() {
         let folded = view.is_folded(group);
         view.fold(group, !folded);
-        view.selected = Some(Selected::Group(group));
+        view.selected = Some(SelectedRow::Group(group));
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
@@ -305,7 +305,7 @@ fn row(
 ) {
     let row = (table.row)(place);
     let response = ui.interact(rect, id.with(place), Sense::CLICK);
-    let selected = view.selected == Some(Selected::Row(place));
+    let selected = view.selected == Some(SelectedRow::Row(place));
     response.widget_info(|| value_info(Role::Row, &row.label(), &row.words(theme)));
     ui.accesskit_node_builder(response.id, |node| node.set_selected(selected));
     let open = view.open.contains(&place);
@@ -318,7 +318,7 @@ fn row(
         if on_caret {
             view.set_expanded(place, !open);
         }
-        view.selected = Some(Selected::Row(place));
+        view.selected = Some(SelectedRow::Row(place));
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
@@ -347,11 +347,11 @@ fn value_info(role: Role, label: &str, value: &str) -> WidgetInfo {
 /// Sets the accessible description of the table for screen readers.
 fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
-        Some(Selected::Row(place)) => {
+        Some(SelectedRow::Row(place)) => {
             let row = (table.row)(place);
             format!("{}: {}", row.label(), row.words(theme))
         }
-        Some(Selected::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
+        Some(SelectedRow::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
         None => String::new(),
     };
     response.widget_info(|| value_info(Role::Table, table.label, &value));

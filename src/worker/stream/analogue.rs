@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::{Batch, Producer};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 use crate::sim::sine_cosine::{Checked, Source};
@@ -22,19 +22,19 @@ pub struct StaleSettings;
 
 /// A virtual analogue source driven by a clock.
 #[derive(Debug)]
-pub struct Analogue {
+pub struct AnalogueSource {
     source: Source,
     next: u64,
 }
 
-impl Analogue {
+impl AnalogueSource {
     /// Creates a source that starts at `start` according to the clock of its stream.
     pub fn new(checked: Checked, start: Moment) -> Self {
-        Analogue { source: Source::new(checked, Time::from(start)), next: 0 }
+        AnalogueSource { source: Source::new(checked, SampleTime::from(start)), next: 0 }
     }
 }
 
-impl Producer for Analogue {
+impl Producer for AnalogueSource {
     type Request = Checked;
     type Samples = Wires;
     type Error = StaleSettings;
@@ -53,7 +53,7 @@ impl Producer for Analogue {
         let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
         let full = Moment::after_start(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));
-        let late = Time::from(clock.now()).nanoseconds_since(time);
+        let late = SampleTime::from(clock.now()).nanoseconds_since(time);
         if late < 0 {
             return Ok(None);
         }

@@ -42,7 +42,7 @@ impl Producer for Numbers {
             return if self.fails { Err("unplugged") } else { Ok(None) };
         };
         clock.sleep_until(clock.now() + Duration::from_millis(1));
-        let (first, time) = (self.next, Time::from_nanoseconds(self.next as i64 * 1_000));
+        let (first, time) = (self.next, SampleTime::from_nanoseconds(self.next as i64 * 1_000));
         self.next += size as u64;
         Ok(Some(Batch { first, time, period_ns: 1_000, lost: 0, samples: (first..self.next).collect() }))
     }
@@ -105,7 +105,7 @@ fn an_occasional_reader_can_locate_gaps() {
 fn a_batch_larger_than_the_ring_is_kept_alone() {
     let batch = |first: u64, count: u64, lost| Batch {
         first,
-        time: Time::ORIGIN,
+        time: SampleTime::ORIGIN,
         period_ns: 1,
         lost,
         samples: (first..first + count).collect::<Vec<u64>>(),
@@ -165,7 +165,7 @@ fn settings(rate_hz: f64) -> crate::sim::sine_cosine::Checked {
     Settings { rate_hz, ..Settings::default() }.checked().unwrap()
 }
 
-fn next(source: &mut Analogue, clock: &VirtualClock) -> Option<Batch<Wires>> {
+fn next(source: &mut AnalogueSource, clock: &VirtualClock) -> Option<Batch<Wires>> {
     source.next(clock, PATIENCE).unwrap()
 }
 
@@ -173,10 +173,10 @@ fn next(source: &mut Analogue, clock: &VirtualClock) -> Option<Batch<Wires>> {
 fn the_virtual_source_follows_the_clock() {
     let clock = VirtualClock::default();
     clock.sleep_until(Moment::after_start(Duration::from_secs(5)));
-    let mut source = Analogue::new(settings(100_000.0), clock.now());
+    let mut source = AnalogueSource::new(settings(100_000.0), clock.now());
     let first = next(&mut source, &clock).unwrap();
     assert_eq!((first.first, first.samples.count(), first.lost, first.period_ns), (0, 1_000, 0, 10_000));
-    assert_eq!(first.time, Time::from_nanoseconds(5_000_000_000));
+    assert_eq!(first.time, SampleTime::from_nanoseconds(5_000_000_000));
     assert_eq!(clock.now().since_start(), Duration::from_nanos(5_009_990_000));
     let second = next(&mut source, &clock).unwrap();
     assert_eq!((second.first, second.samples.count(), second.lost), (1_000, 1_000, 0));
@@ -198,8 +198,8 @@ fn the_virtual_source_follows_the_clock() {
 #[test]
 fn the_virtual_source_yields_the_samples_by_index() {
     let clock = VirtualClock::default();
-    let mut source = Analogue::new(settings(50_000.0), clock.now());
-    let whole = crate::sim::sine_cosine::Source::new(settings(50_000.0), Time::ORIGIN).samples(0, 5_000).unwrap();
+    let mut source = AnalogueSource::new(settings(50_000.0), clock.now());
+    let whole = crate::sim::sine_cosine::Source::new(settings(50_000.0), SampleTime::ORIGIN).samples(0, 5_000).unwrap();
     let mut sines = Vec::new();
     (0..10).filter_map(|_| next(&mut source, &clock)).for_each(|batch| sines.extend(batch.samples.sin_v));
     assert_eq!(sines, whole.sin_v);
@@ -210,7 +210,7 @@ fn no_sample_is_missing_while_the_computer_keeps_up() {
     // At 44.1 kHz a sample takes 22 676 ns.
     let clock = VirtualClock::default();
     let checked = Settings::default().with(Quantity::Rate, 44_100.0).with(Quantity::Noise, 0.0).checked().unwrap();
-    let mut source = Analogue::new(checked, clock.now());
+    let mut source = AnalogueSource::new(checked, clock.now());
     let mut expected = 0;
     while clock.now().since_start() < Duration::from_secs(4) {
         let Some(batch) = next(&mut source, &clock) else { continue };

@@ -2,9 +2,9 @@
 
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
-    Command, Common, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs, Save,
-    Simulate, Simulated, UnrestoredItems, check_wear, confirm_plan, plan, readings, restore_options, save_profile,
-    settings, to_restore, write_restore,
+    Command, CommonArgs, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs,
+    SaveArgs, SimulateArgs, Simulated, UnrestoredItems, check_wear, confirm_plan, plan, profile_to_restore, readings,
+    restore_options, save_profile, settings, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -38,7 +38,7 @@ impl DeviceCommands for NovoCommands {
     fn about(&self) -> &'static str {
         "Novo encoder"
     }
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Identify(_) => identify(common, output),
             Command::Position(wanted) => position(common, output, wanted),
@@ -46,16 +46,16 @@ impl DeviceCommands for NovoCommands {
             _ => return None,
         })
     }
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         let device = Virtual::from_pairs(&settings(output, arguments)?);
         device.map(|own| Box::new(own) as Box<dyn Simulated>).map_err(|error| Failure::Usage(error.to_string()))
     }
 }
 
 impl ProfileCommands for NovoCommands {
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
-        let NovoProfile { serial, values } = to_restore(restore, profile)?;
+        let NovoProfile { serial, values } = profile_to_restore(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let change = Change { restored: Some(serial), values, options };
         let prepared = result_of!(runner.run(Job::Prepare(change))?, Came::Prepared(prepared) => *prepared);
@@ -69,18 +69,18 @@ impl ProfileCommands for NovoCommands {
             Ok(plan::WriteSummary::of(output, written))
         })
     }
-    fn present(&self, common: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
+    fn present(&self, common: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
         survey(&mut Runner::open(common)?).map(Body::new)
     }
 }
 
-fn identify(common: &Common, output: &Output) -> Result {
+fn identify(common: &CommonArgs, output: &Output) -> Result {
     let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
     output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
     Ok(Done::Well)
 }
 
-fn position(common: &Common, output: &Output, position: &Position) -> Result {
+fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     if position.csv {
         output.print("position\n")?;
@@ -92,7 +92,7 @@ fn position(common: &Common, output: &Output, position: &Position) -> Result {
     })
 }
 
-fn save(common: &Common, output: &Output, save: &Save) -> Result {
+fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     save_profile(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
     output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
     Ok(Done::Well)

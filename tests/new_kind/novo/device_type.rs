@@ -1,7 +1,7 @@
 //! The static data about Novo encoders.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
-use encoder_studio::app::review::{self, Review, Reviewed};
+use encoder_studio::app::review::{self, Review, Reviewable};
 use encoder_studio::app::session::{Kind, Session};
 use encoder_studio::app::{DeviceType, Services, Severity, Text, explain};
 use encoder_studio::link::LinkUrl;
@@ -48,7 +48,7 @@ impl Kind for Novo {
     }
     fn error_texts(error: &JobError) -> Vec<Text> {
         vec![match (error, error.device()) {
-            (JobError::NotBegun(why), _) => explain::not_begun(why),
+            (JobError::NotBegun(why), _) => explain::not_started_text(why),
             (_, Some(Error::Cancelled)) => Text::new("encoder.cancelled"),
             (_, Some(Error::Silent)) => TEXTS.text("novo.silent"),
             (_, Some(Error::Link(error))) => explain::link(error),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::bits::MaskedBytes;
-use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkUrl, RealClock, Scheme};
+use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkScheme, LinkUrl, RealClock};
 use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
@@ -82,8 +82,8 @@ pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted<Op, E
 /// Checks a link, as far as possible without opening it.
 pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
     match url.scheme {
-        Scheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,
-        Scheme::Serial | Scheme::Tcp => check_parameters(&url.query, url.scheme, &[])?,
+        LinkScheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,
+        LinkScheme::Serial | LinkScheme::Tcp => check_parameters(&url.query, url.scheme, &[])?,
         other => return Err(wrong_target_error(other, "sim:, serial:, tcp:")),
     }
     Ok(())
@@ -94,7 +94,7 @@ pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Novo>, OpenErr
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let virtual_one = || Ok(inside(Virtual::from_pairs(url.query.pairs())?, &clock));
     let wire = open_bytes(url, CharacterFormat::FACTORY, &clock, virtual_one)?;
-    Ok(Session::with(Novo(wire), clock, store, url.scheme == Scheme::Sim))
+    Ok(Session::with(Novo(wire), clock, store, url.scheme == LinkScheme::Sim))
 }
 
 pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {

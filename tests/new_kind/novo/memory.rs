@@ -1,18 +1,18 @@
 //! Edits of a Novo encoder: kept after a crash, reviewed, written, saved and restored.
 
-use encoder_studio::app::review::{OperationTexts, Permit, Reviewed};
+use encoder_studio::app::review::{OperationTexts, Permit, Reviewable};
 use encoder_studio::app::session::{
-    ApprovedPlanOf, Drafted, KnownProfile, ProfileFile, Saved, WithMemory, without_edits,
+    ApprovedPlanOf, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
 };
 use encoder_studio::app::{PendingEdits, Services, Text, explain};
-use encoder_studio::profile::{Body, Document, ProfileError, Written};
+use encoder_studio::profile::{Body, ProfileDocument, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
 
 use super::jobs::{Change, Job, Novo, Prepared, device_key};
 use super::profile::{NovoProfile, Op};
 use super::state::{Encoder, TEXTS};
 
-impl Reviewed for Novo {
+impl Reviewable for Novo {
     type Change = Change;
     type Prepared = Prepared;
     type Written = Written;
@@ -38,7 +38,7 @@ impl Reviewed for Novo {
     }
 }
 
-impl Drafted for Encoder {
+impl HasDraft for Encoder {
     fn key(&self) -> Option<DeviceKey> {
         self.read().map(|own| device_key(own.serial, self.session.is_virtual()))
     }
@@ -48,10 +48,10 @@ impl Drafted for Encoder {
     fn take_edits(&mut self, edits: Vec<(usize, u16)>) {
         self.staged.set(edits);
     }
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<NovoProfile>().cloned() else { return };
         self.take(profile);
-        self.session.take_document(file, document);
+        self.session.apply_document(file, document);
     }
     fn pending(&self) -> &dyn PendingEdits {
         &self.staged
@@ -61,7 +61,7 @@ impl Drafted for Encoder {
     }
 }
 
-impl WithMemory for Encoder {
+impl HasMemory for Encoder {
     fn edited_change(&self) -> Option<Change> {
         let values = self.wanted().filter(|_| self.staged.is_dirty())?;
         Some(Change { restored: None, values, options: Default::default() })
@@ -81,7 +81,7 @@ impl WithMemory for Encoder {
     }
 }
 
-impl Saved for Encoder {
+impl HasProfile for Encoder {
     fn read_all() -> Job {
         Job::Survey
     }
@@ -89,7 +89,7 @@ impl Saved for Encoder {
         Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read()?.clone() }))
     }
     fn known_body(&self) -> Option<KnownProfile> {
-        let remarks = without_edits(self.staged.count()).into_iter().collect();
+        let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(self.read()?.clone()), remarks)))
     }
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -1,11 +1,11 @@
 //! The profile of a Novo encoder, compared and planned.
 
-use encoder_studio::expected::Expected;
+use encoder_studio::expected::AllowedValues;
 use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
 
 use super::protocol::{ITEMS, KIND, Values, name_of};
 
-const WORD: Expected = Expected::between(0, 65_535);
+const WORD: AllowedValues = AllowedValues::between(0, 65_535);
 
 /// The identity and the values.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use encoder_studio::cli::Simulated;
 use encoder_studio::expected::Quantity;
-use encoder_studio::parameter::{Maybe, Parameters, Whole};
+use encoder_studio::parameter::{OptionalValue, Parameters, Whole};
 use encoder_studio::parameters;
 use encoder_studio::sim::{ByteDevice, ConfigError, RPM, VirtualDevice, setting};
 use encoder_studio::units::Moment;
@@ -15,9 +15,9 @@ parameters! {
         serial: u16 = 1001, "serial" => Whole(Quantity::Number, 0..=65535);
         rpm: f64 = 0.0, "rpm" => RPM;
         /// The address of a value that no longer changes.
-        stuck: Option<u8> = None, "stuck" => Maybe(Whole(Quantity::Address, 0..=255));
+        stuck: Option<u8> = None, "stuck" => OptionalValue(Whole(Quantity::Address, 0..=255));
         /// The number that it is locked with: no value changes.
-        pin: Option<u16> = None, secret "pin" => Maybe(Whole(Quantity::Number, 0..=9999));
+        pin: Option<u16> = None, secret "pin" => OptionalValue(Whole(Quantity::Number, 0..=9999));
     }
 }
 

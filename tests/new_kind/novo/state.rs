@@ -2,10 +2,10 @@
 
 use std::convert::Infallible;
 
-use encoder_studio::app::session::{Drafted, EarlyEnd, HasSession, Saved, Session, SessionEvents, WithMemory};
-use encoder_studio::app::track::{Meaning, PositionSample, Track};
+use encoder_studio::app::session::{EarlyEnd, HasDraft, HasMemory, HasProfile, HasSession, Session, SessionEvents};
+use encoder_studio::app::track::{DeviceRecorder, Meaning, PositionSample};
 use encoder_studio::app::{
-    ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobEnd, Opened, PendingEdits,
+    ActionContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobState, Opened, PendingEdits,
     Recording, Services, Tab, Text,
 };
 use encoder_studio::profile::Body;
@@ -51,12 +51,12 @@ pub(crate) struct Encoder {
     /// The edits, by the number of the item.
     pub(crate) staged: Edits<Own>,
     pub(crate) last: Option<Sample>,
-    pub(super) track: Track<Infallible>,
+    pub(super) track: DeviceRecorder<Infallible>,
 }
 
 impl Encoder {
     pub(super) fn with(session: Session<Novo>) -> Self {
-        Encoder { session, staged: Edits::default(), last: None, track: Track::default() }
+        Encoder { session, staged: Edits::default(), last: None, track: DeviceRecorder::default() }
     }
 
     /// Returns the values with the edits; `None` before it was read.
@@ -69,7 +69,7 @@ impl Encoder {
         self.staged.base().0.as_ref()
     }
     pub(super) fn take(&mut self, read: NovoProfile) {
-        self.staged.read_again(|own| own.0 = Some(read));
+        self.staged.reread(|own| own.0 = Some(read));
     }
     fn see(&mut self, samples: &[Sample], dropped: u64) {
         let sighting = |(at, position): &Sample| PositionSample {
@@ -78,13 +78,14 @@ impl Encoder {
             is_bad: false,
             is_warned: false,
         };
-        self.track.note_dropped(dropped);
-        self.track.add(&samples.iter().map(sighting).collect::<Vec<_>>(), &Meaning::of_turns(Some(65536), TURN.into()));
+        self.track.record_dropped(dropped);
+        self.track
+            .add(&samples.iter().map(sighting).collect::<Vec<_>>(), &Meaning::for_turns(Some(65536), TURN.into()));
         self.last = samples.last().copied().or(self.last);
     }
     fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
         if self.read().is_some_and(|own| own.serial != read.serial) {
-            self.replaced_by(&read.serial.to_string(), services);
+            self.handle_device_replacement(&read.serial.to_string(), services);
         }
         let is_first = self.read().is_none();
         self.session.title = Some(format!("Novo · {}", read.serial));
@@ -96,7 +97,7 @@ impl Encoder {
             self.load_draft(services);
         }
         let edits = self.staged.is_dirty().then(|| self.staged.count());
-        self.session.write_read(Body::new(read), edits, Vec::new(), services);
+        self.session.save_read_values(Body::new(read), edits, Vec::new(), services);
         self.list_backups(services);
     }
 }
@@ -144,12 +145,12 @@ impl DeviceModel for Encoder {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Novo>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
+        self.let_go(JobState::Cancelled, services);
         self.track.begin(&opened.began);
         self.session.adopt_line(opened, services);
         self.submit(Job::Survey, services);
     }
-    fn act(&mut self, Action::Set(item, value): Action, _: &mut ActContext<'_>) {
+    fn act(&mut self, Action::Set(item, value): Action, _: &mut ActionContext<'_>) {
         self.staged.set([(item, value)]);
     }
     fn done(&mut self, done: Infallible, _: &mut Services) {

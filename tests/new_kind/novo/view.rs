@@ -1,7 +1,7 @@
 //! The pages of a Novo encoder, its live value, and its form in the connection dialog.
 
 use egui::{RichText, Ui};
-use encoder_studio::app::connect::Connect as Dialog;
+use encoder_studio::app::connect::ConnectDialog as Dialog;
 use encoder_studio::app::{Action as StudioAction, AnyDevice, PendingEdits, Rgb, Studio, Text, explain};
 use encoder_studio::ui::controls::{card, committed_entry, entry, text_entry};
 use encoder_studio::ui::{PageInfo, TabPage, Theme, TypedConnectForm, TypedDeviceView, backups, edit_bar, icons, page};

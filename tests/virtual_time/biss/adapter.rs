@@ -16,7 +16,7 @@ use super::support::{Bus, at};
 fn registers_and_position_are_read() {
     let mut bus = Bus::new("temperature=25");
     assert_eq!(bus.master().read(at("0x66")), Ok(75));
-    assert_eq!(bus.master().read_run(at("0x7E"), 2), Ok(b"Fr".to_vec()));
+    assert_eq!(bus.master().read_consecutive(at("0x7E"), 2), Ok(b"Fr".to_vec()));
     let reading = bus.master().position().unwrap();
     assert_eq!((reading.turns, reading.steps, reading.raw().to_string()), (0x1234, 0x18000, "024698000".to_owned()));
     assert_eq!(reading.frame.map(|frame| frame.to_string()).as_deref(), Some("024698000CF"));
@@ -59,7 +59,11 @@ fn a_position_has_the_time_of_its_sampling() {
 fn a_bank_is_selected_again_only_if_it_may_have_changed() {
     let mut bus = Bus::new("");
     let mut master = bus.master();
-    assert_eq!(master.read_run(at("0x02:0x00"), 64).map(|bytes| bytes[63]), Ok(0xF4), "the sum of the data sheet");
+    assert_eq!(
+        master.read_consecutive(at("0x02:0x00"), 64).map(|bytes| bytes[63]),
+        Ok(0xF4),
+        "the sum of the data sheet"
+    );
     assert_eq!(master.read(at("0x03:0x3F")), Ok(0x31));
     assert_eq!(bus.count(Operation::BissRegisterWrite), 2);
     let mut master = bus.master();
@@ -84,7 +88,7 @@ fn a_restart_is_detected_by_its_silence() {
     device.lock().unwrap().device_mut::<Encoder>().unwrap().power_cycle(now);
     let error = master.read(at("0x03:0x0A")).unwrap_err();
     assert!(matches!(error, Error::NoAcknowledge { .. }), "{error}");
-    assert_eq!(master.with_patience(Duration::from_secs(2), |master| master.read(at("0x03:0x0A"))), Ok(16));
+    assert_eq!(master.with_reply_timeout(Duration::from_secs(2), |master| master.read(at("0x03:0x0A"))), Ok(16));
 }
 
 #[test]

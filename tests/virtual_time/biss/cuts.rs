@@ -6,9 +6,9 @@ use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, ProcedureStep, Run, steps_of};
 use encoder_studio::devices::biss::procedures::write::Interrupted;
-use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
-use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
-use encoder_studio::link::{Cancel, Direction};
+use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingSteps, PresetParts};
+use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
+use encoder_studio::link::{CancelToken, Direction};
 
 use super::hands::{
     Hands, IN_OPERATION, assert_reported_state, calibration, data, exchanges, filter, preset, wiegand_test,
@@ -29,7 +29,7 @@ const SCENES: [Scene; 5] = [
     Scene {
         name: "filter",
         change: filter,
-        is_done: |bench| bench.encoder(|encoder, _| encoder.flash().filter()) == Filter::Dynamic,
+        is_done: |bench| bench.encoder(|encoder, _| encoder.flash().filter()) == PositionFilter::Dynamic,
     },
     Scene {
         name: "preset",
@@ -54,7 +54,7 @@ fn mounting() -> Change {
     profile.data[1].empty = None;
     profile.data[0].empty = None;
     profile.data[1].listed = vec![Bank { number: 0x24, bytes }.into()];
-    let run = MountingRun {
+    let run = MountingSteps {
         calibrate: true,
         wiegand: Some(true),
         preset: PresetValue::new(0x18000, 2).map(|value| (value, PresetParts::Both)),
@@ -269,7 +269,7 @@ fn cancelling_at_any_exchange_leads_back() {
         let mut done = false;
         for steps in exchanges(&original, &prepared) {
             let context = format!("{}, cancelled after {steps}", scene.name);
-            let cancel = Cancel::after(steps as u64);
+            let cancel = CancelToken::after(steps as u64);
             let (bench, ended) = disturbed(&original, &prepared, |bench| bench.session.set_cancel(cancel));
             assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
             let spent = u64::from(bench.flash_cycles() - before);

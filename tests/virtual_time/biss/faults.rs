@@ -8,7 +8,7 @@ use encoder_studio::bits::ByteOrder;
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::devices::biss::jobs::{BissJob, BissOutput, JobError, open};
 use encoder_studio::devices::biss::procedures::{Echo, Error, Survey};
-use encoder_studio::link::{Cancel, LinkUrl, TraceEntry, write_entry, write_header};
+use encoder_studio::link::{CancelToken, LinkUrl, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
 
 use super::support::{Bench, Transport};
@@ -111,7 +111,7 @@ fn a_lost_link_ends_everything_immediately() {
 fn cancelling_takes_effect_between_two_exchanges() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
-        bench.session.set_cancel(Cancel::after(60));
+        bench.session.set_cancel(CancelToken::after(60));
         assert_eq!(survey(&mut bench), Err(Error::Cancelled));
         assert_eq!(bench.tap().sent.len(), 60);
     }

@@ -7,11 +7,11 @@ use encoder_studio::devices::biss::jobs::{
     BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, Demand, OperatorChannel, ProcedureProgress, ProcedureStep, StepDetail, Task, Unattended,
+    Answer, OperatorChannel, OperatorPrompt, ProcedureProgress, ProcedureStep, StepDetail, Task, UnattendedOperator,
 };
 use encoder_studio::devices::biss::procedures::write::{EndState, Interrupted};
-use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
-use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
+use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingSteps, PresetParts, RestoreOptions};
+use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
 use encoder_studio::profile::Consent;
 use encoder_studio::sim::Motor;
 use encoder_studio::worker::commit::ApprovedPlan;
@@ -27,7 +27,7 @@ pub(crate) struct Hands {
     /// Reported operations and steps, each when it began.
     pub(crate) steps: Vec<(usize, ProcedureStep)>,
     /// The last demand for each task, in the order in which they were made.
-    pub(crate) demands: Vec<Demand>,
+    pub(crate) demands: Vec<OperatorPrompt>,
     /// Answers other than Start.
     pub(crate) instead: Vec<(Task, Answer)>,
 }
@@ -62,7 +62,7 @@ impl Hands {
         }))
     }
 
-    fn follow(&mut self, demand: &Demand) {
+    fn follow(&mut self, demand: &OperatorPrompt) {
         let rpm = match demand.task {
             Task::Turn(run) => {
                 let (calibration, wiegand) = self.rpm;
@@ -82,12 +82,12 @@ impl Hands {
 }
 
 pub(crate) fn calibration() -> Change {
-    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    let run = MountingSteps { calibrate: true, ..MountingSteps::default() };
     Change::Guided { run, motor: MotorSource::Other }
 }
 
 pub(crate) fn wiegand_test(save: bool) -> Change {
-    let run = MountingRun { wiegand: Some(save), ..MountingRun::default() };
+    let run = MountingSteps { wiegand: Some(save), ..MountingSteps::default() };
     Change::Guided { run, motor: MotorSource::Other }
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn preset(singleturn: u32, multiturn: u32) -> Change {
 }
 
 pub(crate) fn filter() -> Change {
-    Change::SelectFilter(Filter::Dynamic)
+    Change::SelectFilter(PositionFilter::Dynamic)
 }
 
 /// Returns three bytes of OEM data, in two runs and two banks.
@@ -132,7 +132,7 @@ impl Bench {
 
     /// Carries a plan out without a user at the motor.
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
-        let attendance = OperatorPresence::Unattended(Unattended { patience });
+        let attendance = OperatorPresence::Unattended(UnattendedOperator { patience });
         let consent = Consent::to(prepared.plan.id());
         let commit =
             Commit { agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false }, attendance };

@@ -11,9 +11,9 @@ use encoder_studio::devices::biss::procedures::{
 };
 use encoder_studio::devices::biss::profile::BissProfile;
 use encoder_studio::devices::biss::protocol::{
-    Descriptions, DeviceMode, ErrorRegister, Filter, Firmware, WiegandResult,
+    Descriptions, DeviceMode, ErrorRegister, Firmware, PositionFilter, WiegandResult,
 };
-use encoder_studio::link::{Cancel, LinkUrl};
+use encoder_studio::link::{CancelToken, LinkUrl};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, JobId, OpenError, Session, Watched};
 
@@ -87,7 +87,7 @@ fn a_survey_over_both_interfaces_is_complete() {
         assert_eq!((key.kind.as_str(), key.device_type.as_str()), ("biss", "4672-010168110001"));
 
         assert_eq!((survey.status.mode, survey.status.protection), (Some(DeviceMode::OPERATION), Some(0)));
-        assert_eq!((survey.status.celsius, survey.status.filter), (Some(25.0), Some(Filter::Dynamic)));
+        assert_eq!((survey.status.celsius, survey.status.filter), (Some(25.0), Some(PositionFilter::Dynamic)));
         let errors = survey.status.errors.unwrap();
         let names: Vec<_> = errors.set.iter().map(|(bit, name)| (*bit, name.as_ref().unwrap().english())).collect();
         let expected: Vec<_> = ErrorRegister::new(0x12).set().collect();
@@ -178,7 +178,7 @@ fn everything_restorable_is_saved_over_both_interfaces() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=77&filter=dynamic");
         let profile = save(&mut bench).unwrap();
-        assert_eq!((profile.identity.serial_number.as_str(), profile.filter), ("77", Some(Filter::Dynamic)));
+        assert_eq!((profile.identity.serial_number.as_str(), profile.filter), ("77", Some(PositionFilter::Dynamic)));
         assert_eq!((profile.identity.multiturn_bits, profile.identity.singleturn_bits), (Some(16), Some(17)));
         let areas: Vec<_> = profile.data.iter().map(|image| (image.name.as_str(), image.first, image.last)).collect();
         assert_eq!(areas, [("EDS motor data", 0x04, 0x23), ("OEM data", 0x24, 0x43)]);
@@ -239,7 +239,7 @@ fn a_save_reports_progress_and_can_be_cancelled() {
     assert_eq!(told.last().unwrap().2, JobStep::Bank(0x43));
     assert_eq!(told.iter().filter(|(.., what)| matches!(what, JobStep::Bank(_))).count(), 64);
     let mut stopped = Bench::new(Transport::ConfigPin, "");
-    stopped.session.set_cancel(Cancel::after(1000));
+    stopped.session.set_cancel(CancelToken::after(1000));
     assert_eq!(device_error(save(&mut stopped).unwrap_err()), Error::Cancelled);
     assert_eq!(stopped.tap().sent.len(), 1000);
 }

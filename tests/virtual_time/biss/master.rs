@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use encoder_studio::bits::ByteOrder;
 use encoder_studio::devices::biss::procedures::{Damage, Echo, Error};
-use encoder_studio::link::{Cancel, Clock, Direction};
+use encoder_studio::link::{CancelToken, Clock, Direction};
 
 use super::support::{Pin, at};
 
@@ -21,7 +21,7 @@ fn registers_and_position_are_read_with_the_published_frames() {
     );
     assert_eq!((reading.position(), reading.degrees()), (0x2469_8000, 270.0));
     assert_eq!((reading.error, reading.warning, reading.crc_errors), (None, None, 0));
-    assert_eq!(pin.master().read_run(at("0x7E"), 2), Ok(b"Fr".to_vec()));
+    assert_eq!(pin.master().read_consecutive(at("0x7E"), 2), Ok(b"Fr".to_vec()));
     let sent = ["80 01 01 02 00 01 00 7A", "80 01 01 02 00 26 00 55", "80 01 03 01 00 01 79"];
     assert_eq!(pin.shown(Direction::Sent)[..3], sent);
     let received = ["80 01 01 01 00 02 7A", "80 01 01 01 00 4B 31", "80 01 03 05 00 00 80 69 24 00 69"];
@@ -60,7 +60,7 @@ fn echo_is_detected_and_removed_with_any_setting() {
         for setting in [Echo::Unknown, told] {
             let mut pin = Pin::new(&format!("echo={echoes}"));
             pin.station.line.echo = setting;
-            assert_eq!(pin.master().read_run(at("0x02:0x00"), 4), Ok(vec![0x01, 0x02, 0x04, 0x43]));
+            assert_eq!(pin.master().read_consecutive(at("0x02:0x00"), 4), Ok(vec![0x01, 0x02, 0x04, 0x43]));
             assert_eq!(pin.master().write(at("0x40"), 5), Ok(()));
             assert_eq!(pin.device().encoder().bank(), 5);
             assert_eq!((pin.station.line.echo, pin.station.line.damaged), (told, 0), "{setting:?}");
@@ -94,10 +94,10 @@ fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let error = pin.master().read(at("0x44:0x00")).unwrap_err();
     assert_eq!(error.to_string(), "the encoder has no register 0x44:0x00");
     assert!(!error.is_lost());
-    let beyond = pin.master().read_run(at("0xFF:0x3F"), 2).unwrap_err();
+    let beyond = pin.master().read_consecutive(at("0xFF:0x3F"), 2).unwrap_err();
     assert_eq!(beyond, Error::OutOfRange { start: at("0xFF:0x3F"), count: 2 });
-    assert_eq!(pin.master().read_run(at("0xFF:0x3F"), 0), Ok(vec![]));
-    assert!(matches!(pin.master().read_run(at("0x40"), usize::MAX), Err(Error::OutOfRange { .. })));
+    assert_eq!(pin.master().read_consecutive(at("0xFF:0x3F"), 0), Ok(vec![]));
+    assert!(matches!(pin.master().read_consecutive(at("0x40"), usize::MAX), Err(Error::OutOfRange { .. })));
 }
 
 #[test]
@@ -167,8 +167,8 @@ fn a_write_that_cannot_be_read_back_is_unclear() {
 #[test]
 fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     let mut pin = Pin::new("");
-    pin.cancel = Cancel::after(3);
-    assert_eq!(pin.master().read_run(at("0x02:0x00"), 64), Err(Error::Cancelled));
+    pin.cancel = CancelToken::after(3);
+    assert_eq!(pin.master().read_consecutive(at("0x02:0x00"), 64), Err(Error::Cancelled));
     assert_eq!(pin.tap().sent.len(), 3);
     let mut master = pin.master();
     assert_eq!(master.wait(Duration::from_secs(1)), Err(Error::Cancelled));
@@ -185,14 +185,14 @@ fn a_long_silence_is_tolerated_with_patience() {
     }
     let started = pin.now();
     assert!(matches!(pin.master().read(at("0x00:0x01")), Err(Error::NoReply { .. })));
-    let status = pin.master().with_patience(Duration::from_secs(10), |master| master.read(at("0x00:0x01")));
+    let status = pin.master().with_reply_timeout(Duration::from_secs(10), |master| master.read(at("0x00:0x01")));
     assert_eq!(status, Ok(0x02));
     let silent = pin.now() - started;
     assert!((7.0..7.5).contains(&silent.as_secs_f64()), "{silent:?}");
     let mut dead = Pin::new("fault=silent-after:1");
     dead.master().read(at("0x41")).unwrap_err();
     let from = dead.now();
-    dead.master().with_patience(Duration::from_secs(10), |master| master.read(at("0x41"))).unwrap_err();
+    dead.master().with_reply_timeout(Duration::from_secs(10), |master| master.read(at("0x41"))).unwrap_err();
     assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
 }
 

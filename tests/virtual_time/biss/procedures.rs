@@ -7,11 +7,11 @@ use encoder_studio::app::Text;
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{
-    Advice, Answer, Blocker, Failure, Outcome, ProcedureStep, Run, StepDetail, Task, WiegandReport, steps_of,
+    Advice, Answer, Failure, Outcome, ProcedureStep, Run, StartBlocker, StepDetail, Task, WiegandReport, steps_of,
 };
-use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, PlanError, PresetParts};
+use encoder_studio::devices::biss::profile::{MotorSource, MountingSteps, PlanError, PresetParts};
 use encoder_studio::devices::biss::protocol::{
-    CalibrationStatus, DeviceMode, Filter, PresetValue, ProcedureKind, WiegandResult, WiegandStatus,
+    CalibrationStatus, DeviceMode, PositionFilter, PresetValue, ProcedureKind, WiegandResult, WiegandStatus,
 };
 use encoder_studio::devices::biss::state::explain::job;
 
@@ -125,9 +125,9 @@ fn a_filter_is_selected_with_a_restart() {
         let mut bench = Bench::new(way, "");
         let (before, from) = (bench.flash_cycles(), bench.now());
         let written = bench.change(filter()).unwrap().written;
-        assert_eq!(written.outcomes, [Outcome::FilterSelected(Filter::Dynamic)]);
+        assert_eq!(written.outcomes, [Outcome::FilterSelected(PositionFilter::Dynamic)]);
         assert_eq!((bench.flash_cycles() - before, written.write_cycles, written.verified), (1, 1, 1));
-        assert_eq!(bench.encoder(|encoder, _| encoder.flash().filter()), Filter::Dynamic);
+        assert_eq!(bench.encoder(|encoder, _| encoder.flash().filter()), PositionFilter::Dynamic);
         assert!(bench.now() - from >= Duration::from_millis(500));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
@@ -169,7 +169,7 @@ fn a_mounting_is_one_run_with_a_report() {
     let mut wanted = bench.save();
     let listed = encoder_studio::devices::biss::profile::Bank { number: 0x24, bytes: [7; 64] };
     wanted.data[1].listed.push(listed.into());
-    let run = MountingRun {
+    let run = MountingSteps {
         calibrate: true,
         wiegand: Some(true),
         preset: PresetValue::new(0, 0).map(|value| (value, PresetParts::Both)),
@@ -213,7 +213,7 @@ fn a_part_of_a_run_can_be_skipped() {
     for (task, after) in [(first, None), (Run::CalibrationClockwise, Some(first))] {
         let task = Task::Turn(task);
         let mut bench = Bench::new(Transport::ConfigPin, "");
-        let run = MountingRun { calibrate: true, wiegand: Some(false), ..MountingRun::default() };
+        let run = MountingSteps { calibrate: true, wiegand: Some(false), ..MountingSteps::default() };
         let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
         let before = bench.flash_cycles();
         let mut hands = Hands::on(&bench);
@@ -255,11 +255,11 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
 #[test]
 fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
-        ("rpm=0", calibration(), Blocker::Standing),
-        ("rpm=500", calibration(), Blocker::WrongDirection),
-        ("rpm=-1000", wiegand_test(false), Blocker::WrongDirection),
-        ("rpm=-500&temperature=20", calibration(), Blocker::Temperature { celsius: 20 }),
-        ("rpm=-500&temperature=41", calibration(), Blocker::Temperature { celsius: 41 }),
+        ("rpm=0", calibration(), StartBlocker::Standing),
+        ("rpm=500", calibration(), StartBlocker::WrongDirection),
+        ("rpm=-1000", wiegand_test(false), StartBlocker::WrongDirection),
+        ("rpm=-500&temperature=20", calibration(), StartBlocker::Temperature { celsius: 20 }),
+        ("rpm=-500&temperature=41", calibration(), StartBlocker::Temperature { celsius: 41 }),
     ];
     for (query, change, blocker) in cases {
         let mut bench = Bench::new(Transport::ConfigPin, query);
@@ -289,7 +289,7 @@ fn an_unattended_start_happens_when_ready_or_not_at_all() {
         let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(3)).unwrap_err());
         assert!(
             matches!(&told.cause, Failure::NotReady { blockers, .. }
-            if matches!(blockers.as_slice(), [Blocker::Speed { .. }])),
+            if matches!(blockers.as_slice(), [StartBlocker::Speed { .. }])),
             "{told}"
         );
     }
@@ -414,7 +414,7 @@ fn a_run_that_never_ends_times_out() {
 /// Obstacles known before a procedure begins are refused before anything is written.
 #[test]
 fn impossible_procedures_are_refused_beforehand() {
-    let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
+    let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
     for run in [run(true, None), run(false, Some(true))] {
         let change = Change::Guided { run, motor: MotorSource::ThisEncoder };
         let error = Bench::new(Transport::ConfigPin, "").prepare(change).unwrap_err();

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::buses::bridge::procedures::SupplyAfter::{AsFound, Off, On};
+use encoder_studio::buses::bridge::procedures::SupplyAfterSession::{AsFound, Off, On};
 use encoder_studio::devices::biss::jobs::{BissJob, JobError};
 use encoder_studio::units::SupplyVoltage;
 

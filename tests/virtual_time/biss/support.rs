@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use encoder_studio::buses::bridge::procedures::{StreamRequest, SupplyAfter, Tap as Stream};
+use encoder_studio::buses::bridge::procedures::{StreamRequest, SupplyAfterSession, Tap as Stream};
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, JobStep};
@@ -12,9 +12,9 @@ pub(crate) use encoder_studio::devices::biss::procedures::Transport;
 use encoder_studio::devices::biss::procedures::procedure::ProcedureProgress;
 use encoder_studio::devices::biss::procedures::{Master, Station, Supply};
 use encoder_studio::devices::biss::protocol::{Descriptions, RegisterAddress};
-use encoder_studio::devices::biss::sim::{Config, Encoder, Port};
+use encoder_studio::devices::biss::sim::{Config, Encoder, UbicomPort};
 use encoder_studio::kinds::at_adapter;
-use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
+use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::Motor;
 use encoder_studio::store::Store;
@@ -25,7 +25,7 @@ use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// The configuration pin of an encoder, with the host's side of it.
-pub(crate) type Pin = Rig<Port>;
+pub(crate) type Pin = Rig<UbicomPort>;
 /// An encoder at an adapter, with the host's side.
 pub(crate) type Bus = Rig<Adapter>;
 
@@ -35,7 +35,7 @@ pub(crate) struct Rig<D> {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
     pub(crate) entries: Arc<Mutex<Vec<TraceEntry>>>,
-    pub(crate) cancel: Cancel,
+    pub(crate) cancel: CancelToken,
     pub(crate) station: Station,
     link: TestLink,
     trace: Trace,
@@ -53,7 +53,7 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
 impl Pin {
     /// Creates an encoder as `sim:?…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Port::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
+        Self::with(UbicomPort::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
     }
 }
 
@@ -84,7 +84,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         trace.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
         let mut station = Station::new(way, MARGIN);
         station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
-        Rig { device, clock, tap, entries, cancel: Cancel::default(), station, link, trace }
+        Rig { device, clock, tap, entries, cancel: CancelToken::default(), station, link, trace }
     }
 
     pub(crate) fn master(&mut self) -> Master<'_> {
@@ -144,7 +144,7 @@ pub(crate) struct Bench {
 /// The virtual device of a session.
 #[derive(Clone)]
 enum End {
-    Pin(Arc<Mutex<Port>>),
+    Pin(Arc<Mutex<UbicomPort>>),
     Bus(Arc<Mutex<Adapter>>),
 }
 
@@ -163,7 +163,7 @@ impl Bench {
     fn made(way: Transport, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
         let end = match way {
             Transport::ConfigPin => {
-                End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap()))))
+                End::Pin(Arc::new(Mutex::new(UbicomPort::new(&Config::from_pairs(&pairs(query)).unwrap()))))
             }
             Transport::Adapter => {
                 End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap())))
@@ -211,12 +211,12 @@ impl Bench {
     }
 
     /// Creates one at an adapter that switches the encoder's supply, at first off.
-    pub(crate) fn supplied(after: SupplyAfter) -> Self {
+    pub(crate) fn supplied(after: SupplyAfterSession) -> Self {
         Self::supplied_at("", after)
     }
 
     /// Creates the same with further settings of the adapter.
-    pub(crate) fn supplied_at(query: &str, after: SupplyAfter) -> Self {
+    pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), at_adapter()).unwrap();
         let folder = Arc::new(folder());
@@ -228,7 +228,7 @@ impl Bench {
     pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
         let End::Bus(adapter) = &self.end else { panic!("no adapter") };
         let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
-        let (cancel, mut trace, mut tap) = (Cancel::default(), Trace::default(), Stream::new(MARGIN));
+        let (cancel, mut trace, mut tap) = (CancelToken::default(), Trace::default(), Stream::new(MARGIN));
         let clock = &*self.clock;
         let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
         tap.begin(ctx, StreamRequest::Analog { sample_hz: 10_000 }, supply).unwrap();
@@ -240,11 +240,16 @@ impl Bench {
 
     /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and this setting for
     /// its end.
-    pub(crate) fn supplied_again(&self, after: SupplyAfter) -> Self {
+    pub(crate) fn supplied_again(&self, after: SupplyAfterSession) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
     }
 
-    fn with_supply(end: End, after: SupplyAfter, clock: Arc<VirtualClock>, folder: Arc<tempfile::TempDir>) -> Self {
+    fn with_supply(
+        end: End,
+        after: SupplyAfterSession,
+        clock: Arc<VirtualClock>,
+        folder: Arc<tempfile::TempDir>,
+    ) -> Self {
         let mut station = Station::new(Transport::Adapter, MARGIN);
         station.supply = Some(Supply { millivolt: 5_000, measured: None });
         station.adapter.leave_supply(after);

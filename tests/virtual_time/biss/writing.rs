@@ -9,9 +9,9 @@ use encoder_studio::devices::biss::jobs::{
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{Failure, Outcome};
 use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
-use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
+use encoder_studio::devices::biss::protocol::{PositionFilter, PresetValue};
 use encoder_studio::kinds::program;
-use encoder_studio::profile::{Consent, Document};
+use encoder_studio::profile::{Consent, ProfileDocument};
 use encoder_studio::store::{Entry, Logbook, Outcome as CountedFinding, read_text};
 use encoder_studio::worker::NotBegun;
 use encoder_studio::worker::commit::ApprovedPlan;
@@ -83,7 +83,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
 
     // The before-image restores it.
     let text = read_text(&committed.backup.unwrap()).unwrap();
-    let kept = Document::parse(&text, program().studio.formats).unwrap();
+    let kept = ProfileDocument::parse(&text, program().studio.formats).unwrap();
     assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
     let kept = kept.body.into_profile::<BissProfile>().unwrap();
     assert_eq!((kept.banks().count(), kept.bank(0x24).unwrap().bytes), (1, [0; 64]));
@@ -97,7 +97,7 @@ fn only_differences_are_restored() {
         let mut bench = Bench::new(way, "position=0x20007");
         let saved = bench.save();
         let mut wanted = with_bytes(&with_bytes(&saved, 0x05, &[(0, 9)]), 0x43, &[(0x3F, 8)]);
-        wanted.filter = Some(Filter::Dynamic);
+        wanted.filter = Some(PositionFilter::Dynamic);
         let value = PresetValue::new(0x18000, 3).unwrap();
         wanted.preset = Some(PresetSetting { value, unknown: Default::default() });
         let prepared = bench.prepare(restore_of(&wanted)).unwrap();
@@ -186,9 +186,10 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { .. })), "{error}");
     assert_eq!((seen, bench.flash_cycles()), (None, before));
     let consent = Consent::to(prepared.plan.id());
-    let attendance = OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::Unattended {
-        patience: Duration::ZERO,
-    });
+    let attendance =
+        OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::UnattendedOperator {
+            patience: Duration::ZERO,
+        });
     bench
         .run(BissJob::Commit(Box::new(Commit {
             agreed: ApprovedPlan { prepared, consent, force_wear: true },
@@ -207,7 +208,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
     let id = logbook.intend(Timestamp::now(), &device_key(&prepared.identity, true), "long ago", 999, None).unwrap();
-    logbook.conclude(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
+    logbook.record_outcome(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!(prepared.cycles_seen, Some(999));
     let before = bench.flash_cycles();
@@ -219,9 +220,10 @@ fn a_worn_encoder_is_written_only_by_force() {
     bench.commit_alone(&one, Duration::ZERO).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     let consent = Consent::to(prepared.plan.id());
-    let attendance = OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::Unattended {
-        patience: Duration::ZERO,
-    });
+    let attendance =
+        OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::UnattendedOperator {
+            patience: Duration::ZERO,
+        });
     bench
         .run(BissJob::Commit(Box::new(Commit {
             agreed: ApprovedPlan { prepared, consent, force_wear: true },

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
-use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
+use encoder_studio::devices::biss::protocol::{PositionFilter, PresetValue};
 use encoder_studio::link::Clock;
 use fastrand::Rng;
 
@@ -14,7 +14,7 @@ use crate::biss::hands::{Hands, IN_OPERATION, assert_reported_state, calibration
 use crate::biss::support::{Bench, Handle, Transport};
 
 /// What is stored in the encoder: OEM data that are not 0, preset, filter, and whether it is calibrated.
-type State = (Vec<(usize, u8)>, PresetValue, Filter, bool);
+type State = (Vec<(usize, u8)>, PresetValue, PositionFilter, bool);
 
 fn state(encoder: &Handle) -> State {
     encoder.with(|encoder, _| {

@@ -10,7 +10,7 @@ use encoder_studio::devices::hiperface::jobs::{
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile};
 use encoder_studio::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, EncoderTypes, FieldSize, LineSettings,
+    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, EncoderTypes, FieldSize, LineSettings,
 };
 use encoder_studio::devices::hiperface::sim::{Bus, Memory};
 use encoder_studio::link::{ByteLink as _, Clock, VirtualClock};
@@ -40,7 +40,7 @@ impl fmt::Debug for State {
             let content = memory.field_bytes(number).map(<[u8]>::to_vec);
             write!(f, "{number}: {:?} {content:02X?}; ", memory.status(number))?;
         }
-        let code = memory.code(CodeNumber::new(1).unwrap()) == AccessCode::FACTORY;
+        let code = memory.code(AccessCodeNumber::new(1).unwrap()) == AccessCode::FACTORY;
         write!(f, "{address:?}, {settings:?}, counter {counter}, position {position}, factory code {code}")
     }
 }
@@ -155,7 +155,7 @@ fn changes(desk: &mut Desk) -> Vec<(&'static str, Change)> {
         }
     }
     let status = DataFieldStatus::from_byte;
-    let code = CodeNumber::new(1).unwrap();
+    let code = AccessCodeNumber::new(1).unwrap();
     vec![
         ("restore", restore_of(&wanted)),
         ("store", Change::Store(vec![(FieldRange::new(2, 3, 9), bytes(7, 9))])),

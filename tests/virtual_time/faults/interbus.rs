@@ -87,7 +87,7 @@ fn session(
     let device = Arc::new(Mutex::new(gateway.connection()));
     let link = FaultyLink::new(device, clock.clone(), schedule.clone(), cut_power);
     let store = Store::at(folder.path());
-    Session::to_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft()))
+    Session::for_gateway(Box::new(link), clock.clone(), station(""), store, Some(gateway.shaft()))
 }
 
 /// A change, with the states that it passes through and the number of its requests.

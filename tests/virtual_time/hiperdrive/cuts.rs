@@ -7,7 +7,7 @@ use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, JobError}
 use encoder_studio::devices::hiperdrive::procedures::Error;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::procedures::write::Interrupted;
-use encoder_studio::link::Cancel;
+use encoder_studio::link::CancelToken;
 
 use super::support::{Stand, drive, image};
 use crate::support::Tap;
@@ -109,7 +109,7 @@ fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &
     for at in 0.. {
         let mut stand = Stand::new("");
         let prepared = stand.prepare(change()).unwrap();
-        let cancel = Cancel::default();
+        let cancel = CancelToken::default();
         stand.session.set_cancel(cancel.clone());
         let number = stand.tap().sent.len() + at;
         stand.tap().cancel_at = Some((number, cancel));

@@ -217,7 +217,7 @@ fn replies_are_timed_and_late_ones_distinguished_from_missing_ones() {
     let replies = slow.session.station().replies();
     slow.run(HiperdriveJob::Read(number(158))).unwrap();
     let usual = replies.usual().unwrap();
-    assert!((300..400).contains(&usual.as_millis()) && replies.longest() >= usual, "{usual:?}");
+    assert!((300..400).contains(&usual.as_millis()) && replies.longest_reply_time() >= usual, "{usual:?}");
     let mut late = Stand::new("fault=delay:1300");
     let error = late.run(HiperdriveJob::Read(number(158))).unwrap_err();
     let Some(Error::NoReply { late: Some(Late { took, waited }), .. }) = error.device() else { panic!("{error}") };

@@ -7,7 +7,7 @@ use std::time::Duration;
 use encoder_studio::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
 use encoder_studio::devices::hiperdrive::procedures::{Error, Master, RequestedItem, Station, read_rules};
 use encoder_studio::devices::hiperdrive::protocol::{Topology, Value};
-use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
+use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, LinkError, Trace, VirtualClock};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};
@@ -124,10 +124,10 @@ impl Desk {
     }
 
     fn ask<T>(&mut self, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
-        self.ask_until(Cancel::default(), work)
+        self.ask_until(CancelToken::default(), work)
     }
 
-    fn ask_until<T>(&mut self, cancel: Cancel, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
+    fn ask_until<T>(&mut self, cancel: CancelToken, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
         let mut trace = Trace::default();
         let ctx = Ctx { wire: &mut *self.wire, clock: &*self.clock, cancel: &cancel, trace: &mut trace };
         work(&mut Master::new(ctx, &mut self.station))
@@ -306,7 +306,7 @@ fn damaged_frames_are_retried_and_silence_times_out() {
 #[test]
 fn reading_the_limits_of_a_drive_can_be_cancelled() {
     let mut desk = Desk::with([]);
-    let cancel = Cancel::default();
+    let cancel = CancelToken::default();
     cancel.request();
     assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");

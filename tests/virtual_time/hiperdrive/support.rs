@@ -73,7 +73,7 @@ impl Stand {
         let store = Store::at(folder.path());
         let station = Station::new(MARGIN);
         let way = DeviceConnection { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
-        let session = Session::to_target(way, clock.clone(), store);
+        let session = Session::for_target(way, clock.clone(), store);
         Stand { target, clock, tap, folder, session }
     }
 

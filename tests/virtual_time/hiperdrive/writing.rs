@@ -2,12 +2,12 @@
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
-use encoder_studio::devices::hiperdrive::procedures::{Error, LimitsSeen, RequestedItem};
+use encoder_studio::devices::hiperdrive::procedures::{DisplayedLimits, Error, RequestedItem};
 use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
 use encoder_studio::kinds::program;
 use encoder_studio::link::Clock;
-use encoder_studio::profile::Document;
+use encoder_studio::profile::ProfileDocument;
 use encoder_studio::store::read_text;
 use encoder_studio::worker::NotBegun;
 
@@ -34,7 +34,7 @@ fn differences_are_written_read_back_and_saved_once() {
     let now = stand.clock.now();
     stand.target.with(|station| station.power_cycle(now));
     assert_eq!(stand.value(166), 200);
-    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap(), program().studio.formats).unwrap();
+    let before = ProfileDocument::parse(&read_text(&done.backup.unwrap()).unwrap(), program().studio.formats).unwrap();
     assert_eq!(before.body.get::<HiperdriveProfile>().unwrap().image.get(number(166)), Some(350));
     let done = stand.change(Change::Write(image(&[(24, 7)]))).unwrap();
     assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");
@@ -182,7 +182,7 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
         let took = (stand.elapsed() - begun).as_millis();
         assert!((ms..ms + 1000).contains(&took), "{query}: {took} ms");
         assert_eq!(stand.sets(), [(47, vec![0xFC, 0xFF])], "{query}");
-        let longest = stand.session.station().replies().longest();
+        let longest = stand.session.station().replies().longest_reply_time();
         assert!(longest.as_millis() < 100, "{query}: {longest:?} of a usual reply");
     }
 }
@@ -262,7 +262,7 @@ fn motion_limits_are_known_after_every_write() {
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "reading confirms nothing");
     assert!(!motion.confirm_limits(drive(1), before), "they were shown under the scale of before");
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
-    let shown = LimitsSeen { scale: (100, 1), ..before };
+    let shown = DisplayedLimits { scale: (100, 1), ..before };
     assert!(motion.confirm_limits(drive(1), shown));
     assert!(motion.permitted(drive(1)).locks.is_empty());
     stand.change(Change::Do(Service::Recall)).unwrap();

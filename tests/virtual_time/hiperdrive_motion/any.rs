@@ -5,9 +5,9 @@
 //! model separate from the dead-man checks this ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, MotionRequest};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, MotionRequest, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, RunEnd, State};
-use encoder_studio::devices::hiperdrive::sim::{Defect, SpindleLoad};
+use encoder_studio::devices::hiperdrive::sim::{DriveDefect, SpindleLoad};
 
 use super::bench::Bench;
 use super::model::Model;
@@ -17,11 +17,11 @@ const SESSIONS: u64 = 100;
 const STEPS: u64 = 5000;
 
 fn wish(dice: &mut fastrand::Rng) -> MotionRequest {
-    let effort = if dice.bool() { FULL } else { Effort::JOG };
+    let effort = if dice.bool() { FULL } else { SpeedTorque::JOG };
     let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
     match dice.u8(..14) {
         0 => MotionRequest::Rest,
-        1 => MotionRequest::Lead(Goal::ALL[dice.usize(..4)]),
+        1 => MotionRequest::Lead(TargetState::ALL[dice.usize(..4)]),
         2 | 3 => MotionRequest::Acknowledge,
         4 | 5 => MotionRequest::Move { target: dice.i32(-3 * TURN..3 * TURN), effort },
         6 | 7 => MotionRequest::Step { by: dice.i32(-TURN..TURN), effort },
@@ -56,9 +56,9 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         }
         11 | 12 => bench.permit.locks.clear(),
         13 => bench.late = dice.usize(..4),
-        14 => bench.load(SpindleLoad { defect: Some(Defect::RunsOn), ..SpindleLoad::default() }),
+        14 => bench.load(SpindleLoad { defect: Some(DriveDefect::RunsOn), ..SpindleLoad::default() }),
         15 => {
-            let defect = Some([Defect::Reversed, Defect::SaysOutside][dice.usize(..2)]);
+            let defect = Some([DriveDefect::Reversed, DriveDefect::SaysOutside][dice.usize(..2)]);
             bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
         }
         16 => {

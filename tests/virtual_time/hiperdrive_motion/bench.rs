@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, MotionRequest, Permit};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, MotionIntent, MotionRequest, Permit};
 use encoder_studio::devices::hiperdrive::protocol::{
-    Actual, ControlBit, ControlWord, DriveNumber, ErrorCode, OutImage, ParameterNumber, Setpoint, State, Value,
+    ActualValues, ControlBit, ControlWord, DriveNumber, ErrorCode, OutputImage, ParameterNumber, Setpoint, State, Value,
 };
-use encoder_studio::devices::hiperdrive::sim::{Setup, SpindleLoad, Station};
+use encoder_studio::devices::hiperdrive::sim::{SpindleLoad, Station, StationConfig};
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);
@@ -19,7 +19,7 @@ pub(super) struct Bench {
     pub(super) station: Station,
     pub(super) man: DeadMan,
     pub(super) now: Moment,
-    pub(super) intent: Intent,
+    pub(super) intent: MotionIntent,
     pub(super) permit: Permit,
     /// Whether the intent is no longer refreshed.
     pub(super) absent: bool,
@@ -30,17 +30,17 @@ pub(super) struct Bench {
     /// Delay of the reports in cycles.
     pub(super) late: usize,
     /// Reports of a drive that moves independently of its commands, as if a jog were running.
-    pub(super) heard: Option<Actual>,
-    reports: VecDeque<Actual>,
+    pub(super) heard: Option<ActualValues>,
+    reports: VecDeque<ActualValues>,
     words: Vec<u16>,
     before: ControlWord,
 }
 
 impl Bench {
     pub(super) fn new() -> Self {
-        let mut station = Station::new(Setup::default());
+        let mut station = Station::new(StationConfig::default());
         station.open(Moment::START, TIMEOUT);
-        let intent = Intent::rest(DriveNumber::FIRST, 7, Moment::START);
+        let intent = MotionIntent::rest(DriveNumber::FIRST, 7, Moment::START);
         Bench {
             station,
             man: DeadMan::new(DriveNumber::FIRST, 7),
@@ -61,7 +61,7 @@ impl Bench {
     /// Makes a request of the user; returns the number of the act.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
-        self.intent = Intent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
+        self.intent = MotionIntent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
         number
     }
 
@@ -85,7 +85,7 @@ impl Bench {
             assert!(act, "{begins:?} by {word:?} behind {:?}, {:?} is wanted", self.before, self.intent);
         }
         if !self.cut_out {
-            let image = OutImage { drives: vec![setpoint.into()], pkw: None };
+            let image = OutputImage { drives: vec![setpoint.into()], pkw: None };
             self.station.cyclic(self.now, &image, true);
             self.before = word;
         }
@@ -116,7 +116,7 @@ impl Bench {
     }
 
     /// Returns the real state of the drive.
-    pub(super) fn actual(&mut self) -> Actual {
+    pub(super) fn actual(&mut self) -> ActualValues {
         self.station.image(self.now).drives[0]
     }
 

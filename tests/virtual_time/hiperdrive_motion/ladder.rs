@@ -1,6 +1,8 @@
 //! All ends of a motion: the stop word is sent with the same call, and escalates on the ladder while the drive moves.
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, MotionRequest, Phase, StopLevel};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{
+    Ended, Lock, MotionRequest, Phase, StopLevel, TargetState,
+};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use proptest::prelude::*;
 
@@ -36,7 +38,7 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
     (
         "led elsewhere",
         |bench| {
-            bench.act(MotionRequest::Lead(Goal::Off));
+            bench.act(MotionRequest::Lead(TargetState::Off));
         },
         Ended::Replaced,
     ),
@@ -86,7 +88,7 @@ fn a_stale_intent_stops_the_drive() {
         bench.run(2000);
         assert_eq!(bench.position(), stood, "the same act begins again");
         // Also an act that froze before it could begin.
-        bench.act(MotionRequest::Lead(Goal::Off));
+        bench.act(MotionRequest::Lead(TargetState::Off));
         bench.until_over();
         bench.act(wish);
         bench.absent = true;
@@ -148,7 +150,7 @@ fn a_drive_without_reports_is_stopped() {
 #[test]
 fn an_uncommanded_motion_is_stopped() {
     let mut bench = Bench::new();
-    bench.act(MotionRequest::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(TargetState::Enabled));
     bench.until_over();
     super::words(&mut bench);
     let mut moving = bench.actual();

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest};
-use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, Setpoint, StatusBit};
+use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
 /// Issue 21.14: acts as they were made, without the dead-man's own bookkeeping.
@@ -102,7 +102,7 @@ impl Model {
     }
 
     /// Checks a sent set-point against the record. `heard`: the report before it.
-    pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: Actual, ended: Option<(u64, Ended)>) {
+    pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, Ended)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {
             now.since(live.said) <= FRESH
@@ -151,7 +151,7 @@ impl Model {
 }
 
 /// Returns whether a job is within a degree of its target, which lies within the limits.
-fn is_arriving(commands: Commands, live: &Live, heard: Actual) -> bool {
+fn is_arriving(commands: Commands, live: &Live, heard: ActualValues) -> bool {
     let near = |target: i32| (i64::from(heard.position) - i64::from(target)).abs() <= DEGREE;
     commands == Commands::Job && live.target.is_some_and(near)
 }

@@ -4,9 +4,11 @@
 //! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps per millisecond, 382 in an interval of
 //! 10 ms.
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest, Permit, Phase, Refusal};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{
+    Ended, MotionRequest, Permit, Phase, Refusal, SpeedTorque,
+};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
-use encoder_studio::devices::hiperdrive::sim::{Defect, SpindleLoad};
+use encoder_studio::devices::hiperdrive::sim::{DriveDefect, SpindleLoad};
 
 use super::bench::Bench;
 use super::{FULL, TURN, to};
@@ -16,7 +18,7 @@ const DEGREE: i32 = 183;
 const INTERVAL_AT_FULL_SPEED: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 
-fn jog(direction: Direction, effort: Effort, outward: bool) -> MotionRequest {
+fn jog(direction: Direction, effort: SpeedTorque, outward: bool) -> MotionRequest {
     MotionRequest::Jog { direction, effort, outward }
 }
 
@@ -25,7 +27,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
 }
 
 /// Returns a drive with a defect between ±1 turn.
-fn bench(defect: Option<Defect>) -> Bench {
+fn bench(defect: Option<DriveDefect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
     bench.write(160, LIMITS.1.into());
@@ -35,7 +37,7 @@ fn bench(defect: Option<Defect>) -> Bench {
 }
 
 /// Returns a drive at rest outside its limits, by this number of steps above the upper limit (or below the lower one).
-fn bench_outside(beyond: i32, defect: Option<Defect>) -> Bench {
+fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
     assert_eq!(bench.until_over(), Ended::Arrived);
@@ -69,11 +71,11 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
 /// continues.
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
-    for effort in [Effort::JOG, FULL] {
+    for effort in [SpeedTorque::JOG, FULL] {
         for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
             for wish in [jog(direction, effort, false), MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort }]
             {
-                let mut bench = bench(Some(Defect::RunsOn));
+                let mut bench = bench(Some(DriveDefect::RunsOn));
                 bench.act(wish);
                 let (intervals, position) = intervals_past(&mut bench, limit);
                 assert_eq!(intervals, 0, "{wish:?}");
@@ -93,7 +95,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
 /// Issue 21.4: status bit 15 ends a run as well, even if the position is within the limits that were read.
 #[test]
 fn bit_15_ends_a_run() {
-    let mut bench = bench(Some(Defect::RunsOn));
+    let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.permit = Permit::within(-9 * TURN, 9 * TURN);
     bench.act(jog(Direction::Clockwise, FULL, false));
     let (intervals, position) = intervals_past(&mut bench, TURN);
@@ -162,7 +164,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
     for wish in jogs.into_iter().chain(runs).chain([to(0), to(TURN / 2), MotionRequest::Step { by: 100, effort: FULL }])
     {
-        let mut bench = bench(Some(Defect::SaysOutside));
+        let mut bench = bench(Some(DriveDefect::SaysOutside));
         bench.act(wish);
         let (low, high) = LIMITS;
         let expected = Ended::Refused(Refusal::Unclear { position: 0, low, high });
@@ -171,7 +173,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
         assert_eq!((bench.position(), bench.moves()), (0, false), "{wish:?}");
     }
     for way in ways {
-        let mut bench = bench(Some(Defect::SaysOutside));
+        let mut bench = bench(Some(DriveDefect::SaysOutside));
         bench.act(jog(way, FULL, true));
         bench.run(1500);
         assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
@@ -184,9 +186,9 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     // Within a degree of a limit it is clear.
     for (limits, free) in [((-TURN, 182), Direction::Counterclockwise), ((-182, TURN), Direction::Clockwise)] {
         for way in ways {
-            let mut bench = bench(Some(Defect::SaysOutside));
+            let mut bench = bench(Some(DriveDefect::SaysOutside));
             bench.permit = Permit::within(limits.0, limits.1);
-            bench.act(jog(way, Effort::JOG, false));
+            bench.act(jog(way, SpeedTorque::JOG, false));
             bench.run(1000);
             assert_eq!(matches!(bench.man.phase(), Phase::Moving(_)), way == free, "{limits:?} {way:?}");
         }
@@ -210,7 +212,7 @@ fn outward_motion_can_be_permitted_for_one_press() {
     bench.act(jog(Direction::Clockwise, FULL, false));
     assert!(matches!(bench.until_over(), Ended::Refused(Refusal::Outward { .. })));
     // An unnecessary permission: from inside the limits apply.
-    let mut bench = super::watch::bench(Some(Defect::RunsOn));
+    let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
     assert_eq!(intervals_past(&mut bench, TURN).0, 0);
 }
@@ -218,15 +220,15 @@ fn outward_motion_can_be_permitted_for_one_press() {
 /// Issue 21.4: a drive that counts the other way moves outward instead of inward: stopped within a degree.
 #[test]
 fn inward_motion_that_leads_outward_is_stopped() {
-    let mut bench = bench_outside(5000, Some(Defect::Reversed));
+    let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
-    bench.act(jog(Direction::Counterclockwise, Effort::JOG, false));
+    bench.act(jog(Direction::Counterclockwise, SpeedTorque::JOG, false));
     let Ended::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.ended()) };
     assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
     // With permission, the other direction leads in.
     bench.run(500);
-    bench.act(jog(Direction::Clockwise, Effort::JOG, true));
+    bench.act(jog(Direction::Clockwise, SpeedTorque::JOG, true));
     bench.run(1500);
     assert!(bench.position() < stood);
 }
@@ -234,7 +236,7 @@ fn inward_motion_that_leads_outward_is_stopped() {
 /// Issue 21.4, case *overrun while braking*: the stop continues, and keeps its reason.
 #[test]
 fn an_overrun_while_braking_keeps_the_stop_reason() {
-    let mut bench = bench(Some(Defect::RunsOn));
+    let mut bench = bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, false));
     // At 35 rpm it brakes within 0.1 s, and moves on by 1911 steps.
     while bench.position() < TURN - 1000 {
@@ -252,7 +254,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
 #[test]
 fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     for target in [TURN / 2, -TURN / 2] {
-        let mut bench = bench(Some(Defect::Reversed));
+        let mut bench = bench(Some(DriveDefect::Reversed));
         bench.act(to(target));
         let (intervals, _) = intervals_past(&mut bench, -target.signum() * DEGREE);
         assert_eq!(intervals, 0, "{target}");
@@ -266,7 +268,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
 fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
         for wish in [jog(direction, FULL, false), run(direction, RunEnd::RangeEnd)] {
-            let mut bench = bench(Some(Defect::Reversed));
+            let mut bench = bench(Some(DriveDefect::Reversed));
             bench.act(wish);
             let (intervals, position) = intervals_past(&mut bench, -sign * DEGREE);
             assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::WrongWay { position }), "{wish:?}");
@@ -279,7 +281,7 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
 #[test]
 fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
-        let mut bench = bench(Some(Defect::RunsOn));
+        let mut bench = bench(Some(DriveDefect::RunsOn));
         bench.act(to(target));
         // Its accuracy is 2.5°: three whole degrees are allowed at its target, but one beyond a limit.
         let degrees = if target.abs() == TURN { 1 } else { 3 };

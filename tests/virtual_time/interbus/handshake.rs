@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::devices::interbus::procedures::Master;
 use encoder_studio::devices::interbus::procedures::write::{EndState, Written};
 use encoder_studio::devices::interbus::procedures::{
-    AwaitedWord, Error, Exception, RequestedItem, Station, WordReply, identify, read_programs, select,
+    Error, Exception, ExpectedWord, RequestedItem, Station, WordReply, identify, read_programs, select,
 };
 use encoder_studio::devices::interbus::profile::Op;
 use encoder_studio::devices::interbus::protocol::{Parameter, StartupMode, WindowShift};
@@ -268,7 +268,7 @@ fn a_preset_is_fired_until_the_position_matches() {
     // An encoder that does not accept it stays two steps away: the word is reported.
     let interrupted = carry_out(Script::new().on(0x4000_0000, &[POSITION]), fire()).0.unwrap_err();
     let missing =
-        Error::TimeOut { awaited: AwaitedWord::Preset, sent: 0x4000_0000, input: POSITION, milliseconds: 2000 };
+        Error::TimeOut { awaited: ExpectedWord::Preset, sent: 0x4000_0000, input: POSITION, milliseconds: 2000 };
     assert_eq!(interrupted.cause, missing);
 }
 
@@ -300,7 +300,7 @@ fn another_master_is_detected_by_the_out_word() {
 
 #[test]
 fn a_missing_echo_position_or_value_is_reported_with_its_words() {
-    for (word, awaited) in [(STEPS, AwaitedWord::Echo), (RUN, AwaitedWord::Run)] {
+    for (word, awaited) in [(STEPS, ExpectedWord::Echo), (RUN, ExpectedWord::Run)] {
         let script = Script::new().on(word, &[0xC000_0000]).on(word, &[POSITION]);
         let (ended, _, sent) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
         let interrupted = ended.unwrap_err();

@@ -4,7 +4,7 @@ use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobEr
 use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
 use encoder_studio::devices::interbus::procedures::{Error, WordReply};
 use encoder_studio::devices::interbus::profile::{Direction, Item, ItemValue};
-use encoder_studio::devices::interbus::protocol::{Mode, ReadOut, StartupMode};
+use encoder_studio::devices::interbus::protocol::{EncoderMode, ReadOutNumber, StartupMode};
 use encoder_studio::link::{write_entry, write_header};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
@@ -72,11 +72,11 @@ fn a_survey_reads_every_read_out() {
     ] {
         assert!(matches!(stand.run(InterbusJob::Read(item)).unwrap(), InterbusOutput::Item(read) if read == value));
     }
-    let register = ReadOut::chip_register(5).unwrap();
+    let register = ReadOutNumber::chip_register(5).unwrap();
     assert!(
         matches!(stand.run(InterbusJob::ReadOut(register)).unwrap(), InterbusOutput::ReadOut(own, _) if own == register)
     );
-    let error = stand.run(InterbusJob::ReadOut(ReadOut::new(0xB))).unwrap_err();
+    let error = stand.run(InterbusJob::ReadOut(ReadOutNumber::new(0xB))).unwrap_err();
     assert_eq!(error.to_string(), "the encoder has no value for 2021000B (read-out)");
     assert_eq!(stand.left(), (0, K3));
 }
@@ -151,7 +151,7 @@ fn a_selected_mode_is_kept() {
 #[test]
 fn each_handshake_step_is_reported_with_its_words() {
     let mut stand = Stand::new("busy=30&serial=7");
-    let (ended, steps) = stand.follow(InterbusJob::ReadOut(ReadOut::SERIAL_NUMBER));
+    let (ended, steps) = stand.follow(InterbusJob::ReadOut(ReadOutNumber::SERIAL_NUMBER));
     assert!(ended.is_ok());
     let told: Vec<(u32, u32)> = steps.iter().map(|step| (step.out, step.input)).collect();
     assert!(told.contains(&(0x2021_0000, 0xA000_0007)), "{told:08X?}");
@@ -200,7 +200,7 @@ fn an_encoder_left_in_parameterisation_is_led_back_on_request() {
     assert_eq!(stand.sent(), Vec::<u32>::new(), "whoever is at it is not disturbed");
     assert!(matches!(stand.run(InterbusJob::LeadBack).unwrap(), InterbusOutput::LedBack(mode) if mode == K3));
     assert_eq!(stand.left(), (0, K3));
-    stand.gateway.with_encoder(|encoder| assert_eq!(encoder.mode(), Mode::Position));
+    stand.gateway.with_encoder(|encoder| assert_eq!(encoder.mode(), EncoderMode::Position));
 }
 
 #[test]

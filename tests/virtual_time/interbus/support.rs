@@ -49,7 +49,7 @@ impl Stand {
         let folder = folder();
         let store = Store::at(folder.path());
         let motor = Some(gateway.shaft());
-        let mut session = Session::to_gateway(Box::new(link), clock.clone(), station, store, motor);
+        let mut session = Session::for_gateway(Box::new(link), clock.clone(), station, store, motor);
         let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let watched = trace.clone();
         session.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
@@ -61,7 +61,7 @@ impl Stand {
         self.tap = Arc::default();
         let link = TestLink::new(Arc::new(Mutex::new(self.gateway.connection())), self.clock.clone(), self.tap.clone());
         let (store, motor) = (Store::at(self.folder.path()), Some(self.gateway.shaft()));
-        self.session = Session::to_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
+        self.session = Session::for_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
     }
 
     /// Stores that the logbook has counted of encoder 77.

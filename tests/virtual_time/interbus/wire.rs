@@ -8,7 +8,7 @@ use encoder_studio::devices::interbus::procedures::{
     Carried, Damage, Error, Exception, Master, RequestedItem, Station, WordReading, carried_word, identify,
 };
 use encoder_studio::devices::interbus::protocol::WordOrder;
-use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
+use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, LinkError, Trace, VirtualClock};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::station;
@@ -80,7 +80,7 @@ fn with<T>(
     answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static,
     work: impl FnOnce(&mut Master<'_>) -> Result<T, Error>,
 ) -> Seen<T> {
-    let (clock, cancel, mut trace) = (Arc::new(VirtualClock::default()), Cancel::default(), Trace::default());
+    let (clock, cancel, mut trace) = (Arc::new(VirtualClock::default()), CancelToken::default(), Trace::default());
     let mut wire = Gateway::new(clock.clone(), answer);
     let ended = {
         let ctx = Ctx { wire: &mut wire as &mut dyn ByteLink, clock: &*clock, cancel: &cancel, trace: &mut trace };

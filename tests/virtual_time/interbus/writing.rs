@@ -11,8 +11,8 @@ use encoder_studio::devices::interbus::procedures::write::EndState;
 use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, Op, RestoreOptions};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, StartupMode};
-use encoder_studio::link::{Cancel, Clock};
-use encoder_studio::profile::{Consent, Document};
+use encoder_studio::link::{CancelToken, Clock};
+use encoder_studio::profile::{Consent, ProfileDocument};
 use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
 use encoder_studio::worker::{Event, JobId, NotBegun, Progress};
 
@@ -70,7 +70,8 @@ fn parameters_are_set_in_one_parameterisation_with_one_store() {
         assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
         let backup = done.backup.unwrap();
         let document =
-            Document::parse(&read_text(&backup).unwrap(), encoder_studio::kinds::program().studio.formats).unwrap();
+            ProfileDocument::parse(&read_text(&backup).unwrap(), encoder_studio::kinds::program().studio.formats)
+                .unwrap();
         assert_eq!(document.body.get::<InterbusProfile>().unwrap().image.parameters.preset, 10);
     }
 }
@@ -339,7 +340,7 @@ fn cancelling_leaves_a_running_encoder() {
         let prepared = stand.prepare(change);
         let consent = Consent::to(prepared.plan.id());
         let stores = stand.stores();
-        stand.session.set_cancel(Cancel::after(after));
+        stand.session.set_cancel(CancelToken::after(after));
         let ended = stand.run(InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })));
         let spent = stand.stores() - stores;
         assert_eq!(stand.left(), (0, StartupMode::Cams(program(4))), "after {after}");
@@ -357,7 +358,7 @@ fn cancelling_leaves_a_running_encoder() {
                 break;
             }
         }
-        stand.session.set_cancel(Cancel::default());
+        stand.session.set_cancel(CancelToken::default());
         let reading = stand.session.sample().unwrap();
         assert!(reading.is_valid() && reading.cams().is_some(), "after {after}");
     }

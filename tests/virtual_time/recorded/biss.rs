@@ -3,7 +3,7 @@
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::Failure;
-use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
+use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingSteps, PresetParts};
 use encoder_studio::devices::biss::protocol::PresetValue;
 
 use super::{Ready, compare, listen};
@@ -75,7 +75,7 @@ fn guided_procedures_are_as_recorded() {
     recorded("wiegand-test-saved", |_| wiegand_test(true), 7);
     let mounting = |_: &mut Bench| {
         let preset = PresetValue::new(0x18000, 2).map(|value| (value, PresetParts::Both));
-        let run = MountingRun { calibrate: true, wiegand: Some(true), preset, data: None };
+        let run = MountingSteps { calibrate: true, wiegand: Some(true), preset, data: None };
         Change::Guided { run, motor: MotorSource::Other }
     };
     recorded("mounting", mounting, 23);

@@ -4,7 +4,7 @@ use encoder_studio::devices::hiperface::jobs::{Change, JobError};
 use encoder_studio::devices::hiperface::procedures::Error;
 use encoder_studio::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use encoder_studio::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, LineSettings,
+    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, LineSettings,
 };
 
 use super::{Ready, compare, listen};
@@ -89,7 +89,7 @@ fn writes_of_data_fields_are_as_recorded() {
 
 #[test]
 fn other_writes_are_as_recorded() {
-    let number = CodeNumber::new(2).unwrap();
+    let number = AccessCodeNumber::new(2).unwrap();
     recorded("change-code", Change::ChangeCode { number, new: AccessCode::new(0x77) });
     recorded("set-position", Change::SetPosition { wanted: 77, exact: false, synchronise: false, kit: false });
     recorded("set-position-exactly", Change::SetPosition { wanted: 77, exact: true, synchronise: false, kit: false });

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-use encoder_studio::link::{Cancel, Direction};
+use encoder_studio::link::{CancelToken, Direction};
 use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
@@ -22,7 +22,7 @@ use crate::support::Tap;
 /// A prepared write, and the means to disturb it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
-    cancel: Cancel,
+    cancel: CancelToken,
     lines: Lines,
     /// Carries it out; returns the result as text.
     carry_out: Box<dyn FnOnce() -> String>,
@@ -32,20 +32,20 @@ struct Ready {
 type Lines = Arc<Mutex<Vec<String>>>;
 
 /// Records every frame of the session from now on; returns the cancellation as well.
-fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
+fn listen<D: Device>(session: &mut Session<D>) -> (Lines, CancelToken) {
     let lines = Lines::default();
     let kept = lines.clone();
     session.watch(move |entry| {
         let sign = if entry.direction == Direction::Sent { '>' } else { '<' };
         kept.lock().unwrap().push(format!("{sign} {}", entry.bytes));
     });
-    let cancel = Cancel::default();
+    let cancel = CancelToken::default();
     session.set_cancel(cancel.clone());
     (lines, cancel)
 }
 
 /// Ends a write early, at the frame with this number.
-type EarlyEnd = fn(&mut Tap, &Cancel, usize);
+type EarlyEnd = fn(&mut Tap, &CancelToken, usize);
 
 /// The early ends of a write, at one of the sent frames.
 const EARLY: [(&str, EarlyEnd); 3] = [

@@ -3,7 +3,7 @@
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
 use encoder_studio::devices::ssi::jobs::{SsiJob, SsiOutput};
-use encoder_studio::devices::ssi::procedures::{Asking, Error, Identity, Supply};
+use encoder_studio::devices::ssi::procedures::{ClockSettings, Error, Identity, Supply};
 
 use super::support::{QUICK, Stand};
 
@@ -14,7 +14,7 @@ fn hello(stand: &mut Stand) -> Identity {
     }
 }
 
-fn set(stand: &mut Stand, asking: Asking) -> Result<Identity, Error> {
+fn set(stand: &mut Stand, asking: ClockSettings) -> Result<Identity, Error> {
     stand.session.run_inline(SsiJob::Set(asking)).map(|output| match output {
         SsiOutput::Set(identity) => *identity,
         other => panic!("{other:?}"),
@@ -30,7 +30,7 @@ fn hello_reports_the_adapter_and_the_word_settings() {
     let identity = hello(&mut stand);
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.has(Capabilities::SSI));
-    assert_eq!(identity.asking, Asking { clocks: 25, clock_hz: 700_000, pause_us: 200 });
+    assert_eq!(identity.asking, ClockSettings { clocks: 25, clock_hz: 700_000, pause_us: 200 });
     // 60 MHz divided by 86 is the nearest clock below.
     assert_eq!(identity.clock_hz, 697_674);
     // 300 mW at 12 V.
@@ -59,10 +59,10 @@ fn a_word_is_read_with_the_requested_clocks() {
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
     assert!(words.is_stream_start() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
     // More clocks than bits: zeros after the frame; fewer: its first bits.
-    assert_eq!(set(&mut stand, Asking { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
+    assert_eq!(set(&mut stand, ClockSettings { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
     let longer = stand.read();
     assert_eq!((longer.words.as_slice(), longer.clocks, longer.first), (&[0x65_D400 << 2][..], 27, 0));
-    set(&mut stand, Asking { clocks: 13, ..QUICK }).unwrap();
+    set(&mut stand, ClockSettings { clocks: 13, ..QUICK }).unwrap();
     assert_eq!(stand.read().words, [0x65_D400 >> 12]);
     let configured: Vec<u8> = stand.requests(Operation::SsiConfig).iter().map(|packet| packet.body[0]).collect();
     assert_eq!(configured, [25, 27, 13]);
@@ -73,7 +73,11 @@ fn a_word_is_read_with_the_requested_clocks() {
 fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");
     assert_eq!(stand.read().clocks, 25);
-    for asking in [Asking { clocks: 0, ..QUICK }, Asking { clocks: 65, ..QUICK }, Asking { clock_hz: 1000, ..QUICK }] {
+    for asking in [
+        ClockSettings { clocks: 0, ..QUICK },
+        ClockSettings { clocks: 65, ..QUICK },
+        ClockSettings { clock_hz: 1000, ..QUICK },
+    ] {
         let error = set(&mut stand, asking).unwrap_err();
         assert!(
             matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::SsiConfig, .. })),

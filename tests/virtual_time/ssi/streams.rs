@@ -6,7 +6,7 @@ use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::Operation;
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::SsiJob;
-use encoder_studio::devices::ssi::procedures::{Asking, Error, Words};
+use encoder_studio::devices::ssi::procedures::{ClockSettings, Error, Words};
 use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::Clock;
 
@@ -96,7 +96,7 @@ fn changed_settings_apply_to_a_running_stream() {
     stand.session.pace(Some(FAST));
     check(&stand.samples(Duration::from_millis(100)));
     for clocks in [13, 25, 40] {
-        let asking = Asking { clocks, ..QUICK };
+        let asking = ClockSettings { clocks, ..QUICK };
         stand.session.run_inline(SsiJob::Set(asking)).unwrap();
         let runs = stand.samples(Duration::from_millis(100));
         assert!(runs[0].is_stream_start() && runs.iter().all(|run| run.clocks == clocks && run.lost == 0));

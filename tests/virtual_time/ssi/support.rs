@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::buses::bridge::protocol::{Operation, Packet, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::{Ssi, SsiJob, SsiOutput};
-use encoder_studio::devices::ssi::procedures::{Asking, Station, Words};
+use encoder_studio::devices::ssi::procedures::{ClockSettings, Station, Words};
 use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::sim::ByteDevice;
@@ -17,7 +17,7 @@ use crate::biss::support::pairs;
 use crate::support::{MARGIN, Tap, TestLink};
 
 /// 25 clocks in 16.67 µs and 30 µs of pause: a word in less than 50 µs.
-pub(crate) const QUICK: Asking = Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
+pub(crate) const QUICK: ClockSettings = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
 
 pub(crate) struct Stand {
     pub(crate) clock: Arc<VirtualClock>,
@@ -45,7 +45,7 @@ impl Stand {
         let tap = Arc::<Mutex<Tap>>::default();
         let wire = Box::new(TestLink::new(adapter.clone(), clock.clone(), tap.clone()));
         let station = Station::from_query(&link.parse().unwrap(), MARGIN).unwrap();
-        let session = Session::to_adapter(wire, clock.clone(), station, Store::at(folder.path()), None);
+        let session = Session::for_adapter(wire, clock.clone(), station, Store::at(folder.path()), None);
         Stand { clock, adapter, tap, session, _folder: folder }
     }
 

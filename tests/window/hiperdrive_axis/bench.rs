@@ -7,7 +7,7 @@ use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::WriteFault;
 use encoder_studio::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisStep, Button, DriveFacts, Entries, TestTarget,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, Entries, TestTarget,
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 
@@ -103,7 +103,7 @@ pub(super) fn write(desk: &mut Desk) {
 
 #[track_caller]
 pub(super) fn step_with_write(desk: &mut Desk) {
-    run(desk, Run::Press(Button::Do));
+    run(desk, Run::Press(AxisButton::Do));
     write(desk);
 }
 
@@ -160,12 +160,12 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
         let own = match number {
             47 => ParameterNumber::SAVE,
-            number => ParameterNumber::of_drive(number, unit(desk).drive()).unwrap(),
+            number => ParameterNumber::for_drive(number, unit(desk).drive()).unwrap(),
         };
         let target = unit(desk).target.clone().unwrap();
         target.with(|station| station.set_write_fault(Some((own, hindrance))));
         let step = axis(desk).step();
-        run(desk, Run::Press(Button::Do));
+        run(desk, Run::Press(AxisButton::Do));
         consent(desk);
         desk.until("it has failed", |studio| {
             studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
@@ -190,7 +190,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         }
     }
     // The interrupted write may have arrived: then it is already done.
-    if axis(desk).ask(Button::Do, &seen(desk)).is_ok() {
+    if axis(desk).ask(AxisButton::Do, &seen(desk)).is_ok() {
         step_with_write(desk);
     } else {
         assert!(rough, "{number}");
@@ -199,7 +199,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
 
 #[track_caller]
 pub(super) fn control(desk: &mut Desk) {
-    run(desk, Run::Press(Button::Take));
+    run(desk, Run::Press(AxisButton::Take));
     desk.until("control", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.session.is_ready() && own.seen(own.drive()).position.is_some()
@@ -236,7 +236,7 @@ pub(super) fn until_jog() -> Desk {
 
 /// Takes control and confirms, up to the step with the slow jog.
 pub(super) fn confirm(mut desk: Desk) -> Desk {
-    run(&mut desk, Run::Press(Button::Confirm));
+    run(&mut desk, Run::Press(AxisButton::Confirm));
     next(&mut desk, AxisStep::Jog);
     // Before that the mark of these limits may still be read back from the file, and locks them again.
     let path = desk.outside.store().settings_path();
@@ -290,7 +290,7 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -
     let drive = unit(desk).drive();
     for _ in 0..ATTEMPTS {
         let before = last_end(&desk.studio, drive);
-        run(desk, Run::Press(Button::Go(place)));
+        run(desk, Run::Press(AxisButton::Go(place)));
         desk.until("it goes there", |studio| {
             condition(studio.hiperdrive().unwrap()) || has_lapsed(studio, drive, before)
         });
@@ -300,7 +300,7 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -
         until_stopped(desk);
         desk.until("it may go", |studio| {
             let own = studio.hiperdrive().unwrap();
-            own.axis().unwrap().ask(Button::Go(place), &own.seen(drive)).is_ok()
+            own.axis().unwrap().ask(AxisButton::Go(place), &own.seen(drive)).is_ok()
         });
     }
     panic!("it has lapsed {ATTEMPTS} times");

@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
-use encoder_studio::sim::Faults;
+use encoder_studio::sim::SimulatedFaults;
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn other_mode_text() -> Desk {
 }
 
 fn set_by_another(desk: &Desk) {
-    let reference = ParameterNumber::of_drive(198, DriveNumber::FIRST).unwrap();
+    let reference = ParameterNumber::for_drive(198, DriveNumber::FIRST).unwrap();
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
 }
@@ -49,7 +49,7 @@ fn a_position_change_while_disconnected_is_reported() {
         !own.seen(own.drive()).connected && has_ended
     });
     set_by_another(&desk);
-    target.set_faults(&Faults::default());
+    target.set_faults(&SimulatedFaults::default());
     desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is told", |studio| {

@@ -21,7 +21,7 @@ fn missing_samples_are_reported_and_do_not_change_the_frequency() {
         // 2.003 ms, a quarter of a period short of a whole number of them.
         column.drain(10_000..10_212);
     }
-    let finding = capture.finding();
+    let finding = capture.finding_text();
     let FindingKind::Missing { gaps: 1, longest_s } = finding.kind else { panic!("{finding:?}") };
     near(longest_s, 213e-5, 1e-9);
     assert_eq!(finding.severity, Severity::Warning);
@@ -97,7 +97,7 @@ fn a_harmful_correction_is_reported() {
 fn single_ended_columns_are_reported_instead_of_an_offset() {
     for amplitude in [0.5, 1.0] {
         let capture = made(steady, |_, _, (sine, cosine)| (2.5 + amplitude * sine, 2.6 + amplitude * cosine));
-        let finding = capture.finding();
+        let finding = capture.finding_text();
         let FindingKind::SingleEnded { sine_v, cosine_v } = finding.kind else { panic!("{finding:?}") };
         near(sine_v, 2.5, 1e-3);
         near(cosine_v, 2.6, 1e-3);
@@ -106,7 +106,7 @@ fn single_ended_columns_are_reported_instead_of_an_offset() {
         assert_eq!(again.findings.len(), 1, "{again:?}");
     }
     let offset = made(steady, |_, _, (sine, cosine)| (sine + 0.3, cosine));
-    assert!(matches!(offset.finding().kind, FindingKind::Limit(OutOfLimits::OffsetSine(_))));
+    assert!(matches!(offset.finding_text().kind, FindingKind::Limit(OutOfLimits::OffsetSine(_))));
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! Cases small enough to be written down.
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Refused, Value};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
-fn time(nanoseconds: i64) -> Time {
-    Time::from_nanoseconds(nanoseconds)
+fn time(nanoseconds: i64) -> SampleTime {
+    SampleTime::from_nanoseconds(nanoseconds)
 }
 
-fn times(nanoseconds: impl IntoIterator<Item = i64>) -> Vec<Time> {
+fn times(nanoseconds: impl IntoIterator<Item = i64>) -> Vec<SampleTime> {
     nanoseconds.into_iter().map(time).collect()
 }
 
@@ -193,7 +193,7 @@ fn the_next_oldest_sample_is_predicted() {
     let mut next = 0;
     for portion in [1, 4_095, 8_191, 1, 1, 4_095, 10_000] {
         let expected = history.oldest_after(portion);
-        let times: Vec<Time> = (next..next + portion as i64).map(Time::from_nanoseconds).collect();
+        let times: Vec<SampleTime> = (next..next + portion as i64).map(SampleTime::from_nanoseconds).collect();
         history.append(&times, &[Part::whole(&vec![0; portion])]).unwrap();
         let oldest = history.time(history.all().start).filter(|oldest| oldest.nanoseconds() < next);
         assert_eq!(expected, oldest, "{next} and {portion}");

@@ -2,7 +2,7 @@
 //! unoptimised; `benches/history.rs` runs the whole day.
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture};
-use crate::analysis::{Motion, Time, Unwrap};
+use crate::analysis::{Motion, PositionUnwrapper, SampleTime};
 
 const MILLISECOND: i64 = 1_000_000;
 
@@ -27,8 +27,9 @@ fn memory_is_close_to_the_raw_columns() {
         let parts: Vec<Part<'_>> = kinds.iter().map(part).collect();
         let mut most = 0;
         for block in 0..200_i64 {
-            let times: Vec<Time> =
-                (0..BLOCK as i64).map(|at| Time::from_nanoseconds((block * BLOCK as i64 + at) * MILLISECOND)).collect();
+            let times: Vec<SampleTime> = (0..BLOCK as i64)
+                .map(|at| SampleTime::from_nanoseconds((block * BLOCK as i64 + at) * MILLISECOND))
+                .collect();
             history.append(&times, &parts).unwrap();
             most = most.max(history.memory());
         }
@@ -45,10 +46,10 @@ fn times_are_exact_over_ten_days() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let ten_days = 10 * 86_400_000;
     // An hour's batch each time, of which the history keeps the last seconds: 1 kHz, and the clock's odd nanoseconds.
-    let at = |k: i64| Time::from_nanoseconds(k * MILLISECOND + k % 7);
+    let at = |k: i64| SampleTime::from_nanoseconds(k * MILLISECOND + k % 7);
     for start in (0..ten_days).step_by(3_600_000) {
         let numbers: Vec<i64> = (start..start + 5_000).collect();
-        let times: Vec<Time> = numbers.iter().map(|k| at(*k)).collect();
+        let times: Vec<SampleTime> = numbers.iter().map(|k| at(*k)).collect();
         history.append(&times, &[Part::whole(&numbers)]).unwrap();
         for k in (start..start + 5_000).step_by(499) {
             let index = history.nearest(at(k)).unwrap();
@@ -67,7 +68,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
     // Steps per millisecond: about 6000 rpm, so the position wraps every 41 s.
     const SPEED: i64 = 409;
     let mut history = History::new(&[Kind::Whole, Kind::Real], 200_000).with_longest_pause(10 * MILLISECOND);
-    let mut unwrap = Unwrap::rotary(RANGE).unwrap();
+    let mut unwrap = PositionUnwrapper::rotary(RANGE).unwrap();
     let mut motion = Motion::over(20 * MILLISECOND);
     let mut most = 0;
     let mut start = 0;
@@ -83,7 +84,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
             unwrap.gap();
         }
         for k in start..start + BATCH {
-            let time = Time::from_nanoseconds(k * MILLISECOND);
+            let time = SampleTime::from_nanoseconds(k * MILLISECOND);
             let next = unwrap.next((k * SPEED).rem_euclid(RANGE)).unwrap();
             assert_eq!((next.steps, next.broken), (k * SPEED, batch % 7 == 3 && k == start));
             if next.broken {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::{BLOCK, Flags, Grid, Pixel, Reduced, Value};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// One column with its times, and what is still stored of it.
 #[derive(Default)]
@@ -32,8 +32,8 @@ impl Model {
         blocks.saturating_sub(capacity.div_ceil(BLOCK) + 1) * BLOCK
     }
 
-    pub(super) fn between(&self, first: usize, from: Time, to: Time) -> Range<usize> {
-        let at = |time: Time| first + self.times[first..].partition_point(|at| *at < time.nanoseconds());
+    pub(super) fn between(&self, first: usize, from: SampleTime, to: SampleTime) -> Range<usize> {
+        let at = |time: SampleTime| first + self.times[first..].partition_point(|at| *at < time.nanoseconds());
         at(from)..at(to)
     }
 
@@ -72,7 +72,8 @@ impl Model {
                 .zip(last)
                 .is_some_and(|(first, last)| !self.flags(last + 1..first + 1).contains(Flags::BREAK));
             last = good.last().copied().or(last);
-            let time = |at: Option<&usize>, other: usize| Time::from_nanoseconds(self.times[*at.unwrap_or(&other)]);
+            let time =
+                |at: Option<&usize>, other: usize| SampleTime::from_nanoseconds(self.times[*at.unwrap_or(&other)]);
             Pixel {
                 from: time(good.first(), range.start),
                 to: time(good.last(), range.end - 1),
@@ -97,7 +98,7 @@ impl Model {
     }
 
     /// Returns the range of the values in the blocks between two times, by which the rounding is measured.
-    pub(super) fn around(&self, first: usize, from: Time, to: Time) -> f64 {
+    pub(super) fn around(&self, first: usize, from: SampleTime, to: SampleTime) -> f64 {
         let range = self.between(first, from, to.plus(1));
         let blocks = range.start / BLOCK * BLOCK..range.end.next_multiple_of(BLOCK).min(self.times.len());
         let values = || self.good(blocks.clone()).map(|at| self.values[at].to_f64());

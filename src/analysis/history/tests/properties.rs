@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Pixel, Value};
 use super::model::Model;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Shape of the values of a run of samples.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +118,7 @@ fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
 }
 
 fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
-    let times: Vec<Time> = given.times.iter().map(|time| Time::from_nanoseconds(*time)).collect();
+    let times: Vec<SampleTime> = given.times.iter().map(|time| SampleTime::from_nanoseconds(*time)).collect();
     let reals: Vec<f64> = given.values.iter().map(|value| value.to_f64()).collect();
     let wholes: Vec<i64> = given
         .values
@@ -178,7 +178,7 @@ proptest! {
         for (from, length, pixels) in views {
             let from = (from * 1.2 - 0.1) * span;
             let to = from + span * length * length * length + 1.0;
-            let grid = Grid::new(Time::from_nanoseconds(from as i64), Time::from_nanoseconds(to as i64), pixels);
+            let grid = Grid::new(SampleTime::from_nanoseconds(from as i64), SampleTime::from_nanoseconds(to as i64), pixels);
             let mut picture = Picture::default();
             history.picture(1, &history.cut(&grid), &mut picture);
             let (wanted, raw) = model.picture(first, &grid);
@@ -242,7 +242,7 @@ proptest! {
         let span = *model.times.last().unwrap() as f64;
         for probe in probes {
             let probe = (probe * span) as i64;
-            let found = history.nearest(Time::from_nanoseconds(probe)).unwrap() as usize;
+            let found = history.nearest(SampleTime::from_nanoseconds(probe)).unwrap() as usize;
             let nearest = (first..model.times.len()).map(|at| (model.times[at] - probe).abs()).min().unwrap();
             prop_assert_eq!((model.times[found] - probe).abs(), nearest);
         }
@@ -254,14 +254,14 @@ proptest! {
         let capacity = 60_000;
         let (history, before) = build(kind, &runs, capacity);
         let end = before.times[before.times.len() - 1] + 1;
-        let grid = Grid::new(Time::ORIGIN, Time::from_nanoseconds(end), 50);
+        let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(end), 50);
         let mut picture = Picture::default();
         history.picture(1, &history.cut(&grid), &mut picture);
         let (later, _) = build(kind, &[runs, more].concat(), capacity);
         let mut later_picture = Picture::default();
         later.picture(1, &later.cut(&grid), &mut later_picture);
         // The samples of complete blocks that are still stored are identical to the last bit.
-        let settled = history.time(history.all().end / BLOCK as u64 * BLOCK as u64).map_or(end, Time::nanoseconds);
+        let settled = history.time(history.all().end / BLOCK as u64 * BLOCK as u64).map_or(end, SampleTime::nanoseconds);
         let oldest = later.time(later.all().start).unwrap();
         if !picture.raw && !later_picture.raw {
             let is_settled = |pixel: &&Pixel| pixel.from > oldest && pixel.to.nanoseconds() < settled;
@@ -274,7 +274,7 @@ proptest! {
         }
         // A view that moves by whole columns has the same columns again.
         let width = grid.width();
-        let moved = Grid::new(Time::from_nanoseconds(10 * width), Time::from_nanoseconds(60 * width), 50);
+        let moved = Grid::new(SampleTime::from_nanoseconds(10 * width), SampleTime::from_nanoseconds(60 * width), 50);
         prop_assert_eq!(moved.width(), width);
         let mut moved_picture = Picture::default();
         history.picture(1, &history.cut(&moved), &mut moved_picture);

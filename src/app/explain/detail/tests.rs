@@ -37,12 +37,12 @@ fn recording_and_logbook_errors_are_explained_in_both_languages() {
         check(&recording(&error), &error);
     }
     let problems = [
-        LogbookProblem::NoAccess,
-        LogbookProblem::WriteProtected,
-        LogbookProblem::Locked,
-        LogbookProblem::DiskFull,
-        LogbookProblem::Damaged { what: "page 3".to_owned() },
-        LogbookProblem::Newer { found: 3, known: 2 },
+        LogbookErrorKind::NoAccess,
+        LogbookErrorKind::WriteProtected,
+        LogbookErrorKind::Locked,
+        LogbookErrorKind::DiskFull,
+        LogbookErrorKind::Damaged { what: "page 3".to_owned() },
+        LogbookErrorKind::Newer { found: 3, known: 2 },
     ];
     for problem in problems {
         let error = LogbookError { path: "l.sqlite".into(), problem };

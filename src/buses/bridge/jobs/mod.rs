@@ -7,9 +7,9 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use crate::buses::bridge::procedures::{Portion, StreamRequest, Streaming, Tap, TapError};
-use crate::buses::bridge::protocol::Data;
-use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
+use crate::buses::bridge::procedures::{AdapterStreamError, Portion, StreamRequest, Streaming, Tap};
+use crate::buses::bridge::protocol::StreamData;
+use crate::link::{ByteLink, CancelToken, Clock, Ctx, Trace};
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{Batch, Producer, SampleCount};
@@ -24,7 +24,7 @@ pub trait Stretch: Send + 'static {
     fn wanted(&self) -> StreamRequest;
 
     /// Returns the samples of a packet, or `None` if the packet does not belong to this stream.
-    fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
+    fn read(&self, data: StreamData, streaming: &Streaming) -> Option<Self::Samples>;
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ pub enum BridgeError {
     #[error(transparent)]
     Open(#[from] OpenError),
     #[error(transparent)]
-    Tap(#[from] TapError),
+    Tap(#[from] AdapterStreamError),
 }
 
 /// A function that opens the connection to an adapter.
@@ -75,7 +75,7 @@ impl<S: Stretch> Bridge<S> {
     fn begin(&mut self, clock: &dyn Clock) -> Result<(), BridgeError> {
         let Some(open) = self.open.take() else { return Ok(()) };
         let wire = self.wire.insert(open()?);
-        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         let streaming = self.tap.begin(ctx, self.stretch.wanted(), self.supply)?;
         // It begins once.
@@ -96,7 +96,7 @@ impl<S: Stretch> Producer for Bridge<S> {
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<S::Samples>>, BridgeError> {
         self.begin(clock)?;
         let (Some(wire), Some(streaming)) = (&mut self.wire, self.streaming.get()) else { return Ok(None) };
-        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         let Some(portion) = self.tap.next(ctx, clock.now() + patience)? else { return Ok(None) };
         let Portion { first, time, period_ns, lost, data } = portion;
@@ -106,7 +106,7 @@ impl<S: Stretch> Producer for Bridge<S> {
 
     fn end(&mut self, clock: &dyn Clock) {
         let Some(wire) = &mut self.wire else { return };
-        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         if let Err(error) = self.tap.end(ctx) {
             // Its next HELLO ends the stream.
@@ -122,8 +122,8 @@ impl Stretch for SineCosine {
         StreamRequest::Analog { sample_hz: self.sample_hz }
     }
 
-    fn read(&self, data: Data, streaming: &Streaming) -> Option<Pair> {
-        let Data::Analog(data) = data else { return None };
+    fn read(&self, data: StreamData, streaming: &Streaming) -> Option<Pair> {
+        let StreamData::Analog(data) = data else { return None };
         let unit_v = f64::from(streaming.full_scale_microvolt) * 1e-6 / f64::from(i16::MAX);
         let (sine_v, cosine_v) =
             data.samples.iter().map(|(sine, cosine)| (f64::from(*sine) * unit_v, f64::from(*cosine) * unit_v)).unzip();

@@ -6,12 +6,12 @@ use std::time::Duration;
 use super::Open;
 use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::link::line::MARGIN;
-use crate::link::{Clock, LinkUrl, Scheme, UrlError};
-use crate::parameter::{Maybe, Parameters, Words};
+use crate::link::{Clock, LinkScheme, LinkUrl, UrlError};
+use crate::parameter::{OptionalValue, Parameters, Words};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
-use crate::worker::open::{inside, margin, open_bytes, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
 
 /// Link parameter of the virtual adapter, required by sessions but not by streams.
 const BRIDGE: &str = "bridge";
@@ -22,7 +22,7 @@ parameters! {
     struct LinkParameters: UrlError {
         /// Additional delay allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
         /// link.
-        margin: Option<Duration> = None, "margin" => Maybe(MARGIN);
+        margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN);
     }
 }
 
@@ -36,16 +36,16 @@ pub fn open_adapter(
     clock: Arc<dyn Clock>,
     devices: &[&dyn AttachableKind],
 ) -> Result<(Duration, Open), OpenError> {
-    if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge) {
+    if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge) {
         return Err(wrong_target_error(url.scheme, "sim: and bridge:"));
     }
     let mut line = LinkParameters::KEYS.to_vec();
-    if url.scheme == Scheme::Sim {
+    if url.scheme == LinkScheme::Sim {
         url.query.read(BRIDGE, &Words(&[("on", ())]))?;
         line.push(BRIDGE);
     }
     let adapter = Adapter::from_pairs(&simulated(url, &line, &[])?, devices)?;
-    let late = LinkParameters::read(url.query.pairs())?.margin.unwrap_or(margin(url.scheme));
+    let late = LinkParameters::read(url.query.pairs())?.margin.unwrap_or(reply_margin(url.scheme));
     let url = url.clone();
     let open = move || open_bytes(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
     Ok((late, Box::new(open)))

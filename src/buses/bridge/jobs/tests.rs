@@ -49,8 +49,8 @@ impl Stretch for RawFrames {
         StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
 
-    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<u64>> {
-        let Data::Biss(data) = data else { return None };
+    fn read(&self, data: StreamData, _: &Streaming) -> Option<Vec<u64>> {
+        let StreamData::Biss(data) = data else { return None };
         Some(data.values.iter().map(|(_, raw)| *raw).collect())
     }
 }
@@ -235,7 +235,12 @@ impl ByteDevice for Puppet {
 }
 
 fn analog(first_index: u32, lost: u16, samples: Vec<(i16, i16)>) -> Message {
-    Message::Data(Data::Analog(AnalogData { first_index, t0_us: 1_000 + u64::from(first_index) * 20, lost, samples }))
+    Message::Data(StreamData::Analog(AnalogData {
+        first_index,
+        t0_us: 1_000 + u64::from(first_index) * 20,
+        lost,
+        samples,
+    }))
 }
 
 const SINE_COSINE: SineCosine = SineCosine { sample_hz: 100_000 };
@@ -315,7 +320,7 @@ fn a_stream_with_an_unanswered_start_is_restarted() {
 
 fn adapter_error(error: BridgeError) -> AdapterError {
     match error {
-        BridgeError::Tap(TapError::Adapter(error)) => error,
+        BridgeError::Tap(AdapterStreamError::Adapter(error)) => error,
         other => panic!("{other:?}"),
     }
 }
@@ -346,7 +351,7 @@ fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
     assert!(quiet.clock.now().since_start() < Duration::from_secs(6), "three seconds before it began");
     let data = vec![analog(0, 0, vec![(1, 1); 9]), analog(0, 0, vec![(1, 1)])];
     assert_eq!(adapter_error(bench(SINE_COSINE, puppet(data)).error()), AdapterError::Restarted);
-    let biss = Message::Data(Data::Biss(BissData {
+    let biss = Message::Data(StreamData::Biss(BissData {
         first_index: 0,
         t0_us: 0,
         period_us: 50,
@@ -390,7 +395,10 @@ fn a_lost_or_missing_wire_is_reported() {
             Stream::spawn(Bridge::new(SINE_COSINE, None, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
         assert!(stream.end().wait(Duration::from_secs(20)));
         let error = stream.take_error();
-        assert!(matches!(error, Some(BridgeError::Tap(TapError::Link(error))) if error.is_lost()), "{portions}");
+        assert!(
+            matches!(error, Some(BridgeError::Tap(AdapterStreamError::Link(error))) if error.is_lost()),
+            "{portions}"
+        );
     }
     let lost = LinkError::new("/dev/nowhere", LinkErrorKind::NotFound);
     let open: Open = Box::new(move || Err(lost.into()));

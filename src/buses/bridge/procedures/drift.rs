@@ -2,11 +2,11 @@
 //! with the shortest transit reveals the offset of the clocks, and a later one the drift. The offset is tracked slowly,
 //! so that samples stay equidistant and time never runs backwards.
 
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Tracks the offset between a streaming adapter's clock and the local clock.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drift {
+pub(super) struct ClockDrift {
     /// Offset added to the adapter's time, in nanoseconds, or `None` before the first packet.
     ahead_ns: Option<i128>,
     /// Minimum packet offsets of the current section and of the previous one.
@@ -26,9 +26,9 @@ const SLOWNESS: i128 = 4000;
 /// Offset change in nanoseconds above which a clock was stopped or set, so the change is not drift.
 const JUMP_NS: i128 = 1_000_000_000;
 
-impl Drift {
+impl ClockDrift {
     /// Returns the local time for `own_ns` on the adapter's clock, limited to `latest`.
-    pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
+    pub(super) fn time(&mut self, own_ns: i128, latest: SampleTime) -> SampleTime {
         let most = i128::from(latest.nanoseconds()) - own_ns;
         let lead = self.minimum_lead(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
@@ -42,7 +42,7 @@ impl Drift {
             _ => lead,
         };
         self.ahead_ns = Some(ahead);
-        Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
+        SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
     /// Returns the minimum offset of the current and previous sections.
@@ -71,7 +71,7 @@ mod tests {
     /// Simulates hours of packets, each delayed by 0.3 ms to 6 ms, from an adapter whose clock deviates from the local
     /// clock by the given rate.
     fn drift(parts_per_million: i64, hours: i64) {
-        let (mut drift, mut before) = (Drift::default(), None);
+        let (mut drift, mut before) = (ClockDrift::default(), None);
         let mut random = 1_u64;
         for packet in 0..hours * 3_600 * 200 {
             // Sampled at this local time; the adapter's clock was started at another.
@@ -79,7 +79,7 @@ mod tests {
             let own = i128::from(sampled + sampled / 1_000_000 * parts_per_million) + 77_000_000_000;
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let under_way = 300_000 + (random >> 33) as i64 % 5_700_000;
-            let time = drift.time(own / 1000 * 1000, Time::from_nanoseconds(sampled + under_way)).nanoseconds();
+            let time = drift.time(own / 1000 * 1000, SampleTime::from_nanoseconds(sampled + under_way)).nanoseconds();
             assert!((-5 * MS..7 * MS).contains(&(time - sampled)), "{packet}: {} ns off", time - sampled);
             let last = before.replace(time).unwrap_or(time - PACKET);
             assert!((time - last - PACKET).abs() <= PACKET / 1000, "{packet}: {} ns on", time - last);
@@ -95,8 +95,8 @@ mod tests {
 
     #[test]
     fn a_stopped_clock_is_resynchronized() {
-        let mut drift = Drift::default();
-        let at = |ms: i64| Time::from_nanoseconds(ms * MS);
+        let mut drift = ClockDrift::default();
+        let at = |ms: i64| SampleTime::from_nanoseconds(ms * MS);
         assert_eq!(drift.time(0, at(500)), at(500));
         assert_eq!(drift.time(5_000_000, at(506)), at(505), "it was under way for longer");
         // The computer slept for an hour, and its clock with it.

@@ -3,10 +3,10 @@
 
 use std::time::Duration;
 
-use super::drift::Drift;
+use super::drift::ClockDrift;
 use super::{Adapter, AdapterError, Failure};
-use crate::analysis::Time;
-use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Reply, Request};
+use crate::analysis::SampleTime;
+use crate::buses::bridge::protocol::{Continuity, Message, Packet, PacketGap, Reply, Request, StreamData};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
@@ -27,16 +27,16 @@ pub struct Portion {
     /// Index of the first sample, counted from the start of the stream, including missing samples.
     pub first: u64,
     /// Local time of the first sample.
-    pub time: Time,
+    pub time: SampleTime,
     pub period_ns: i64,
     /// Number of samples missing before the first sample.
     pub lost: u64,
     /// Samples; at least one.
-    pub data: Data,
+    pub data: StreamData,
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Flow {
+pub(crate) struct SampleStream {
     streamed: Streamed,
     period_ns: i64,
     continuity: Continuity,
@@ -44,10 +44,10 @@ pub(crate) struct Flow {
     /// Number of samples missing before the next sample.
     missing: u64,
     /// Earliest possible time of any sample.
-    not_before: Time,
+    not_before: SampleTime,
     heard_at: Moment,
-    last: Option<Time>,
-    drift: Drift,
+    last: Option<SampleTime>,
+    drift: ClockDrift,
 }
 
 /// Silence after which a stream is considered to have ended.
@@ -71,17 +71,17 @@ impl Streamed {
         }
     }
 
-    const fn contains_samples(self, data: &Data) -> bool {
+    const fn contains_samples(self, data: &StreamData) -> bool {
         matches!(
             (self, data),
-            (Streamed::Ssi { .. }, Data::Ssi(_))
-                | (Streamed::Biss { .. }, Data::Biss(_))
-                | (Streamed::Analog { .. }, Data::Analog(_))
+            (Streamed::Ssi { .. }, StreamData::Ssi(_))
+                | (Streamed::Biss { .. }, StreamData::Biss(_))
+                | (Streamed::Analog { .. }, StreamData::Analog(_))
         )
     }
 }
 
-impl Flow {
+impl SampleStream {
     /// Starts a stream whose samples are later than `after`.
     ///
     /// # Errors
@@ -89,10 +89,10 @@ impl Flow {
     pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
-        after: Option<Time>,
+        after: Option<SampleTime>,
     ) -> Result<Self, Failure> {
         let request = streamed.start();
-        let begun_at = Time::from(adapter.line.now());
+        let begun_at = SampleTime::from(adapter.line.now());
         let answered = match adapter.ask_once(&request)? {
             Some(answered) => answered,
             // It may be running regardless: a second request would be refused as busy.
@@ -107,7 +107,7 @@ impl Flow {
             (Streamed::Analog { period_ns }, Reply::AnalogStream { on: true }) => period_ns,
             _ => return Err(AdapterError::other(request.operation(), &answered.reply).into()),
         };
-        Ok(Flow {
+        Ok(SampleStream {
             streamed,
             period_ns: period_ns.max(1),
             continuity: Continuity::at_start(),
@@ -116,7 +116,7 @@ impl Flow {
             not_before: after.map_or(begun_at, |after| begun_at.max(after.plus(1))),
             heard_at: adapter.line.now(),
             last: None,
-            drift: Drift::default(),
+            drift: ClockDrift::default(),
         })
     }
 
@@ -124,7 +124,7 @@ impl Flow {
         self.streamed
     }
 
-    pub(crate) const fn last(&self) -> Option<Time> {
+    pub(crate) const fn last(&self) -> Option<SampleTime> {
         self.last
     }
 
@@ -141,9 +141,9 @@ impl Flow {
         let mut bytes = Vec::new();
         loop {
             adapter.line.check_cancel()?;
-            let broken = adapter.adapter.receiver.dropped();
+            let broken = adapter.adapter.receiver.dropped_count();
             let packet = adapter.adapter.receiver.next_packet();
-            adapter.state.damaged += adapter.adapter.receiver.dropped() - broken;
+            adapter.state.damaged += adapter.adapter.receiver.dropped_count() - broken;
             let now = adapter.line.now();
             if let Some(packet) = packet {
                 if let Some(portion) = self.take(&packet, now)? {
@@ -197,9 +197,9 @@ impl Flow {
         };
         self.heard_at = now;
         match self.continuity.follow(&data) {
-            Gap::None => {}
-            Gap::Missing(count) => self.missing += u64::from(count),
-            Gap::Backwards => return Err(AdapterError::Restarted),
+            PacketGap::None => {}
+            PacketGap::Missing(count) => self.missing += u64::from(count),
+            PacketGap::Backwards => return Err(AdapterError::Restarted),
         }
         let (_, count, _) = data.extent();
         if count == 0 {
@@ -215,16 +215,16 @@ impl Flow {
 
     /// Returns the time of the first sample. The last sample cannot be later than its arrival, and the first sample
     /// cannot be earlier than the start of the stream.
-    fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
+    fn time(&mut self, data: &StreamData, count: usize, now: Moment) -> SampleTime {
         let t0_us = match data {
-            Data::Ssi(data) => data.t0_us,
-            Data::Biss(data) => data.t0_us,
-            Data::Analog(data) => data.t0_us,
+            StreamData::Ssi(data) => data.t0_us,
+            StreamData::Biss(data) => data.t0_us,
+            StreamData::Analog(data) => data.t0_us,
         };
         // Microseconds since the adapter started may exceed the range of nanoseconds.
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
-        let latest = Time::from(now).plus(lasts.saturating_neg()).max(self.not_before);
+        let latest = SampleTime::from(now).plus(lasts.saturating_neg()).max(self.not_before);
         let estimate = self.drift.time(own, latest);
         // An adapter may count its samples correctly and its time badly.
         let time = self.last.map_or(estimate, |last| estimate.max(last.plus(1)));

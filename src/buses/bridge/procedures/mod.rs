@@ -21,9 +21,9 @@ use crate::parameter::Whole;
 use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
-pub use power::SupplyAfter;
+pub use power::SupplyAfterSession;
 pub(crate) use power::warn_of_supply;
-pub use tap::{StreamRequest, Streaming, Tap, TapError};
+pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
 
 /// BiSS time-out in microseconds, longer than the 18 µs that an encoder needs to notice the end of a frame (manual,
 /// table 3).
@@ -125,7 +125,7 @@ impl AdapterState {
     }
 
     /// Sets how the encoder's supply is left at the end of the session.
-    pub fn leave_supply(&mut self, after: SupplyAfter) {
+    pub fn leave_supply(&mut self, after: SupplyAfterSession) {
         self.power.after = after;
     }
 
@@ -147,7 +147,7 @@ impl AdapterState {
 
     /// Returns whether the supply must be switched off at the end of the session.
     pub(crate) fn switches_supply_off(&self) -> bool {
-        self.power.switches_off()
+        self.power.should_switch_off()
     }
 
     /// Returns whether anything has been received from the adapter, even if damaged.
@@ -262,7 +262,7 @@ impl Adapter<'_, '_> {
         let deadline = sent_at + REPEAT_AFTER + self.state.margin;
         let mut portion = Vec::new();
         loop {
-            let broken = self.adapter.receiver.dropped();
+            let broken = self.adapter.receiver.dropped_count();
             while let Some(packet) = self.adapter.receiver.next_packet() {
                 if let Some(reply) = self.judge(request, seq, &packet)? {
                     self.state.answered();
@@ -270,10 +270,10 @@ impl Adapter<'_, '_> {
                     return Ok(Some(TimedReply { reply, sent_at, received_at: self.line.now() }));
                 }
             }
-            let broken = self.adapter.receiver.dropped() - broken;
+            let broken = self.adapter.receiver.dropped_count() - broken;
             self.state.damaged += broken;
             self.state.quality.damaged += broken;
-            if let Some(bytes) = self.adapter.receiver.take_broken() {
+            if let Some(bytes) = self.adapter.receiver.take_damaged() {
                 let now = self.line.now();
                 self.line.show(now, MaskedBytes::clear(&bytes));
             }

@@ -3,7 +3,7 @@
 use crate::parameter::Words;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SupplyAfter {
+pub enum SupplyAfterSession {
     /// Restore the previous state: a supply switched on by this session is switched off.
     #[default]
     AsFound,
@@ -12,16 +12,19 @@ pub enum SupplyAfter {
     Off,
 }
 
-impl SupplyAfter {
+impl SupplyAfterSession {
     /// Link parameter with the value that leaves the supply on after the session.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
-    pub const WORDS: Words<SupplyAfter> =
-        Words(&[("as-found", SupplyAfter::AsFound), ("on", SupplyAfter::On), ("off", SupplyAfter::Off)]);
+    pub const WORDS: Words<SupplyAfterSession> = Words(&[
+        ("as-found", SupplyAfterSession::AsFound),
+        ("on", SupplyAfterSession::On),
+        ("off", SupplyAfterSession::Off),
+    ]);
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
-    pub(super) after: SupplyAfter,
+    pub(super) after: SupplyAfterSession,
     /// Whether the encoder was supplied before the session, if known.
     pub(super) found: Option<bool>,
     pub(super) given: bool,
@@ -29,12 +32,12 @@ pub(super) struct Power {
 
 impl Power {
     /// Returns whether the supply must be switched off at the end of the session.
-    pub(super) fn switches_off(self) -> bool {
+    pub(super) fn should_switch_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {
-            SupplyAfter::AsFound => self.given && !found,
-            SupplyAfter::On => false,
-            SupplyAfter::Off => self.given || found,
+            SupplyAfterSession::AsFound => self.given && !found,
+            SupplyAfterSession::On => false,
+            SupplyAfterSession::Off => self.given || found,
         }
     }
 }
@@ -54,7 +57,7 @@ mod tests {
     /// The supply is switched off unless it was on before or another choice was made (issue 22.16).
     #[test]
     fn the_supply_ends_as_found_or_as_chosen() {
-        use SupplyAfter::{AsFound, Off, On};
+        use SupplyAfterSession::{AsFound, Off, On};
         let cases = [
             (AsFound, None, true, true),
             (AsFound, Some(false), true, true),
@@ -67,10 +70,10 @@ mod tests {
             (Off, None, false, false),
         ];
         for (after, found, given, off) in cases {
-            assert_eq!(Power { after, found, given }.switches_off(), off, "{after:?} {found:?} {given}");
+            assert_eq!(Power { after, found, given }.should_switch_off(), off, "{after:?} {found:?} {given}");
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
-            assert_eq!(SupplyAfter::WORDS.read(word), after);
+            assert_eq!(SupplyAfterSession::WORDS.read(word), after);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::flow::{Flow, Portion, Streamed};
+use super::flow::{Portion, SampleStream, Streamed};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
 use crate::link::line::{LineError, LineState, SerialLine};
@@ -40,7 +40,7 @@ pub struct Streaming {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TapError {
+pub enum AdapterStreamError {
     #[error("cancelled")]
     Cancelled,
     #[error(transparent)]
@@ -54,17 +54,17 @@ pub enum TapError {
 pub struct Tap {
     line: LineState,
     adapter: AdapterState,
-    flow: Option<Flow>,
+    flow: Option<SampleStream>,
 }
 
-impl From<Failure> for TapError {
+impl From<Failure> for AdapterStreamError {
     fn from(failure: Failure) -> Self {
         match failure {
-            Failure::Adapter(error) => TapError::Adapter(error),
-            Failure::Line(LineError::Cancelled) => TapError::Cancelled,
-            Failure::Line(LineError::Link(error)) => TapError::Link(error),
+            Failure::Adapter(error) => AdapterStreamError::Adapter(error),
+            Failure::Line(LineError::Cancelled) => AdapterStreamError::Cancelled,
+            Failure::Line(LineError::Link(error)) => AdapterStreamError::Link(error),
             // Packets need no silence between them.
-            Failure::Line(LineError::NeverSilent) => TapError::Adapter(AdapterError::Silent),
+            Failure::Line(LineError::NeverSilent) => AdapterStreamError::Adapter(AdapterError::Silent),
         }
     }
 }
@@ -86,7 +86,7 @@ impl Tap {
         ctx: Ctx<'_>,
         wanted: StreamRequest,
         supply: Option<SupplyVoltage>,
-    ) -> Result<Streaming, TapError> {
+    ) -> Result<Streaming, AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         adapter.hello()?;
@@ -114,9 +114,14 @@ impl Tap {
             (StreamRequest::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
                 (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
             }
-            _ => return Err(TapError::from(Failure::from(AdapterError::other(request.operation(), &answered.reply)))),
+            _ => {
+                return Err(AdapterStreamError::from(Failure::from(AdapterError::other(
+                    request.operation(),
+                    &answered.reply,
+                ))));
+            }
         };
-        let flow = Flow::begin(&mut adapter, streamed, None)?;
+        let flow = SampleStream::begin(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();
         self.flow = Some(flow);
         Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
@@ -126,7 +131,7 @@ impl Tap {
     ///
     /// # Errors
     /// Returns the reason why the stream has ended.
-    pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
+    pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, AdapterStreamError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
@@ -137,7 +142,7 @@ impl Tap {
     ///
     /// # Errors
     /// Returns errors of the adapter or the connection.
-    pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
+    pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         line.shield(true);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };

@@ -1,6 +1,6 @@
 //! Continuity check of stream packets. A gap is never bridged silently (reference 3).
 
-use super::data::Data;
+use super::data::StreamData;
 
 /// A tracker for the expected position in a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub struct Continuity {
 
 /// The gap in front of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gap {
+pub enum PacketGap {
     /// The packet follows without a gap.
     None,
     /// The given number of samples is missing.
@@ -26,15 +26,15 @@ impl Continuity {
     }
 
     /// Returns the gap before the samples in `data` and advances the expected position past them.
-    pub fn follow(&mut self, data: &Data) -> Gap {
+    pub fn follow(&mut self, data: &StreamData) -> PacketGap {
         let (first, count, lost) = data.extent();
         let ahead = first.wrapping_sub(self.next);
         // A packet has at most 255 samples.
         self.next = first.wrapping_add(u32::try_from(count).unwrap_or(0));
         match ahead.max(lost.into()) {
-            0 => Gap::None,
-            _ if ahead > u32::MAX / 2 => Gap::Backwards,
-            missing => Gap::Missing(missing),
+            0 => PacketGap::None,
+            _ if ahead > u32::MAX / 2 => PacketGap::Backwards,
+            missing => PacketGap::Missing(missing),
         }
     }
 }
@@ -44,29 +44,29 @@ mod tests {
     use super::super::data::AnalogData;
     use super::*;
 
-    fn data(first_index: u32, count: usize, lost: u16) -> Data {
-        Data::Analog(AnalogData { first_index, t0_us: 0, lost, samples: vec![(0, 0); count] })
+    fn data(first_index: u32, count: usize, lost: u16) -> StreamData {
+        StreamData::Analog(AnalogData { first_index, t0_us: 0, lost, samples: vec![(0, 0); count] })
     }
 
     #[test]
     fn gaps_are_found_by_index_and_by_lost_count() {
         let mut stream = Continuity::at_start();
         let cases = [
-            (data(0, 10, 0), Gap::None),
-            (data(10, 10, 0), Gap::None),
-            (data(25, 5, 0), Gap::Missing(5)),
-            (data(30, 5, 3), Gap::Missing(3)),
-            (data(38, 2, 3), Gap::Missing(3)),
-            (data(50, 2, 3), Gap::Missing(10)),
-            (data(0, 2, 0), Gap::Backwards),
-            (data(2, 0, 0), Gap::None),
-            (data(2, 1, 0), Gap::None),
-            (data(u32::MAX - 1, 4, 0), Gap::Backwards),
-            (data(2, 1, 0), Gap::None),
+            (data(0, 10, 0), PacketGap::None),
+            (data(10, 10, 0), PacketGap::None),
+            (data(25, 5, 0), PacketGap::Missing(5)),
+            (data(30, 5, 3), PacketGap::Missing(3)),
+            (data(38, 2, 3), PacketGap::Missing(3)),
+            (data(50, 2, 3), PacketGap::Missing(10)),
+            (data(0, 2, 0), PacketGap::Backwards),
+            (data(2, 0, 0), PacketGap::None),
+            (data(2, 1, 0), PacketGap::None),
+            (data(u32::MAX - 1, 4, 0), PacketGap::Backwards),
+            (data(2, 1, 0), PacketGap::None),
         ];
         for (data, gap) in cases {
             assert_eq!(stream.follow(&data), gap, "{:?}", data.extent());
         }
-        assert_eq!(Continuity::at_start().follow(&data(7, 1, 0)), Gap::Missing(7), "the first packet was lost");
+        assert_eq!(Continuity::at_start().follow(&data(7, 1, 0)), PacketGap::Missing(7), "the first packet was lost");
     }
 }

@@ -6,7 +6,7 @@ use super::reply::BissStatus;
 
 /// Samples of a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Data {
+pub enum StreamData {
     /// SSI words.
     Ssi(SsiData),
     /// BiSS frames.
@@ -62,7 +62,7 @@ pub struct AnalogData {
     pub samples: Vec<(i16, i16)>,
 }
 
-impl Data {
+impl StreamData {
     const SSI: u8 = 0x93;
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
@@ -70,9 +70,9 @@ impl Data {
     /// Returns the number of the first sample, the sample count, and the number of samples lost before the first.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
-            Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),
-            Data::Biss(data) => (data.first_index, data.values.len(), data.lost),
-            Data::Analog(data) => (data.first_index, data.samples.len(), data.lost),
+            StreamData::Ssi(data) => (data.first_index, data.values.len(), data.lost),
+            StreamData::Biss(data) => (data.first_index, data.values.len(), data.lost),
+            StreamData::Analog(data) => (data.first_index, data.samples.len(), data.lost),
         }
     }
 
@@ -85,7 +85,7 @@ impl Data {
                     (fields.u32()?, fields.u64()?, fields.u32()?, fields.u16()?);
                 let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
                 let values = (0..count).map(|_| fields.wide(width)).collect::<Result<_, _>>()?;
-                Data::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
+                StreamData::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
             }
             Self::BISS => {
                 let (first_index, t0_us, period_us, lost) =
@@ -93,13 +93,13 @@ impl Data {
                 let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
                 let value = |fields: &mut Fields<'_>| Ok((BissStatus::new(fields.u8()?), fields.wide(width)?));
                 let values = (0..count).map(|_| value(&mut fields)).collect::<Result<_, _>>()?;
-                Data::Biss(BissData { first_index, t0_us, period_us, lost, width, values })
+                StreamData::Biss(BissData { first_index, t0_us, period_us, lost, width, values })
             }
             Self::ANALOG => {
                 let (first_index, t0_us, lost, count) = (fields.u32()?, fields.u64()?, fields.u16()?, fields.u8()?);
                 let sample = |fields: &mut Fields<'_>| Ok((fields.i16()?, fields.i16()?));
                 let samples = (0..count).map(|_| sample(&mut fields)).collect::<Result<_, _>>()?;
-                Data::Analog(AnalogData { first_index, t0_us, lost, samples })
+                StreamData::Analog(AnalogData { first_index, t0_us, lost, samples })
             }
             _ => return Ok(None),
         };
@@ -109,7 +109,7 @@ impl Data {
     pub(super) fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         let op = match self {
-            Data::Ssi(data) => {
+            StreamData::Ssi(data) => {
                 head(&mut body, data.first_index, data.t0_us);
                 body.extend(data.period_us.to_le_bytes());
                 body.extend(data.lost.to_le_bytes());
@@ -117,7 +117,7 @@ impl Data {
                 data.values.iter().for_each(|value| push(&mut body, *value, data.width));
                 Self::SSI
             }
-            Data::Biss(data) => {
+            StreamData::Biss(data) => {
                 head(&mut body, data.first_index, data.t0_us);
                 body.extend(data.period_us.to_le_bytes());
                 body.extend(data.lost.to_le_bytes());
@@ -128,7 +128,7 @@ impl Data {
                 }
                 Self::BISS
             }
-            Data::Analog(data) => {
+            StreamData::Analog(data) => {
                 head(&mut body, data.first_index, data.t0_us);
                 body.extend(data.lost.to_le_bytes());
                 body.push(count(data.samples.len()));

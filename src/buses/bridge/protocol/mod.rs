@@ -22,8 +22,8 @@ mod vectors;
 use std::time::Duration;
 
 pub use cobs::{CobsError, decode as cobs_decode, encode as cobs_encode};
-pub use continuity::{Continuity, Gap};
-pub use data::{AnalogData, BissData, Data, SsiData};
+pub use continuity::{Continuity, PacketGap};
+pub use data::{AnalogData, BissData, SsiData, StreamData};
 pub use fields::BodyError;
 pub use packet::{MAX_BODY, Packet, PacketError, crc16};
 pub use receiver::Receiver;

@@ -54,12 +54,12 @@ impl Receiver {
     }
 
     /// Returns the bytes of the last damaged packet since the previous call, if any.
-    pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
+    pub const fn take_damaged(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }
 
     /// Returns the number of damaged packets so far.
-    pub const fn dropped(&self) -> u64 {
+    pub const fn dropped_count(&self) -> u64 {
         self.dropped
     }
 }
@@ -87,7 +87,7 @@ mod tests {
             let mut receiver = Receiver::default();
             let found: Vec<Packet> = bytes.chunks(size).flat_map(|part| packets(&mut receiver, part)).collect();
             assert_eq!(found, sent, "portions of {size}");
-            assert_eq!(receiver.dropped(), 0);
+            assert_eq!(receiver.dropped_count(), 0);
         }
     }
 
@@ -98,11 +98,11 @@ mod tests {
         let mut damaged = good.clone();
         damaged[5] ^= 2;
         assert_eq!(packets(&mut receiver, &[damaged, good.clone()].concat()), [packet(1, 20)]);
-        assert_eq!(receiver.dropped(), 1);
+        assert_eq!(receiver.dropped_count(), 1);
         // The end of one packet is lost, and the beginning of the next.
         let cut = [&good[..10], &good[4..], &good].concat();
         assert_eq!(packets(&mut receiver, &cut), [packet(1, 20)]);
-        assert_eq!(receiver.dropped(), 2);
+        assert_eq!(receiver.dropped_count(), 2);
     }
 
     #[test]
@@ -114,7 +114,7 @@ mod tests {
         }
         let good = packet(1, 20).emit();
         assert_eq!(packets(&mut receiver, &good), [], "the first 00 ends the noise");
-        assert_eq!(receiver.dropped(), 1);
+        assert_eq!(receiver.dropped_count(), 1);
         assert_eq!(packets(&mut receiver, &good), [packet(1, 20)]);
     }
 

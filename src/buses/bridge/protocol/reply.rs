@@ -1,7 +1,7 @@
 //! Messages from an adapter: replies and unsolicited packets (reference 2 and 3).
 
 use super::VERSION;
-use super::data::Data;
+use super::data::StreamData;
 use super::fields::{BodyError, Fields, push_text};
 use super::packet::Packet;
 use super::request::Operation;
@@ -21,7 +21,7 @@ pub enum Message {
         text: String,
     },
     /// Stream data.
-    Data(Data),
+    Data(StreamData),
 }
 
 /// A reply to a request.
@@ -241,7 +241,7 @@ impl Message {
             let error = Message::Error { op: fields.u8()?, code: ErrorCode(fields.u8()?), text: fields.text()? };
             return fields.end(error);
         }
-        if let Some(data) = Data::parse(packet)? {
+        if let Some(data) = StreamData::parse(packet)? {
             return Ok(Message::Data(data));
         }
         Reply::parse(packet).map(Message::Reply)

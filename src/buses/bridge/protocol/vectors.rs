@@ -98,7 +98,7 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
         ),
         (
             0,
-            Message::Data(Data::Ssi(SsiData {
+            Message::Data(StreamData::Ssi(SsiData {
                 first_index: 100,
                 t0_us: 5_000_000,
                 period_us: 50,
@@ -110,7 +110,7 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
         ),
         (
             1,
-            Message::Data(Data::Biss(BissData {
+            Message::Data(StreamData::Biss(BissData {
                 first_index: 0xFFFF_FFFE,
                 t0_us: 5_000_000,
                 period_us: 50,
@@ -122,7 +122,7 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
         ),
         (
             2,
-            Message::Data(Data::Analog(AnalogData {
+            Message::Data(StreamData::Analog(AnalogData {
                 first_index: 7,
                 t0_us: 5_000_000,
                 lost: 0,
@@ -240,9 +240,9 @@ proptest! {
             values.into_iter().take(50).map(|(status, value)| (BissStatus::new(status), fit(value))).collect();
         let words = values.iter().map(|(_, value)| *value).collect();
         for data in [
-            Data::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values: words }),
-            Data::Biss(BissData { first_index, t0_us, period_us, lost, width, values }),
-            Data::Analog(AnalogData { first_index, t0_us, lost, samples }),
+            StreamData::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values: words }),
+            StreamData::Biss(BissData { first_index, t0_us, period_us, lost, width, values }),
+            StreamData::Analog(AnalogData { first_index, t0_us, lost, samples }),
         ] {
             let message = Message::Data(data);
             prop_assert_eq!(Message::parse(&message.emit(1)), Ok(message));
@@ -250,7 +250,7 @@ proptest! {
     }
 
     #[test]
-    fn no_body_panics(op: u8, body: Vec<u8>) {
+    fn arbitrary_body_round_trips(op: u8, body: Vec<u8>) {
         let packet = Packet { seq: 0, op, body };
         if let Ok(request) = Request::parse(&packet) {
             prop_assert_eq!(request.emit(0), packet.clone());

@@ -17,15 +17,15 @@ use super::uart::Uart;
 use crate::buses::bridge::protocol::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
-use crate::sim::line::Queue;
+use crate::sim::line::TransitQueue;
 use crate::sim::sine_cosine::{Checked, Quantity, Settings};
-use crate::sim::{ByteDevice, Faults, Motor};
+use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::{CharacterFormat, Moment};
 
 #[derive(Clone)]
 pub struct Adapter {
     bus: Bus,
-    faults: Faults,
+    faults: SimulatedFaults,
     rng: Rng,
     switched_supply: bool,
     version: u8,
@@ -42,7 +42,7 @@ pub struct Adapter {
     /// Time at which transmission of the last reply ends.
     replied: Moment,
     /// Bytes for the host, ordered by time of arrival.
-    to_host: Queue<Vec<u8>>,
+    to_host: TransitQueue<Vec<u8>>,
     inbox: Vec<u8>,
 }
 
@@ -85,7 +85,7 @@ impl Adapter {
             pushed: 0,
             now: Moment::START,
             replied: Moment::START,
-            to_host: Queue::default(),
+            to_host: TransitQueue::default(),
             inbox: Vec::new(),
         };
         for device in attached {
@@ -142,7 +142,7 @@ impl Adapter {
     }
 
     /// Replaces the configured faults and keeps the counts of requests and stores.
-    pub fn set_faults(&mut self, faults: &Faults) {
+    pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
             device.set_faults(faults);
@@ -205,7 +205,7 @@ impl Adapter {
         if let (Message::Reply(Reply::Hello(_)), Some(version)) = (&message, reply.body.first_mut()) {
             *version = self.version;
         }
-        self.replied = self.replied.max(self.now) + Self::LATENCY + time + self.faults.delay();
+        self.replied = self.replied.max(self.now) + Self::LATENCY + time + self.faults.reply_delay();
         self.send(self.replied, &reply);
     }
 
@@ -213,7 +213,7 @@ impl Adapter {
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
         match request.operation() {
-            Operation::SsiRead => self.ssi.map_or(Duration::ZERO, SsiSetting::burst),
+            Operation::SsiRead => self.ssi.map_or(Duration::ZERO, SsiSetting::burst_duration),
             Operation::BissRead => frame,
             Operation::BissRegisterRead | Operation::BissRegisterWrite => frame * Self::CONTROL_CYCLES,
             _ => Duration::ZERO,
@@ -391,7 +391,7 @@ fn microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }
 
-fn add_noise(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
+fn add_noise(faults: &SimulatedFaults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
     let passages = bytes.iter().map(|byte| faults.passage(rng, *byte));
     passages
         .flat_map(|passage| passage.inserted.into_iter().chain(passage.carried.map(|carried| carried.byte)))

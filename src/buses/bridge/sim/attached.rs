@@ -3,14 +3,14 @@
 
 use std::any::Any;
 
-use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
+use crate::sim::{ByteDevice, ConfigError, Motor, SimulatedFaults};
 use crate::units::Moment;
 
 /// A BiSS device with a position and registers. Its motor turns the shaft shared by all encoders of an adapter, and the
 /// device determines their supply.
 pub trait BissDevice: Any + Send {
     /// Creates another device with the same settings.
-    fn another(&self) -> Box<dyn BissDevice>;
+    fn duplicate(&self) -> Box<dyn BissDevice>;
 
     /// Returns the bits that follow the control bit of the frame latched at `at`, and their number, or `None` while the
     /// device does not acknowledge.
@@ -23,7 +23,7 @@ pub trait BissDevice: Any + Send {
 
     fn set_rpm(&mut self, now: Moment, rpm: f64);
 
-    fn set_faults(&mut self, faults: &Faults);
+    fn set_faults(&mut self, faults: &SimulatedFaults);
 
     fn disconnect(&mut self);
 
@@ -49,7 +49,7 @@ pub trait BissDevice: Any + Send {
 /// An encoder that is read by clocking out its position word.
 pub trait SsiDevice: Send {
     /// Creates another device with the same settings.
-    fn another(&self) -> Box<dyn SsiDevice>;
+    fn duplicate(&self) -> Box<dyn SsiDevice>;
 
     /// Returns the word latched at `at` and its number of bits, for a shaft position in steps and the number of steps
     /// per revolution.
@@ -59,26 +59,26 @@ pub trait SsiDevice: Send {
 /// The device at the end of the serial line.
 pub trait SerialDevice: ByteDevice {
     /// Creates another device with the same settings.
-    fn another(&self) -> Box<dyn SerialDevice>;
+    fn duplicate(&self) -> Box<dyn SerialDevice>;
 
     fn turn(&mut self, now: Moment, rpm: f64);
 }
 
 impl Clone for Box<dyn BissDevice> {
     fn clone(&self) -> Self {
-        (**self).another()
+        (**self).duplicate()
     }
 }
 
 impl Clone for Box<dyn SsiDevice> {
     fn clone(&self) -> Self {
-        (**self).another()
+        (**self).duplicate()
     }
 }
 
 impl Clone for Box<dyn SerialDevice> {
     fn clone(&self) -> Self {
-        (**self).another()
+        (**self).duplicate()
     }
 }
 

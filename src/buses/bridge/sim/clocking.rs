@@ -34,14 +34,14 @@ pub(super) struct SsiSetting {
 }
 
 impl SsiSetting {
-    pub(super) fn burst(self) -> Duration {
+    pub(super) fn burst_duration(self) -> Duration {
         let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
     /// Returns the minimum period of a word and its pause, in whole microseconds.
     pub(super) fn least_period_us(self) -> u32 {
-        let microseconds = self.burst().as_nanos().div_ceil(1000);
+        let microseconds = self.burst_duration().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }
 }

@@ -4,7 +4,7 @@ use crate::buses::bridge::protocol::VERSION;
 use crate::expected::Quantity;
 use crate::parameter::{Decimal, Whole, Words};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
+use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults};
 
 parameters! {
     /// Settings of a virtual adapter. By default, there are no faults and the encoder is supplied externally.
@@ -23,7 +23,7 @@ parameters! {
     /// Settings that attached devices may share: the noise seed and the faults of line and device.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 

@@ -11,7 +11,7 @@ use crate::sim::{ConfigError, VirtualDevice};
 pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
-    keys.extend(Shaft::KEYS.iter().filter(|_| turns_itself(devices)));
+    keys.extend(Shaft::KEYS.iter().filter(|_| owns_shaft(devices)));
     keys.extend(others.iter().flat_map(|device| device.keys()));
     keys.sort_unstable();
     keys.extend(Shared::KEYS);
@@ -26,7 +26,7 @@ pub fn entries() -> Vec<Entry> {
 }
 
 /// Returns whether the adapter owns the shaft, because no attached device has a speed setting.
-fn turns_itself(devices: &[&dyn AttachableKind]) -> bool {
+fn owns_shaft(devices: &[&dyn AttachableKind]) -> bool {
     devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.keys().contains(key)))
 }
 
@@ -42,7 +42,7 @@ impl Adapter {
             return Err(ConfigError::unknown(VirtualDevice::Adapter, key, &known));
         }
         let (config, shared) = (Config::read(pairs)?, Shared::read(pairs)?);
-        let shaft = if turns_itself(devices) { Shaft::read(pairs)? } else { Shaft::default() };
+        let shaft = if owns_shaft(devices) { Shaft::read(pairs)? } else { Shaft::default() };
         let mut attached: Vec<AttachedDevice> = Vec::new();
         for device in devices {
             let own = pairs.iter().filter(|(key, _)| device.keys().contains(&key.as_str())).cloned();

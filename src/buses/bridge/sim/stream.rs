@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use crate::analysis::Time;
-use crate::buses::bridge::protocol::{AnalogData, BissData, BissStatus, Data, MAX_BODY, SsiData};
+use crate::analysis::SampleTime;
+use crate::buses::bridge::protocol::{AnalogData, BissData, BissStatus, MAX_BODY, SsiData, StreamData};
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 
@@ -95,7 +95,11 @@ impl ClockedStream {
     }
 
     /// Takes the samples due up to `to`, before later changes apply, and returns the complete packets with their times.
-    pub(super) fn run(&mut self, to: Moment, mut take: impl FnMut(Moment) -> (BissStatus, u64)) -> Vec<(Moment, Data)> {
+    pub(super) fn run(
+        &mut self,
+        to: Moment,
+        mut take: impl FnMut(Moment) -> (BissStatus, u64),
+    ) -> Vec<(Moment, StreamData)> {
         let mut packets = Vec::new();
         let before = self.pace.first;
         self.pace.skip(to);
@@ -114,16 +118,16 @@ impl ClockedStream {
         }
     }
 
-    fn packet(&mut self) -> Data {
+    fn packet(&mut self) -> StreamData {
         let values = std::mem::take(&mut self.taken);
         let (first_index, t0_us, lost) = self.pace.next();
         let (width, period_us) = (self.width, u32::try_from(self.pace.period.as_micros()).unwrap_or(u32::MAX));
         match self.kind {
             Kind::Ssi => {
                 let values = values.into_iter().map(|(_, value)| value).collect();
-                Data::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
+                StreamData::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
             }
-            Kind::Biss => Data::Biss(BissData { first_index, t0_us, period_us, lost, width, values }),
+            Kind::Biss => StreamData::Biss(BissData { first_index, t0_us, period_us, lost, width, values }),
         }
     }
 }
@@ -141,7 +145,7 @@ impl Analog {
 
     pub(super) fn new(start: Moment, settings: Checked) -> Self {
         let period = Duration::from_nanos(settings.settings().period_ns().unsigned_abs());
-        Analog { pace: Pace::new(start, period, Self::HEAD, 4), source: Source::new(settings, Time::ORIGIN) }
+        Analog { pace: Pace::new(start, period, Self::HEAD, 4), source: Source::new(settings, SampleTime::ORIGIN) }
     }
 
     pub(super) fn due(&self) -> Moment {
@@ -155,7 +159,7 @@ impl Analog {
     }
 
     /// Returns the packets completed up to `to`, each with its time. An encoder without supply has no signals.
-    pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, Data)> {
+    pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, StreamData)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
         while self.pace.due() <= to {
@@ -171,7 +175,7 @@ impl Analog {
                     .collect()
             });
             let (first_index, t0_us, lost) = self.pace.next();
-            packets.push((at, Data::Analog(AnalogData { first_index, t0_us, lost, samples })));
+            packets.push((at, StreamData::Analog(AnalogData { first_index, t0_us, lost, samples })));
         }
         packets
     }

@@ -77,7 +77,7 @@ mod tests {
     use crate::app::explain::{in_both_languages, setting};
     use crate::buses::bridge::sim::Adapter;
     use crate::kinds::at_adapter;
-    use crate::link::Query;
+    use crate::link::UrlQuery;
 
     #[test]
     fn each_error_code_has_a_distinct_text() {
@@ -138,7 +138,7 @@ mod tests {
                        cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
                        ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";
         for text in queries.split_whitespace() {
-            let query: Query = text.parse().unwrap();
+            let query: UrlQuery = text.parse().unwrap();
             let error = Adapter::from_pairs(query.pairs(), at_adapter()).err().unwrap();
             in_both_languages(&setting(&error), &error);
         }

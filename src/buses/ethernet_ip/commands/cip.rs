@@ -3,8 +3,8 @@
 use super::Device;
 use crate::bits::hex;
 use crate::buses::ethernet_ip::protocol::{
-    AddressSource, ConfigurationControl, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused,
-    GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Path, Reply, Request, Segment, Service,
+    AddressSource, ConfigurationControl, EPath, ForwardClose, ForwardClosed, ForwardErrorReply, ForwardOpen,
+    ForwardOpened, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Reply, Request, Segment, Service,
     class_name, extended_row,
 };
 use crate::cli::output::count;
@@ -34,7 +34,7 @@ fn request_lines(request: &Request, device: Device) -> Vec<String> {
     let mut lines = vec![format!("CIP request: {} of {}", service(request.service, class), path(&request.path))];
     match (request.service, class) {
         (Service::FORWARD_OPEN, Some(Request::CONNECTION_MANAGER)) => match ForwardOpen::parse(&request.data) {
-            Ok(asked) => lines.extend(open_lines(&asked)),
+            Ok(asked) => lines.extend(forward_open_lines(&asked)),
             Err(why) => lines.push(format!("{why}: {}", hex(&request.data))),
         },
         (Service::FORWARD_CLOSE, Some(Request::CONNECTION_MANAGER)) => match ForwardClose::parse(&request.data) {
@@ -51,7 +51,7 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
     let place = request.class().zip(request.path.number(LogicalKind::Attribute));
     let explained = match (place, device) {
         (Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)), _) => {
-            let source = ConfigurationControl::parse(data).map(|control| source_words(control.source()));
+            let source = ConfigurationControl::parse(data).map(|control| address_source_text(control.source()));
             Some(("where the address comes from".to_owned(), source.map_err(|why| why.to_string())))
         }
         (Some((class, attribute)), Device::Known(words)) => words(class, attribute, data),
@@ -82,15 +82,15 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
             format!(
                 "to the target as 0x{:08X} every {}, to the originator as 0x{:08X} every {}; {}",
                 opened.to_target_id,
-                interval(opened.to_target_interval_us),
+                interval_text(opened.to_target_interval_us),
                 opened.to_originator_id,
-                interval(opened.to_originator_interval_us),
+                interval_text(opened.to_originator_interval_us),
                 owner_name(opened.owner)
             )
         }),
         (Service::FORWARD_CLOSE, true) => ForwardClosed::parse(&reply.data).ok().map(|closed| owner_name(closed.owner)),
         (Service::FORWARD_OPEN | Service::FORWARD_CLOSE, false) => {
-            ForwardRefused::parse(&reply.data).ok().map(|refused| {
+            ForwardErrorReply::parse(&reply.data).ok().map(|refused| {
                 format!(
                     "{}; {} of the path left",
                     owner_name(refused.owner),
@@ -104,7 +104,7 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
     lines
 }
 
-fn open_lines(asked: &ForwardOpen) -> Vec<String> {
+fn forward_open_lines(asked: &ForwardOpen) -> Vec<String> {
     let way = |to: &str, id: u32, interval_us: u32, parameters: NetworkParameters| {
         let kind = match parameters.kind() {
             NetworkType::Null => "nothing",
@@ -115,7 +115,7 @@ fn open_lines(asked: &ForwardOpen) -> Vec<String> {
         let size = count(parameters.size().into(), "byte");
         format!(
             "to the {to} as 0x{id:08X} every {}: {size}, {kind} (0x{:04X})",
-            interval(interval_us),
+            interval_text(interval_us),
             parameters.word()
         )
     };
@@ -125,7 +125,7 @@ fn open_lines(asked: &ForwardOpen) -> Vec<String> {
         format!(
             "{}; ends after {} without data ({} ms to the target); transport 0x{:02X}, class {}; request within {} ms; {}",
             owner_name(asked.owner),
-            count(usize::try_from(asked.connection_timeout.intervals()).unwrap_or(usize::MAX), "interval"),
+            count(usize::try_from(asked.connection_timeout.interval_multiplier()).unwrap_or(usize::MAX), "interval"),
             asked.to_target_timeout().as_millis(),
             asked.transport.byte(),
             asked.transport.class(),
@@ -135,7 +135,7 @@ fn open_lines(asked: &ForwardOpen) -> Vec<String> {
     ]
 }
 
-fn source_words(source: AddressSource) -> String {
+fn address_source_text(source: AddressSource) -> String {
     match source {
         AddressSource::Stored => "stored in the device".to_owned(),
         AddressSource::Bootp => "BOOTP".to_owned(),
@@ -148,7 +148,7 @@ fn service(service: Service, class: Option<u16>) -> String {
     service.name(class).map_or_else(|| format!("service 0x{:02X}", service.code()), str::to_owned)
 }
 
-fn path(path: &Path) -> String {
+fn path(path: &EPath) -> String {
     let words: Vec<String> = path
         .0
         .iter()
@@ -173,7 +173,7 @@ fn owner_name(owner: Owner) -> String {
     format!("connection {connection_serial} of vendor {vendor}, serial number {serial_number}")
 }
 
-fn interval(microseconds: u32) -> String {
+fn interval_text(microseconds: u32) -> String {
     format!("{} ms", f64::from(microseconds) / 1e3)
 }
 

@@ -7,10 +7,10 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::protocol::{
-    Body, Command, EncapsulationStatus, Frame, IoPacket, Item, Items, RealTimeFormat, SocketAddress,
+    Body, Command, EncapsulationStatus, Frame, IoPacket, Item, ItemList, RealTimeFormat, SocketAddress,
 };
 use crate::cli::Result;
-use crate::cli::args::Decode;
+use crate::cli::args::DecodeArgs;
 use crate::cli::commands::ProtocolDecoder;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::{Output, count};
@@ -49,7 +49,7 @@ impl ProtocolDecoder for EthernetIpDecoder {
         "consecutive frames of a TCP stream, cyclic packets (UDP) or single CIP messages"
     }
 
-    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+    fn decode(&self, output: &Output, arguments: &DecodeArgs) -> Result {
         decode(output, &arguments.hex)
     }
 }
@@ -154,7 +154,7 @@ fn frame_lines(frame: &Frame, device: Device) -> std::result::Result<Vec<String>
     Ok(lines)
 }
 
-fn items_lines(items: &Items, device: Device, lines: &mut Vec<String>) {
+fn items_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
     for item in &items.0 {
         match item {
             Item::Null => {}

@@ -130,7 +130,7 @@ impl NetworkParameters {
     }
 
     /// Returns whether several masters may own the outputs.
-    pub const fn redundant_owner(self) -> bool {
+    pub const fn has_redundant_owner(self) -> bool {
         self.0 & OWNER != 0
     }
 }
@@ -185,13 +185,13 @@ impl ConnectionTimeout {
     }
 
     /// Returns the multiplier, from 4 to 512 intervals.
-    pub const fn intervals(self) -> u32 {
+    pub const fn interval_multiplier(self) -> u32 {
         4 << self.0
     }
 
     /// Returns the time-out of a connection with the given interval.
     pub const fn after(self, interval: Duration) -> Duration {
-        interval.saturating_mul(self.intervals())
+        interval.saturating_mul(self.interval_multiplier())
     }
 }
 

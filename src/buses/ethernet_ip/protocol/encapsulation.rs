@@ -1,7 +1,7 @@
 //! The encapsulation frame around every explicit message: command, session, status and context (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
-use super::items::{Item, Items};
+use super::items::{Item, ItemList};
 use super::status::EncapsulationStatus;
 
 /// The command of a frame. Unknown commands are preserved.
@@ -38,7 +38,7 @@ pub enum Body {
         options: u16,
     },
     /// The requested list.
-    List(Items),
+    List(ItemList),
     /// SendRRData or SendUnitData, as a request or a reply.
     Data {
         /// Interface handle, 0 for CIP.
@@ -46,7 +46,7 @@ pub enum Body {
         /// Time-out in seconds, or 0 if CIP has its own time-out.
         timeout_s: u16,
         /// Address item and data item.
-        items: Items,
+        items: ItemList,
     },
     /// Data of an unknown command.
     Other(Vec<u8>),
@@ -127,7 +127,7 @@ impl Frame {
 
     /// Creates a frame with an unconnected CIP message.
     pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
-        let items = Items(vec![Item::Null, Item::UnconnectedData(message)]);
+        let items = ItemList(vec![Item::Null, Item::UnconnectedData(message)]);
         Frame {
             session,
             ..Frame::request(Command::SEND_RR_DATA, context, &Body::Data { interface: 0, timeout_s: 0, items })
@@ -212,12 +212,12 @@ impl Frame {
                 fields.end(body)
             }
             Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => {
-                Ok(Body::List(Items::parse(&self.data)?))
+                Ok(Body::List(ItemList::parse(&self.data)?))
             }
             Command::SEND_RR_DATA | Command::SEND_UNIT_DATA => {
                 let mut fields = Fields::new(Structure::SendRRData, &self.data);
                 let (interface, timeout_s) = (fields.u32()?, fields.u16()?);
-                Ok(Body::Data { interface, timeout_s, items: Items::parse(fields.tail())? })
+                Ok(Body::Data { interface, timeout_s, items: ItemList::parse(fields.tail())? })
             }
             _ => Ok(Body::Other(self.data.clone())),
         }

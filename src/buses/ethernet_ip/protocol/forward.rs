@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::connection::{ConnectionTimeout, NetworkParameters, RequestTimeout, Transport};
 use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::message::{Reply, Request, Service};
-use super::path::Path;
+use super::path::EPath;
 
 /// Identification of a connection and its originator, repeated in every message about the connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ pub struct ForwardOpen {
     /// Transport class and trigger.
     pub transport: Transport,
     /// Path to the assemblies.
-    pub path: Path,
+    pub path: EPath,
 }
 
 /// A successful reply to ForwardOpen.
@@ -65,7 +65,7 @@ pub struct ForwardOpened {
 
 /// A refusal to open or close a connection. The status of the reply gives the reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ForwardRefused {
+pub struct ForwardErrorReply {
     /// Owner of the connection.
     pub owner: Owner,
     /// Number of path words that remained unprocessed when the error occurred.
@@ -80,7 +80,7 @@ pub struct ForwardClose {
     /// Owner of the connection.
     pub owner: Owner,
     /// Path to the assemblies.
-    pub path: Path,
+    pub path: EPath,
 }
 
 /// A successful reply to ForwardClose.
@@ -134,7 +134,7 @@ impl ForwardOpen {
         let to_originator_interval_us = fields.u32()?;
         let to_originator = NetworkParameters::of_word(fields.u16()?);
         let transport = Transport::of_byte(fields.u8()?);
-        let path = Path::take(&mut fields)?;
+        let path = EPath::take(&mut fields)?;
         fields.end(ForwardOpen {
             timeout,
             to_target_id,
@@ -162,7 +162,7 @@ impl ForwardOpen {
         data.extend(self.to_originator.word().to_le_bytes());
         data.push(self.transport.byte());
         self.path.push_to(&mut data);
-        Request::of_connections(Service::FORWARD_OPEN, data)
+        Request::for_connection_manager(Service::FORWARD_OPEN, data)
     }
 }
 
@@ -176,7 +176,7 @@ impl ForwardOpened {
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
         let owner = Owner::take(&mut fields)?;
         let (to_target_interval_us, to_originator_interval_us) = (fields.u32()?, fields.u32()?);
-        let application = application(&mut fields)?;
+        let application = parse_application_data(&mut fields)?;
         fields.end(ForwardOpened {
             to_target_id,
             to_originator_id,
@@ -200,7 +200,7 @@ impl ForwardOpened {
     }
 }
 
-impl ForwardRefused {
+impl ForwardErrorReply {
     /// Parses the data of a refusal, which many devices send empty.
     ///
     /// # Errors
@@ -211,7 +211,7 @@ impl ForwardRefused {
         let remaining_path_words = fields.u8()?;
         // Reserved.
         fields.u8()?;
-        fields.end(ForwardRefused { owner, remaining_path_words })
+        fields.end(ForwardErrorReply { owner, remaining_path_words })
     }
 
     /// Returns the data of the reply.
@@ -244,7 +244,7 @@ impl ForwardClose {
         let words = fields.u8()?;
         // Reserved.
         fields.u8()?;
-        let path = Path::parse(fields.bytes(usize::from(words) * 2)?)?;
+        let path = EPath::parse(fields.bytes(usize::from(words) * 2)?)?;
         fields.end(ForwardClose { timeout, owner, path })
     }
 
@@ -257,7 +257,7 @@ impl ForwardClose {
         // Between the length of the path and the path, unlike everywhere else.
         path.insert(1, 0);
         data.extend(path);
-        Request::of_connections(Service::FORWARD_CLOSE, data)
+        Request::for_connection_manager(Service::FORWARD_CLOSE, data)
     }
 }
 
@@ -269,7 +269,7 @@ impl ForwardClosed {
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardCloseReply, data);
         let owner = Owner::take(&mut fields)?;
-        let application = application(&mut fields)?;
+        let application = parse_application_data(&mut fields)?;
         fields.end(ForwardClosed { owner, application })
     }
 
@@ -283,7 +283,7 @@ impl ForwardClosed {
 }
 
 /// Parses application data, which consist of a length in words, a reserved byte, and the words.
-fn application(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
+fn parse_application_data(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
     let words = fields.u8()?;
     fields.u8()?;
     (0..words).map(|_| fields.u16()).collect()

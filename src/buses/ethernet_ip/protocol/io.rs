@@ -1,7 +1,7 @@
 //! Cyclic packets of a class 1 connection over UDP (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
-use super::items::{Item, Items};
+use super::items::{Item, ItemList};
 
 /// A cyclic packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct IoPacket {
     /// Data sequence count, incremented with new data (`U`: with every packet).
     pub count: u16,
     /// Run/idle header, if the format has one.
-    pub header: Option<RunIdle>,
+    pub header: Option<RunIdleHeader>,
     /// Process data.
     pub data: Vec<u8>,
 }
@@ -30,18 +30,18 @@ pub enum RealTimeFormat {
 
 /// The 32-bit run/idle header. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct RunIdle(u32);
+pub struct RunIdleHeader(u32);
 
-impl RunIdle {
+impl RunIdleHeader {
     /// Header with bit 0 set, which means that the data are valid.
-    pub const RUN: RunIdle = RunIdle(1);
+    pub const RUN: RunIdleHeader = RunIdleHeader(1);
     /// Header with bit 0 clear, which means that the application of the sender is not running and the data are not
     /// valid.
-    pub const IDLE: RunIdle = RunIdle(0);
+    pub const IDLE: RunIdleHeader = RunIdleHeader(0);
 
     /// Parses the word.
     pub const fn of_word(word: u32) -> Self {
-        RunIdle(word)
+        RunIdleHeader(word)
     }
 
     /// Returns the word to send.
@@ -71,7 +71,7 @@ impl IoPacket {
     /// [`PacketError`] if the packet is incomplete or does not consist of a sequenced address and connected data.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
         const WHAT: Structure = Structure::CyclicPacket;
-        let items = Items::parse(bytes)?;
+        let items = ItemList::parse(bytes)?;
         let (connection, sequence, data) = match items.0.as_slice() {
             [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
                 (*connection, *sequence, data)
@@ -82,7 +82,7 @@ impl IoPacket {
         let mut fields = Fields::new(WHAT, data);
         let count = fields.u16()?;
         let header = match format {
-            RealTimeFormat::Header => Some(RunIdle(fields.u32()?)),
+            RealTimeFormat::Header => Some(RunIdleHeader(fields.u32()?)),
             RealTimeFormat::Modeless => None,
         };
         Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
@@ -94,6 +94,6 @@ impl IoPacket {
         data.extend(self.header.iter().flat_map(|header| header.0.to_le_bytes()));
         data.extend(&self.data);
         let address = Item::SequencedAddress { connection: self.connection, sequence: self.sequence };
-        Items(vec![address, Item::ConnectedData(data)]).emit()
+        ItemList(vec![address, Item::ConnectedData(data)]).emit()
     }
 }

@@ -7,7 +7,7 @@ use super::identity::IdentityItem;
 
 /// A list of items in which each address precedes its data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Items(pub Vec<Item>);
+pub struct ItemList(pub Vec<Item>);
 
 /// An item of a packet. Unknown types are preserved.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ const SOCKET_TO_TARGET: u16 = 0x8000;
 const SOCKET_TO_ORIGINATOR: u16 = 0x8001;
 const SEQUENCED_ADDRESS: u16 = 0x8002;
 
-impl Items {
+impl ItemList {
     /// Parses a list that occupies all of `bytes`.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl Items {
             let (kind, length) = (fields.u16()?, fields.u16()?);
             items.push(Item::parse(kind, fields.bytes(length.into())?)?);
         }
-        fields.end(Items(items))
+        fields.end(ItemList(items))
     }
 
     /// Returns the encoded list. Items longer than 65535 bytes are truncated.

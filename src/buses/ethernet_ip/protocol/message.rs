@@ -1,7 +1,7 @@
 //! CIP requests and replies (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
-use super::path::{LogicalKind, Path};
+use super::path::{EPath, LogicalKind};
 use super::status::GeneralStatus;
 
 /// The service of a request. Unknown services are preserved.
@@ -14,7 +14,7 @@ pub struct Request {
     /// The service.
     pub service: Service,
     /// Path to the object.
-    pub path: Path,
+    pub path: EPath,
     /// Service data.
     pub data: Vec<u8>,
 }
@@ -104,21 +104,21 @@ impl Request {
 
     /// Creates a request to read an attribute.
     pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
-        Request { service: Service::GET, path: Path::attribute(class, instance, attribute), data: Vec::new() }
+        Request { service: Service::GET, path: EPath::attribute(class, instance, attribute), data: Vec::new() }
     }
 
     /// Creates a request to set an attribute.
     pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
-        Request { service: Service::SET, path: Path::attribute(class, instance, attribute), data }
+        Request { service: Service::SET, path: EPath::attribute(class, instance, attribute), data }
     }
 
     /// Creates a request to read all attributes of an object.
     pub fn get_all(class: u16, instance: u16) -> Self {
-        Request { service: Service::GET_ALL, path: Path::instance(class, instance), data: Vec::new() }
+        Request { service: Service::GET_ALL, path: EPath::instance(class, instance), data: Vec::new() }
     }
 
-    pub(super) fn of_connections(service: Service, data: Vec<u8>) -> Self {
-        Request { service, path: Path::instance(Request::CONNECTION_MANAGER, 1), data }
+    pub(super) fn for_connection_manager(service: Service, data: Vec<u8>) -> Self {
+        Request { service, path: EPath::instance(Request::CONNECTION_MANAGER, 1), data }
     }
 
     /// Returns the class to which the request is addressed.
@@ -134,7 +134,7 @@ impl Request {
         let mut fields = Fields::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
         let service = Service::new(code).ok_or(fields.value(PacketField::Service, code))?;
-        let path = Path::take(&mut fields)?;
+        let path = EPath::take(&mut fields)?;
         Ok(Request { service, path, data: fields.tail().to_vec() })
     }
 

@@ -33,12 +33,12 @@ pub use connection::{
 };
 pub use encapsulation::{Body, Command, Frame};
 pub use fields::{PacketError, PacketField, Structure};
-pub use forward::{ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, Owner};
+pub use forward::{ForwardClose, ForwardClosed, ForwardErrorReply, ForwardOpen, ForwardOpened, Owner};
 pub use identity::{Identity, IdentityItem, Revision};
-pub use io::{IoPacket, RealTimeFormat, RunIdle};
-pub use items::{Item, Items, SocketAddress};
+pub use io::{IoPacket, RealTimeFormat, RunIdleHeader};
+pub use items::{Item, ItemList, SocketAddress};
 pub use message::{Reply, Request, Service, class_name};
-pub use path::{ElectronicKey, LogicalKind, Path, Segment, Width};
+pub use path::{EPath, ElectronicKey, LogicalKind, Segment, Width};
 pub use receiver::Receiver;
 pub use status::{
     ENCAPSULATION_STATUS, EXTENDED_STATUS, EncapsulationStatus, ExtendedStatusRow, GENERAL_STATUS, GeneralStatus,

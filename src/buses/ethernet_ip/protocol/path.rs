@@ -4,7 +4,7 @@ use super::fields::{Fields, PacketError, PacketField, Structure};
 
 /// A path padded to whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Path(pub Vec<Segment>);
+pub struct EPath(pub Vec<Segment>);
 
 /// A segment of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,26 +74,26 @@ const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
 const WHAT: Structure = Structure::Path;
 
-impl Path {
+impl EPath {
     /// Creates the path to an object instance.
     pub fn instance(class: u16, instance: u16) -> Self {
-        Path(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
+        EPath(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
     }
 
     /// Creates the path to an attribute of an object instance.
     pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
-        let Path(mut segments) = Path::instance(class, instance);
+        let EPath(mut segments) = EPath::instance(class, instance);
         segments.push(Segment::new(LogicalKind::Attribute, attribute));
-        Path(segments)
+        EPath(segments)
     }
 
     /// Creates the path to the assemblies of a cyclic connection in the order configuration, originator to target, and
     /// target to originator.
     pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
-        let Path(mut segments) = Path::instance(ASSEMBLY, configuration);
+        let EPath(mut segments) = EPath::instance(ASSEMBLY, configuration);
         segments.extend([to_target, to_originator].map(|point| Segment::new(LogicalKind::ConnectionPoint, point)));
-        Path(segments)
+        EPath(segments)
     }
 
     /// Returns the first logical value of the given kind.
@@ -119,7 +119,7 @@ impl Path {
         while !fields.is_empty() {
             segments.push(Segment::take(&mut fields)?);
         }
-        Ok(Path(segments))
+        Ok(EPath(segments))
     }
 
     /// Returns the encoded path.
@@ -129,7 +129,7 @@ impl Path {
 
     pub(super) fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
         let words = fields.u8()?;
-        Path::parse(fields.bytes(usize::from(words) * 2)?)
+        EPath::parse(fields.bytes(usize::from(words) * 2)?)
     }
 
     /// Appends the path and its length in words, or nothing for a path longer than 255 words.

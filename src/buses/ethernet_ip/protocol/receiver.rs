@@ -104,7 +104,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic(portions: Vec<Vec<u8>>) {
+        fn arbitrary_bytes_never_panic(portions: Vec<Vec<u8>>) {
             let mut receiver = Receiver::default();
             for portion in portions {
                 receiver.push(&portion);

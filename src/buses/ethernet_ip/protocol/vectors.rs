@@ -106,17 +106,17 @@ fn every_path_round_trips() {
         ("port", "01 00 20 06 24 01", 1),
         ("wide instance", "20 06 26 00 01 00 00 00", 2),
     ] {
-        let path = Path::parse(&bytes(text)).unwrap();
+        let path = EPath::parse(&bytes(text)).unwrap();
         assert_eq!((path.0.len(), hex(&path.emit())), (segments, text.to_owned()), "{label}");
     }
     let key = ElectronicKey { vendor: 1010, device_type: 12, product_code: 1, major: 0x81, minor: 2 };
-    let path = Path::parse(&bytes("34 04 F2 03 0C 00 01 00 81 02")).unwrap();
-    assert_eq!(path, Path(vec![Segment::Key(key)]));
-    let assemblies = Path::assemblies(104, 100, 101);
+    let path = EPath::parse(&bytes("34 04 F2 03 0C 00 01 00 81 02")).unwrap();
+    assert_eq!(path, EPath(vec![Segment::Key(key)]));
+    let assemblies = EPath::assemblies(104, 100, 101);
     assert_eq!(hex(&assemblies.emit()), "20 04 24 68 2C 64 2C 65");
     assert_eq!(assemblies.numbers(LogicalKind::ConnectionPoint).collect::<Vec<_>>(), [100, 101]);
     for cut in ["20", "21 00", "21 01 04 00", "34 04 00", "80 02 00 00"] {
-        assert!(Path::parse(&bytes(cut)).is_err(), "{cut}");
+        assert!(EPath::parse(&bytes(cut)).is_err(), "{cut}");
     }
     assert_eq!(
         Request::parse(&bytes("0E 03 20 65 24 01")),
@@ -138,7 +138,7 @@ fn open() -> ForwardOpen {
         to_originator_interval_us: 10_000,
         to_originator: parameters(18),
         transport: Transport::CYCLIC,
-        path: Path::assemblies(104, 100, 101),
+        path: EPath::assemblies(104, 100, 101),
     }
 }
 
@@ -170,7 +170,7 @@ fn published_connection_matches() {
 
     let text = "4E 02 20 06 24 01 03 FA 01 00 34 12 CD AB 00 00 04 00 20 04 24 68 2C 64 2C 65";
     let close =
-        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: Path::assemblies(104, 100, 101) };
+        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: EPath::assemblies(104, 100, 101) };
     assert_eq!(hex(&close.request().emit()), text);
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
@@ -186,10 +186,10 @@ fn a_connection_ends_or_is_refused() {
     assert_eq!(closed.emit(), reply.data);
 
     let text = "D4 00 01 01 06 01 01 00 34 12 CD AB 00 00 04 00";
-    let refused = ForwardRefused { owner: OWNER, remaining_path_words: 4 };
+    let refused = ForwardErrorReply { owner: OWNER, remaining_path_words: 4 };
     assert_eq!(hex(&refused.reply(&open().request(), 0x0106).emit()), text);
     let reply = Reply::parse(&bytes(text)).unwrap();
-    assert_eq!(ForwardRefused::parse(&reply.data), Ok(refused));
+    assert_eq!(ForwardErrorReply::parse(&reply.data), Ok(refused));
     let row = extended_row(reply.service, reply.status, reply.extended[0]).unwrap();
     assert_eq!(row.meaning, "another master owns the outputs");
     assert!(extended_row(Service::GET, reply.status, 0x0106).is_none());
@@ -213,7 +213,10 @@ fn published_network_parameters_match() {
         let parameters = NetworkParameters::new(kind, NetworkPriority::Scheduled, size).unwrap();
         assert_eq!(parameters.word(), word);
         assert_eq!((parameters.kind(), parameters.priority()), (kind, NetworkPriority::Scheduled), "{word:04X}");
-        assert_eq!((parameters.size(), parameters.is_variable(), parameters.redundant_owner()), (size, false, false));
+        assert_eq!(
+            (parameters.size(), parameters.is_variable(), parameters.has_redundant_owner()),
+            (size, false, false)
+        );
     }
     // 16 and 8 bytes of process data: 2 + 4 in addition to the target, 2 back.
     assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Header)), [22, 14]);
@@ -221,8 +224,9 @@ fn published_network_parameters_match() {
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
     let odd = NetworkParameters::of_word(0xFE05);
     assert_eq!((odd.kind(), odd.priority()), (NetworkType::Reserved, NetworkPriority::Urgent));
-    assert!(odd.is_variable() && odd.redundant_owner() && odd.word() == 0xFE05);
-    let intervals: Vec<u32> = (0..=8).filter_map(ConnectionTimeout::new).map(ConnectionTimeout::intervals).collect();
+    assert!(odd.is_variable() && odd.has_redundant_owner() && odd.word() == 0xFE05);
+    let intervals: Vec<u32> =
+        (0..=8).filter_map(ConnectionTimeout::new).map(ConnectionTimeout::interval_multiplier).collect();
     assert_eq!(intervals, [4, 8, 16, 32, 64, 128, 256, 512]);
     assert_eq!(
         (Transport::CYCLIC.class(), Transport::CYCLIC.trigger(), Transport::CYCLIC.server()),
@@ -240,7 +244,7 @@ fn published_cyclic_packets_match() {
     let back =
         "02 00 02 80 08 00 01 00 01 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 00 00 00 00 00 00 00 00";
     let cases = [
-        (to_target, RealTimeFormat::Header, 0x0002_0001, Some(RunIdle::RUN), "39 04 64 64 00 80 02 00"),
+        (to_target, RealTimeFormat::Header, 0x0002_0001, Some(RunIdleHeader::RUN), "39 04 64 64 00 80 02 00"),
         (back, RealTimeFormat::Modeless, 0x0001_0001, None, "37 2A 00 00 00 80 02 00"),
     ];
     for (text, format, connection, header, data) in cases {
@@ -249,12 +253,13 @@ fn published_cyclic_packets_match() {
         assert_eq!(hex(&packet.emit()), text);
         assert_eq!(IoPacket::parse(&bytes(text), format), Ok(packet));
     }
-    assert!(RunIdle::RUN.runs() && !RunIdle::IDLE.runs());
-    let short = Items(vec![Item::SequencedAddress { connection: 1, sequence: 1 }, Item::ConnectedData(vec![1, 0, 1])]);
+    assert!(RunIdleHeader::RUN.runs() && !RunIdleHeader::IDLE.runs());
+    let short =
+        ItemList(vec![Item::SequencedAddress { connection: 1, sequence: 1 }, Item::ConnectedData(vec![1, 0, 1])]);
     let cut = Err(PacketError::Short { what: Structure::CyclicPacket, got: 3 });
     assert_eq!(IoPacket::parse(&short.emit(), RealTimeFormat::Header), cut);
-    let Items(items) = short;
-    let turned = Items(items.into_iter().rev().collect()).emit();
+    let ItemList(items) = short;
+    let turned = ItemList(items.into_iter().rev().collect()).emit();
     assert!(IoPacket::parse(&turned, RealTimeFormat::Modeless).is_err(), "the address comes first");
 }
 
@@ -283,7 +288,7 @@ fn an_identity_item_is_parsed() {
         state: 3,
     };
     assert_eq!(items.identity(), Some(&expected));
-    let reply = Frame::list_identity([0; 8]).reply(&Body::List(Items(vec![Item::Identity(expected.clone())])));
+    let reply = Frame::list_identity([0; 8]).reply(&Body::List(ItemList(vec![Item::Identity(expected.clone())])));
     assert_eq!(hex(&reply.emit()), hex(&bytes(&text)));
     // The object's attributes are the same, from the vendor on and without the state.
     let all = bytes(item)[18..43].to_vec();
@@ -321,13 +326,13 @@ fn socket_address_items_are_parsed() {
     // By hand: 8000h, 16 bytes; family 2, port 2222 = 08AEh, 10.0.0.7, all high byte first.
     let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
                 00 00 00 00 00 00 00";
-    let items = Items::parse(&bytes(text)).unwrap();
+    let items = ItemList::parse(&bytes(text)).unwrap();
     let socket = |address| Some(SocketAddress::new(address, IMPLICIT_PORT));
     assert_eq!(items.socket_to_target(), socket(Ipv4Addr::new(10, 0, 0, 7)));
     assert_eq!(items.socket_to_originator(), socket(Ipv4Addr::new(239, 1, 2, 3)));
     assert_eq!(hex(&items.emit()), hex(&bytes(text)));
     for wrong in ["01 00 00 00 01 00 00", "01 00 02 80 04 00 01 00 00 00", "00 00 00", "01 00 B2 00 05 00 01"] {
-        assert!(Items::parse(&bytes(wrong)).is_err(), "{wrong}");
+        assert!(ItemList::parse(&bytes(wrong)).is_err(), "{wrong}");
     }
 }
 

@@ -11,18 +11,18 @@ use serde_json::json;
 use super::args::{BissAction, DoOptions};
 use super::plan::{CALIBRATION, change_lines, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
-use crate::app::{Kinds, explain};
-use crate::cli::args::{Common, Do};
+use crate::app::{KindRegistry, explain};
+use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
-use crate::cli::profiles::{load_to_write, print_done};
+use crate::cli::profiles::{load_to_write, print_write_result};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::procedures::procedure::Outcome;
-use crate::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
-use crate::devices::biss::protocol::{Filter, KIND, PresetValue};
+use crate::devices::biss::profile::{BissProfile, MotorSource, MountingSteps, PresetParts, RegisterRange};
+use crate::devices::biss::protocol::{KIND, PositionFilter, PresetValue};
 use crate::devices::biss::state::explain as words;
 use crate::result_of;
 
@@ -31,24 +31,24 @@ const PERSON: Duration = Duration::from_secs(300);
 
 const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
 
-pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
         (BissAction::Check, []) => check_device(common, output),
         (BissAction::LeadBack, []) => lead_back(common, output, act),
         (BissAction::Calibrate, []) => {
-            run_guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
+            run_guided(common, output, act, MountingSteps { calibrate: true, ..MountingSteps::default() })
         }
         (BissAction::WiegandTest, [] | ["save"]) => {
-            let run = MountingRun { wiegand: Some(!words.is_empty()), ..MountingRun::default() };
+            let run = MountingSteps { wiegand: Some(!words.is_empty()), ..MountingSteps::default() };
             run_guided(common, output, act, run)
         }
         (BissAction::Mounting, words) => run_guided(common, output, act, mounting(output, words)?),
         (BissAction::Filter, [name]) => {
             let filter = match *name {
-                "balanced" => Filter::Balanced,
-                "dynamic" => Filter::Dynamic,
+                "balanced" => PositionFilter::Balanced,
+                "dynamic" => PositionFilter::Dynamic,
                 _ => return Err(takes("balanced or dynamic")),
             };
             change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
@@ -63,11 +63,11 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-fn check_device(common: &Common, output: &Output) -> Result {
+fn check_device(common: &CommonArgs, output: &Output) -> Result {
     result_of!(Runner::open(common)?.run(BissJob::Check)?, BissOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
-fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
+fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     // Nothing is stored by it, so it needs no consent without a terminal; a user there may have entered what it
     // discards.
     if !act.consent.yes
@@ -86,7 +86,7 @@ fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-fn run_guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
+fn run_guided(common: &CommonArgs, output: &Output, act: &ActionArgs, run: MountingSteps) -> Result {
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
     if act.consent.yes && run.calibrate {
@@ -95,7 +95,7 @@ fn run_guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> R
     change(common, output, act, |_| Ok(Change::Guided { run, motor }))
 }
 
-fn motor(output: &Output, act: &Do) -> Result<MotorSource> {
+fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
     if act.consent.yes || !can_ask() {
         output.remark(
             "With --yes, the motor is assumed to turn without this encoder. A run starts when direction and speed \
@@ -112,7 +112,12 @@ fn motor(output: &Output, act: &Do) -> Result<MotorSource> {
     }
 }
 
-fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
+fn change(
+    common: &CommonArgs,
+    output: &Output,
+    act: &ActionArgs,
+    change: impl FnOnce(&mut Runner) -> Result<Change>,
+) -> Result {
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
     let change = change(&mut runner)?;
@@ -124,7 +129,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
     let name = act.action.clone();
     let text = format!("{changes}{}", results_text(&outcomes));
-    let done = print_done(output, &name, &operations, &spent, &results(&outcomes), &text)?;
+    let done = print_write_result(output, &name, &operations, &spent, &results(&outcomes), &text)?;
     if outcomes.iter().all(passes) {
         Ok(done)
     } else {
@@ -147,8 +152,8 @@ fn passes(outcome: &Outcome) -> bool {
 
 /// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration
 /// nor test is given, both are run.
-fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
-    let mut run = MountingRun::default();
+fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
+    let mut run = MountingSteps::default();
     let (mut tests, mut saves) = (false, false);
     for word in words {
         match (*word, word.split_once('=')) {
@@ -171,7 +176,9 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
 }
 
 fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
-    load_to_write(output, file)?.into_profile().map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))
+    load_to_write(output, file)?
+        .into_profile()
+        .map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))
 }
 
 fn place(text: &str) -> Result<PresetValue> {

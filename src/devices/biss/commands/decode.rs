@@ -26,7 +26,7 @@ enum Captured {
 pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     let mut explained = Vec::new();
     let mut requested = None;
-    for captured in captured(words)? {
+    for captured in parse_captured(words)? {
         match captured {
             Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
             Captured::Word(written, raw) => explained.push(position::explain_word(raw, written)),
@@ -38,7 +38,7 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
 
 /// Parses the arguments. Nine hex digits with 0x, a `raw=` prefix or a final h form a position word; 11 hex digits, or
 /// others with 0x, form the bits of a frame; all others are bytes.
-fn captured(words: &[String]) -> Result<Vec<Captured>> {
+fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
         (false, digits) => digits.len() == 11 && digits.chars().all(|c| c.is_ascii_hexdigit()),
@@ -96,7 +96,7 @@ fn digits(word: &str) -> (bool, &str) {
 fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);
-    let position: Vec<Explained> = position::of_bytes(bytes).into_iter().collect();
+    let position: Vec<Explained> = position::decode_bytes(bytes).into_iter().collect();
     let fits = |found: &Vec<Explained>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());
     if fits(&ubicom) {
         ubicom

@@ -7,14 +7,14 @@ use serde_json::{Value as Json, json};
 use super::run::{Runner, crc_errors, identity, read_registers, registers};
 use super::words;
 use crate::bits::{hex, hex_compact};
-use crate::cli::args::{Common, Position};
+use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::{Lines, Output, say};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
 use crate::devices::biss::procedures::{
-    Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Transport,
+    Damage, Error, FlagRegister, FrameSource, Identity, PositionReading, Status, Transport,
 };
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{KIND, Name, Role};
@@ -24,7 +24,7 @@ use crate::result_of;
 /// Time without a valid frame after which the line is considered to carry only noise.
 const NOISE: Duration = Duration::from_secs(5);
 
-pub(super) fn identify(common: &Common, output: &Output) -> Result {
+pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     let celsius = temperature(&mut runner, &identity)?;
@@ -35,7 +35,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
         "serial_number": identity.serial_number,
         "firmware": identity.firmware.map(|firmware| firmware.to_string()),
         "device_id": hex_compact(&identity.kind.device_id),
-        "manufacturer": manufacturer(&identity),
+        "manufacturer": manufacturer_text(&identity),
         "multiturn_bits": identity.multiturn_bits(),
         "singleturn_bits": identity.singleturn_bits(),
         "temperature_c": celsius,
@@ -46,7 +46,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
 }
 
 /// Returns the manufacturer as text, or as hex bytes if the text is not printable.
-fn manufacturer(identity: &Identity) -> String {
+fn manufacturer_text(identity: &Identity) -> String {
     let bytes = &identity.kind.manufacturer;
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));
     text.map_or_else(|| hex_compact(bytes), str::to_owned)
@@ -74,7 +74,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines
         .add("encoder", identity.description.name())
         .add("profile", format!("0x{:04X}", kind.profile.word()))
-        .add("manufacturer", manufacturer(identity))
+        .add("manufacturer", manufacturer_text(identity))
         .add("device ID", hex(&kind.device_id))
         .add("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
         .add("firmware", identity.firmware.map_or_else(unknown, |firmware| firmware.to_string()))
@@ -94,7 +94,7 @@ fn serial(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }
 
-pub(super) fn status(common: &Common, output: &Output) -> Result {
+pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let status = result_of!(runner.run(BissJob::Status)?, BissOutput::Status(status) => *status);
     let position_error = status.position.and_then(|reading| reading.error);
@@ -113,7 +113,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-fn list(bits: &Bits) -> Vec<Json> {
+fn list(bits: &FlagRegister) -> Vec<Json> {
     bits.set
         .iter()
         .map(|(bit, name)| json!({"code": bit, "text": bit_words(*bit, name.as_ref().map(Name::english))}))
@@ -152,7 +152,7 @@ fn status_text(status: &Status) -> String {
     lines.text()
 }
 
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let over_biss = runner.kept == Transport::Adapter;
     if position.csv {
@@ -243,7 +243,7 @@ fn row(reading: &PositionReading) -> String {
     )
 }
 
-pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let range = super::item(item)?;
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
@@ -251,7 +251,8 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     if let Some(mode) = unsaved {
         output.remark(&explained::unsaved(mode).terminal());
     }
-    let meaning = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
+    let meaning =
+        identity.description.at(range.start()).and_then(|register| words::describe_register(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),

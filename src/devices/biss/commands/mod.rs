@@ -18,8 +18,8 @@ use clap::{Arg, ValueEnum};
 use self::args::{BissAction, DoOptions};
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
-use crate::cli::args::{Command, Common, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
+use crate::cli::args::{Command, CommonArgs, SimulateArgs};
+use crate::cli::commands::{CommandId, DeviceCommands, enum_values, options_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -75,14 +75,14 @@ impl DeviceCommands for BissCommands {
     }
 
     fn actions(&self) -> Vec<PossibleValue> {
-        values_of::<BissAction>().into_iter().filter(|action| !is_combined(action)).collect()
+        enum_values::<BissAction>().into_iter().filter(|action| !is_combined(action)).collect()
     }
 
     fn combined_actions(&self) -> Vec<PossibleValue> {
-        values_of::<BissAction>().into_iter().filter(is_combined).collect()
+        enum_values::<BissAction>().into_iter().filter(is_combined).collect()
     }
 
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Identify(_) => inspect::identify(common, output),
             Command::Status(_) => inspect::status(common, output),
@@ -96,7 +96,7 @@ impl DeviceCommands for BissCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
     }
 }
@@ -105,7 +105,7 @@ fn is_combined(action: &PossibleValue) -> bool {
     BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }
 
-fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
     let known = bridge::keys(at_adapter());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
@@ -115,11 +115,11 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
     let refused = |error: ConfigError| Failure::Usage(error.to_string());
     Ok(match arguments.bridge {
         true => Box::new(bridge::Adapter::from_pairs(&settings, at_adapter()).map_err(refused)?),
-        false => Box::new(sim::Port::new(&sim::Config::from_pairs(&settings).map_err(refused)?)),
+        false => Box::new(sim::UbicomPort::new(&sim::Config::from_pairs(&settings).map_err(refused)?)),
     })
 }
 
-impl Simulated for sim::Port {
+impl Simulated for sim::UbicomPort {
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         Some(ubicom::FORMAT)
     }

@@ -8,12 +8,12 @@ use super::run::Runner;
 use super::words;
 use crate::bits::hex_compact;
 use crate::cli::Result;
-use crate::cli::args::Consenting;
+use crate::cli::args::ConsentArgs;
 use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
-use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
+use crate::devices::biss::procedures::procedure::{Motion, Outcome, UnattendedOperator};
 use crate::devices::biss::procedures::write::Written;
 use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::devices::biss::protocol::PresetValue;
@@ -35,7 +35,7 @@ pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
-    consent: &Consenting,
+    consent: &ConsentArgs,
     patience: Duration,
 ) -> Result<(WriteSummary, Vec<Outcome>)> {
     if prepared.plan.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn commit(
     }
     let text = shown(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
-    let commit = Commit { agreed, attendance: OperatorPresence::Unattended(Unattended { patience }) };
+    let commit = Commit { agreed, attendance: OperatorPresence::Unattended(UnattendedOperator { patience }) };
     let committed =
         result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);
     warn(output, committed.logbook_warning.as_ref());

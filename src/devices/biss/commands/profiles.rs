@@ -6,11 +6,12 @@ use super::BissCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
 use crate::app::Text;
-use crate::cli::args::{Common, Restore, Save};
+use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{
-    UnrestoredItems, print_missing, print_skipped_mounting, restore_options, save_profile, to_restore, write_restore,
+    UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
+    write_restore,
 };
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
@@ -20,7 +21,7 @@ use crate::devices::biss::state::explain as words;
 use crate::profile::Body;
 use crate::result_of;
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = saved(common, BissJob::Save)?;
     let banks = profile.banks().count();
     let (mode, unsaved) = (profile.recorded.device_mode, words::saved_unsaved(&profile));
@@ -34,9 +35,9 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 impl ProfileCommands for BissCommands {
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
-        let profile = to_restore::<BissProfile>(restore, profile)?;
+        let profile = profile_to_restore::<BissProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = &prepared.other_type {
@@ -53,7 +54,7 @@ impl ProfileCommands for BissCommands {
     }
 
     /// Reads the encoder for a comparison; refused if its registers show values that were never saved.
-    fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn present(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
     }
 
@@ -62,7 +63,7 @@ impl ProfileCommands for BissCommands {
         words::profile_unsaved(profile.get()?)
     }
 
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+    fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
         let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
         (who(profile) != who(device)).then(|| {
@@ -72,6 +73,6 @@ impl ProfileCommands for BissCommands {
     }
 }
 
-fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
+fn saved(common: &CommonArgs, job: BissJob) -> Result<BissProfile> {
     Ok(result_of!(Runner::open(common)?.run(job)?, BissOutput::Saved(profile) => *profile))
 }

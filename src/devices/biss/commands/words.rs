@@ -3,7 +3,9 @@
 use std::sync::LazyLock;
 
 use crate::devices::biss::profile::RegisterRange;
-use crate::devices::biss::protocol::{Decoded, Description, Descriptions, Filter, Name, Register, RegisterAddress};
+use crate::devices::biss::protocol::{
+    Decoded, Description, Descriptions, Name, PositionFilter, Register, RegisterAddress,
+};
 
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
@@ -24,7 +26,7 @@ pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option
 }
 
 /// Describes a register if the given bytes cover exactly that register.
-pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
+pub(super) fn describe_register(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| words(register, bytes)).flatten()
 }
@@ -37,11 +39,11 @@ pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
 }
 
 /// Returns the keyword of a filter, as accepted by `do biss filter`.
-pub(super) fn filter(filter: Filter) -> String {
+pub(super) fn filter(filter: PositionFilter) -> String {
     match filter {
-        Filter::Balanced => "balanced".to_owned(),
-        Filter::Dynamic => "dynamic".to_owned(),
-        Filter::Unknown(code) => format!("0x{code:02X}"),
+        PositionFilter::Balanced => "balanced".to_owned(),
+        PositionFilter::Dynamic => "dynamic".to_owned(),
+        PositionFilter::Unknown(code) => format!("0x{code:02X}"),
     }
 }
 

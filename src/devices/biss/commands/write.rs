@@ -3,7 +3,7 @@
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use crate::bits::parse_hex;
-use crate::cli::args::{Common, Write};
+use crate::cli::args::{CommonArgs, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Output, count};
@@ -12,7 +12,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::RegisterRange;
 
-pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let range = super::item(&write.item)?;
     let bytes = value(range, write.item.contains('+'), &write.value)?;
     require_consent(&write.consent)?;

@@ -6,12 +6,12 @@ use crate::store::{Store, StoreError, read_folder};
 
 /// Returns the encoder descriptions, with user-defined ones first, and an error for each unusable file (a
 /// `DescriptionError` each).
-pub fn descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
+pub fn load_descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
     let broken = broken.into_iter().map(|error| StoreError::Refused(Cause::new(error)));
     let errors = unread.into_iter().map(StoreError::from).chain(broken).collect();
-    (Descriptions::built_in().overlaid_with(own), errors)
+    (Descriptions::built_in().merged_with(own), errors)
 }
 
 #[cfg(test)]
@@ -23,7 +23,7 @@ mod tests {
     fn broken_descriptions_are_reported_with_file_and_line() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
-        assert_eq!(descriptions(&store), (Descriptions::built_in(), Vec::new()));
+        assert_eq!(load_descriptions(&store), (Descriptions::built_in(), Vec::new()));
         let folder = store.device_folder(KIND);
         fs::create_dir_all(folder.join("folder.ron")).unwrap();
         fs::write(folder.join("broken.ron"), "(\n  name: \"mine\",\n  register: [],\n)").unwrap();
@@ -31,7 +31,7 @@ mod tests {
         fs::write(folder.join("notes.txt"), "no description").unwrap();
         let (_, unknown) = Descriptions::BUILT_IN[1];
         fs::write(folder.join("own.RON"), unknown.replace("\"BiSS C encoder\"", "\"own\"")).unwrap();
-        let (known, errors) = descriptions(&store);
+        let (known, errors) = load_descriptions(&store);
         assert!(known.named("own").is_some() && known.named("POSITAL IXARC kit encoder").is_some());
         let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
         let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };

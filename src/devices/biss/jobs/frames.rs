@@ -2,7 +2,7 @@
 
 use crate::buses::bridge::jobs::Stretch;
 use crate::buses::bridge::procedures::{StreamRequest, Streaming};
-use crate::buses::bridge::protocol::Data;
+use crate::buses::bridge::protocol::StreamData;
 use crate::devices::biss::procedures::{Frame, frames};
 use crate::devices::biss::protocol::Layout;
 
@@ -28,8 +28,8 @@ impl Stretch for BissFrames {
         }
     }
 
-    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<Frame>> {
-        let Data::Biss(data) = data else { return None };
+    fn read(&self, data: StreamData, _: &Streaming) -> Option<Vec<Frame>> {
+        let StreamData::Biss(data) = data else { return None };
         Some(frames(&self.layout, &data))
     }
 }
@@ -39,7 +39,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::analysis::Time;
+    use crate::analysis::SampleTime;
     use crate::buses::bridge::jobs::tests::{bench, count, virtual_adapter};
     use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
@@ -58,7 +58,10 @@ mod tests {
         // The last samples may still be in transit, or the last wait was a little longer.
         assert!((99_880..=100_500).contains(&frames) && lost == 0, "{frames} frames, {lost} lost");
         let begin = batches[0].time;
-        assert!((0..10_000_000).contains(&begin.nanoseconds_since(Time::from_nanoseconds(3_000_000_000))), "{begin:?}");
+        assert!(
+            (0..10_000_000).contains(&begin.nanoseconds_since(SampleTime::from_nanoseconds(3_000_000_000))),
+            "{begin:?}"
+        );
         let mut before = None;
         for batch in &batches {
             assert_eq!((batch.time, batch.period_ns), (begin.plus(batch.first as i64 * 50_000), 50_000));

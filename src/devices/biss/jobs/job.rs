@@ -6,15 +6,15 @@ use super::Identity;
 use crate::bits::hex_compact;
 use crate::devices::biss::procedures::check::BissStepResult;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Demand, Operator, OperatorChannel, ProcedureProgress, Unattended,
+    Answer, Operator, OperatorChannel, OperatorPrompt, ProcedureProgress, UnattendedOperator,
 };
 use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
 use crate::devices::biss::profile::{
-    Bank, BissPlan, BissProfile, MotorSource, MountingRun, OtherType, PlanError, PresetParts, RegisterRange,
+    Bank, BissPlan, BissProfile, MotorSource, MountingSteps, OtherType, PlanError, PresetParts, RegisterRange,
     RestoreOptions,
 };
-use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
+use crate::devices::biss::protocol::{Area, DeviceMode, KIND, PositionFilter, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, StoreError};
 use crate::worker::commit::{ApprovedPlan, wear};
 
@@ -60,7 +60,7 @@ pub enum Change {
     },
     /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
-    SelectFilter(Filter),
+    SelectFilter(PositionFilter),
     /// Stores the preset value, if given; then sets the given parts of the position at the present shaft angle to the
     /// stored value.
     Preset {
@@ -68,7 +68,7 @@ pub enum Change {
         parts: Option<PresetParts>,
     },
     Guided {
-        run: MountingRun,
+        run: MountingSteps,
         motor: MotorSource,
     },
 }
@@ -141,7 +141,7 @@ pub struct Commit {
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
     Attended(OperatorChannel),
-    Unattended(Unattended),
+    Unattended(UnattendedOperator),
 }
 
 impl Operator for OperatorPresence {
@@ -152,7 +152,7 @@ impl Operator for OperatorPresence {
         }
     }
 
-    fn attend(&mut self, demand: &Demand) -> Answer {
+    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
         match self {
             OperatorPresence::Attended(seat) => seat.attend(demand),
             OperatorPresence::Unattended(nobody) => nobody.attend(demand),

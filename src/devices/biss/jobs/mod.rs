@@ -11,7 +11,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-pub use descriptions::descriptions;
+pub use descriptions::load_descriptions;
 pub use frames::BissFrames;
 pub use job::{
     BissJob, BissOutput, Change, ChangeKind, Commit, Committed, DeviceMessage, JobError, JobStep, OperatorPresence,
@@ -22,8 +22,8 @@ pub use open::{check, open};
 use crate::buses::bridge::procedures::warn_of_supply;
 use crate::devices::biss::procedures::check::Wear;
 use crate::devices::biss::procedures::{
-    self, Error, Identity, Master, ReadStage, Sample, Station, Unsaved, identify, procedure, read_position,
-    read_registers, read_sample, read_status, read_watched,
+    self, Error, Identity, Master, ReadStep, Sample, Station, Unsaved, identify, procedure, read_position,
+    read_registers, read_sample, read_status, read_watched_value,
 };
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Descriptions, DeviceMode, RegisterAddress};
@@ -79,7 +79,7 @@ impl Session<Biss> {
         store: Store,
         motor: Option<Motor>,
     ) -> Self {
-        let (types, broken) = descriptions(&store);
+        let (types, broken) = load_descriptions(&store);
         let is_virtual = motor.is_some();
         Session::with(
             Biss { wire, station, types: Arc::new(types), broken, motor, streamed_us: None },
@@ -143,14 +143,14 @@ impl Device for Biss {
             BissJob::Read(range) => self.read(context, range.start(), range.count())?,
             BissJob::ReadDirect => self.read(context, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,
             BissJob::ReadBank(bank) => {
-                self.read(context, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE)?
+                self.read(context, RegisterAddress::bank_start(bank), RegisterAddress::BANK_SIZE)?
             }
             BissJob::ReadArea(area) => {
                 self.ensure_identified(context)?;
                 let first = area.first;
                 let total = area.banks().count() as u64;
                 let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
-                let banks = procedures::read_area_surely(&mut self.master(context), &area, report)?;
+                let banks = procedures::read_area_verified(&mut self.master(context), &area, report)?;
                 BissOutput::Area { banks, unsaved: self.unsaved(context)? }
             }
             BissJob::Save | BissJob::SaveToCompare => {
@@ -198,7 +198,7 @@ impl Device for Biss {
     fn watch(&mut self, context: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
         // Determines the data areas, which must not be read while the shaft turns.
         self.ensure_identified(context)?;
-        let reading = read_watched(&mut self.master(context), *what)?;
+        let reading = read_watched_value(&mut self.master(context), *what)?;
         let refused = reading.value.is_err();
         let sample = Sample::Watched(reading);
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
@@ -242,9 +242,9 @@ impl Biss {
     }
 }
 
-fn read_step(place: ReadStage) -> JobStep {
+fn read_step(place: ReadStep) -> JobStep {
     match place {
-        ReadStage::Register(address) => JobStep::Register(address),
-        ReadStage::Bank(bank) => JobStep::Bank(bank),
+        ReadStep::Register(address) => JobStep::Register(address),
+        ReadStep::Bank(bank) => JobStep::Bank(bank),
     }
 }

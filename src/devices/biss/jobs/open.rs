@@ -5,13 +5,13 @@ use std::sync::Arc;
 use super::Biss;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::devices::biss::procedures::{Echo, Station, Transport};
-use crate::devices::biss::sim::{Config, Port};
+use crate::devices::biss::sim::{Config, UbicomPort};
 use crate::kinds::at_adapter;
-use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
+use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, UrlQuery};
 use crate::parameter::Words;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, margin, open_bytes, wrong_target_error};
+use crate::worker::open::{check_parameters, inside, open_bytes, reply_margin, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Link parameter that selects an adapter for schemes that do not imply one.
@@ -45,15 +45,15 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
 /// Parses the line settings and, for a link to a virtual encoder, its settings.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = transport(url)?;
-    let is_virtual = url.scheme == Scheme::Sim;
+    let is_virtual = url.scheme == LinkScheme::Sim;
     if is_virtual {
         check_virtual(&url.query, way)?;
     } else {
         let mut known = way.parameters();
-        known.extend((url.scheme == Scheme::Replay).then_some(BRIDGE));
+        known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
         check_parameters(&url.query, url.scheme, &known)?;
     }
-    let mut station = Station::from_query(&url.query, way, margin(url.scheme))?;
+    let mut station = Station::from_query(&url.query, way, reply_margin(url.scheme))?;
     if !is_virtual {
         return Ok((station, Simulated::new(way, &[])?));
     }
@@ -68,15 +68,17 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
 fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     const WAYS: Words<Transport> = Words(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
-        Scheme::Bridge => Ok(Transport::Adapter),
-        Scheme::Serial | Scheme::Tcp => Ok(Transport::ConfigPin),
-        Scheme::Modbus | Scheme::Enip => Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
-        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Transport::ConfigPin)),
+        LinkScheme::Bridge => Ok(Transport::Adapter),
+        LinkScheme::Serial | LinkScheme::Tcp => Ok(Transport::ConfigPin),
+        LinkScheme::Modbus | LinkScheme::Enip => {
+            Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:"))
+        }
+        LinkScheme::Sim | LinkScheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Transport::ConfigPin)),
     }
 }
 
 /// Refuses parameters that neither the line nor the virtual device has, and names those that require an adapter.
-fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
+fn check_virtual(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
         let device = if way == Transport::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
@@ -89,7 +91,7 @@ fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     let elsewhere = own(other).into_iter().filter(|name| !known.contains(name));
     let elsewhere = elsewhere.map(|name| format!("{name} ({BRIDGE}={switch})"));
     let known: Vec<String> = known.iter().map(ToString::to_string).chain(elsewhere).collect();
-    Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
+    Err(UrlError::Unknown { name, scheme: LinkScheme::Sim.word(), known: known.join(", ") })
 }
 
 /// A virtual encoder created from its parameters, connected to the configuration pin or an adapter.
@@ -109,7 +111,7 @@ impl Simulated {
     fn connect(self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Option<Motor>) {
         match self {
             Simulated::Pin(config) => {
-                let port = Port::new(&config);
+                let port = UbicomPort::new(&config);
                 let motor = port.encoder().motor();
                 (inside(port, clock), Some(motor))
             }

@@ -1,7 +1,7 @@
 //! Device check: the values of an encoder compared with its description, its data sheet and the line, with a verdict
 //! for each item. Nothing is written except the bank selection.
 
-use super::survey::{Bits, Status, survey};
+use super::survey::{FlagRegister, Status, survey};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
 use crate::analysis::check;
 use crate::devices::biss::protocol::{
@@ -129,7 +129,7 @@ fn identity(identity: &Identity) -> BissStepResult {
 }
 
 fn status(status: &Status) -> BissStepResult {
-    let set = |bits: &Option<Bits>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
+    let set = |bits: &Option<FlagRegister>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
     let mut findings: Vec<(Verdict, CheckFinding)> =
         set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, CheckFinding::Error(bit, name))).collect();
     let warnings = set(&status.warnings).into_iter();

@@ -138,7 +138,7 @@ pub enum Error {
 
 impl Error {
     /// Returns the error for a reply that belongs to another kind of request.
-    pub(super) fn other_reply(requested: RequestedItem, reply: &Reply) -> Self {
+    pub(super) fn unexpected_reply(requested: RequestedItem, reply: &Reply) -> Self {
         Error::OtherReply { requested, reply: format!("{reply:?}") }
     }
 }

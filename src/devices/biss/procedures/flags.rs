@@ -59,7 +59,7 @@ fn is_set(master: &mut Master<'_>, role: Role) -> Result<Option<bool>, Error> {
     let (description, firmware) = (master.station().description.clone(), master.station().firmware.unwrap_or_default());
     let register = description.as_ref().and_then(|own| own.with_role(role)).filter(|own| firmware >= own.since);
     let Some(register) = register else { return Ok(None) };
-    match master.read_run(register.address, register.width.into()) {
+    match master.read_consecutive(register.address, register.width.into()) {
         Ok(bytes) => Ok(Some(bytes.iter().any(|byte| *byte != 0))),
         Err(Error::NoSuchRegister { .. }) => Ok(None),
         Err(error) => Err(error),

@@ -242,7 +242,7 @@ fn read_sheet(
     bank: u8,
     registers: &mut Registers,
 ) -> Result<Option<DataSheetBank>, Error> {
-    let bytes = match registers.read(master, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE) {
+    let bytes = match registers.read(master, RegisterAddress::bank_start(bank), RegisterAddress::BANK_SIZE) {
         Ok(bytes) => bytes,
         Err(Error::NoSuchRegister { .. }) => return Ok(None),
         Err(error) => return Err(error),

@@ -100,7 +100,7 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, during which the encoder may not reply for up to `patience`. Reads are repeated for this time.
-    pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn with_reply_timeout<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
         self.line.patience = before;
@@ -134,7 +134,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// As for [`read`](Self::read); [`Error::OutOfRange`] after the last address.
-    pub fn read_run(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
+    pub fn read_consecutive(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
         let end = start.global().checked_add(count_16).ok_or_else(none)?;
@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
             };
             let failed = self.failed(requested, tries, &trouble);
             let failure = self.may_try_again(tries, trouble, failed.clone());
-            if !self.station.reads_back(address) {
+            if !self.station.is_readback_conclusive(address) {
                 return Err(unclear(failed));
             }
             // From here on the result must be determined, even after cancellation.
@@ -200,7 +200,7 @@ impl<'a> Master<'a> {
         }
         self.ensure_ready()?;
         match self.ask(RequestedItem::Position, |master| master.read_bus_position_once()) {
-            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.read_more_frames(failed),
+            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.retry_frames(failed),
             result => result,
         }
     }
@@ -231,11 +231,11 @@ impl<'a> Master<'a> {
         match self.station.transport {
             Transport::Adapter => self.ensure_bus_ready(),
             Transport::ConfigPin if self.station.order.is_some() => Ok(()),
-            Transport::ConfigPin => self.probe_order(),
+            Transport::ConfigPin => self.probe_byte_order(),
         }
     }
 
-    fn probe_order(&mut self) -> Result<(), Error> {
+    fn probe_byte_order(&mut self) -> Result<(), Error> {
         let requested = RequestedItem::Read(requested_register(Request::PROBE_REGISTER));
         let answer = self.read_confirmed(requested, |master| master.probe_once())?;
         let order = byte_order_from_reply(answer).ok_or(Error::OrderUnknown { answer })?;
@@ -270,7 +270,7 @@ impl<'a> Master<'a> {
     ) -> Result<u8, Error> {
         let mut value = self.ask(requested, &mut once)?;
         for _ in 0..TRIES {
-            if !self.station.reads_twice() {
+            if !self.station.needs_double_read() {
                 return Ok(value);
             }
             let again = self.ask(requested, &mut once)?;
@@ -287,7 +287,7 @@ impl<'a> Master<'a> {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
             ExchangeError::Damage(cause) => Error::Damaged { requested, tries, cause: cause.clone() },
-            ExchangeError::NoFrame(cause) => self.no_frame(*cause, tries),
+            ExchangeError::NoFrame(cause) => self.missing_frame_error(*cause, tries),
         }
     }
 

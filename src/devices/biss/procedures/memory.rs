@@ -33,7 +33,7 @@ pub enum Unsaved {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReadStage {
+pub enum ReadStep {
     Register(RegisterAddress),
     Bank(u8),
 }
@@ -92,7 +92,7 @@ pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8
     if in_area {
         ensure_standstill(master)?;
     }
-    certainly(master, |master| master.read_run(start, count.into()))
+    read_reliably(master, |master| master.read_consecutive(start, count.into()))
 }
 
 /// Reads a data area; the shaft must be at rest.
@@ -103,8 +103,8 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
     let mut banks = Vec::new();
     for number in area.banks() {
         progress(number);
-        let start = RegisterAddress::start_of(number);
-        banks.push(Bank { number, bytes: exact_length(start, master.read_run(start, Bank::SIZE)?)? });
+        let start = RegisterAddress::bank_start(number);
+        banks.push(Bank { number, bytes: exact_length(start, master.read_consecutive(start, Bank::SIZE)?)? });
     }
     Ok(banks)
 }
@@ -113,13 +113,13 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
-pub fn read_area_surely(
+pub fn read_area_verified(
     master: &mut Master<'_>,
     area: &Area,
     progress: &mut dyn FnMut(u8),
 ) -> Result<Vec<Bank>, Error> {
     ensure_standstill(master)?;
-    certainly(master, |master| read_area(master, area, progress))
+    read_reliably(master, |master| read_area(master, area, progress))
 }
 
 /// Reads the identity and everything that can be restored. The device mode is left unchanged, since returning to
@@ -131,9 +131,9 @@ pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
     unsaved: Unsaved,
-    progress: &mut dyn FnMut(u64, u64, ReadStage),
+    progress: &mut dyn FnMut(u64, u64, ReadStep),
 ) -> Result<BissProfile, Error> {
-    certainly(master, |master| {
+    read_reliably(master, |master| {
         let mut registers = Registers::default();
         let identity = identify_with(master, types, &mut registers)?;
         let description = identity.description.clone();
@@ -147,13 +147,13 @@ pub fn save(
         let in_areas = total;
         let survey = read_survey(master, identity, registers, &mut |at, of, address| {
             (done, total) = (of, of + in_areas);
-            progress(at, total, ReadStage::Register(address));
+            progress(at, total, ReadStep::Register(address));
         })?;
         let mut data = Vec::new();
         for area in areas {
             ensure_standstill(master)?;
             let banks = read_area(master, area, &mut |bank| {
-                progress(done, total, ReadStage::Bank(bank));
+                progress(done, total, ReadStep::Bank(bank));
                 done += Bank::SIZE as u64;
             })?;
             data.push(DataImage::of(area, banks));
@@ -169,13 +169,13 @@ pub fn save(
 
 /// Repeats the reading if the line has damaged any data in the meantime, because more damage may have gone unnoticed.
 /// In that case, everything must be read twice with the same result.
-fn certainly<T>(
+fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let was_sure = master.station().reads_twice();
+    let was_sure = master.station().needs_double_read();
     let value = read(master)?;
-    if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
+    if was_sure || !master.station().needs_double_read() { Ok(value) } else { master.thoroughly(read) }
 }
 
 /// Creates the profile of an encoder from a reading, with the device mode of the reading if it was not operation.

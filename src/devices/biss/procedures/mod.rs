@@ -29,9 +29,9 @@ pub use frames::{Frame, FrameReadingError, FrameRun, frames};
 pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};
 pub use master::Master;
 pub use memory::{
-    ReadStage, Unsaved, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save,
+    ReadStep, Unsaved, ensure_standstill, profile_of, read_area, read_area_verified, read_registers, save,
 };
-pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
+pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched_value};
 pub use registers::Registers;
 pub use station::{BusParameters, FrameParameters, LineParameters, ORDERS, PinParameters, Station, Supply, Transport};
-pub use survey::{Bits, Status, Survey, read_status, survey};
+pub use survey::{FlagRegister, Status, Survey, read_status, survey};

@@ -130,13 +130,13 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
+pub fn read_watched_value(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
     let value = match what.addresses().find(|address| of_area(*address)) {
         // Manual 6.5: not while the shaft turns, and the user does not stop it for this.
         Some(address) => Err(Error::NotWatched { address }),
-        None => match master.read_run(what.start(), what.count().into()) {
+        None => match master.read_consecutive(what.start(), what.count().into()) {
             Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),
             value => value,
         },

@@ -52,14 +52,14 @@ impl Registers {
     /// Reads a run of registers and stores it.
     ///
     /// # Errors
-    /// As for [`Master::read_run`].
+    /// As for [`Master::read_consecutive`].
     pub(super) fn read(
         &mut self,
         master: &mut Master<'_>,
         start: RegisterAddress,
         count: u8,
     ) -> Result<Vec<u8>, Error> {
-        let bytes = master.read_run(start, count.into())?;
+        let bytes = master.read_consecutive(start, count.into())?;
         self.take(start, &bytes);
         Ok(bytes)
     }

@@ -6,16 +6,16 @@ use std::time::Duration;
 
 use super::flags::Flags;
 use super::identify::FrameSource;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::bits::ByteOrder;
-use crate::buses::bridge::procedures::flow::Flow;
-use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfter};
+use crate::buses::bridge::procedures::flow::SampleStream;
+use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfterSession};
 use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
 use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
-use crate::expected::{Expected, Quantity};
+use crate::expected::{AllowedValues, Quantity};
 use crate::link::line::{Echo, LineState, MARGIN};
-use crate::link::{Query, UrlError};
-use crate::parameter::{Checked, Maybe, Milliseconds, Millivolts, Parameters, Refused, Whole, Words};
+use crate::link::{UrlError, UrlQuery};
+use crate::parameter::{Checked, Milliseconds, Millivolts, OptionalValue, Parameters, Refused, Whole, Words};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
@@ -27,7 +27,7 @@ parameters! {
     /// Link parameters of the configuration pin.
     pub struct PinParameters: UrlError {
         /// Baud rate of the serial port; the port itself may support fewer rates.
-        pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
+        pub baud: Baud = FORMAT.baud, "baud" => Checked(AllowedValues::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
         /// Byte order of register numbers, or `None` to detect it.
@@ -42,7 +42,7 @@ parameters! {
     /// Link parameters that set limits for late replies.
     pub struct LineParameters: UrlError {
         /// Additional delay allowed for a reply; `None` for the link's default.
-        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
+        pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
     }
 }
 
@@ -52,19 +52,19 @@ parameters! {
         /// BiSS clock frequency in hertz; the default is slow enough for long cables.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
         /// Supply voltage that the adapter provides to the encoder, in millivolts; `None` for no supply.
-        pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE));
-        pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
+        pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE));
+        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
     }
 }
 
 parameters! {
     /// Link parameters describing the frame of an encoder that does not report it.
     pub struct FrameParameters: UrlError {
-        pub multiturn: Option<u8> = None, "mt" => Maybe(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
-        pub singleturn: Option<u8> = None, "st" => Maybe(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
+        pub multiturn: Option<u8> = None, "mt" => OptionalValue(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
+        pub singleturn: Option<u8> = None, "st" => OptionalValue(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
         /// Checksum of the frames, if given; `Some(None)` means that frames carry no checksum.
         pub crc: Option<Option<Crc>> = None,
-            "crc" => Maybe(Checked(Expected::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
+            "crc" => OptionalValue(Checked(AllowedValues::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
     }
 }
 
@@ -126,9 +126,9 @@ pub struct Station {
     pub(super) good_frames: bool,
     /// Last values of the error and warning registers, read over the configuration pin.
     pub(super) flags: Option<Flags>,
-    pub(super) flow: Option<Flow>,
+    pub(super) flow: Option<SampleStream>,
     /// Time of the last frame of any earlier stream.
-    pub(super) streamed_until: Option<Time>,
+    pub(super) streamed_until: Option<SampleTime>,
     pub(super) written_at: Option<Moment>,
     /// Whether a write ended early and the encoder could not be returned to operation: a store, a calibration or a
     /// restart may still be running.
@@ -197,7 +197,7 @@ impl Station {
     ///
     /// # Errors
     /// If a value cannot be used; the error lists the allowed ones.
-    pub fn from_query(query: &Query, way: Transport, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &UrlQuery, way: Transport, margin: Duration) -> Result<Self, UrlError> {
         let pairs = query.pairs();
         let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
         let mut station = Station::new(way, LineParameters::read(pairs)?.margin.unwrap_or(margin));
@@ -242,13 +242,13 @@ impl Station {
     }
 
     /// Returns whether values must be read twice, because a checksum misses some pairs of flipped bits.
-    pub(super) fn reads_twice(&self) -> bool {
+    pub(super) fn needs_double_read(&self) -> bool {
         self.thorough || self.noisy
     }
 
     /// Returns whether reading a register back proves that the write succeeded. This is not the case for command
     /// registers, which may still hold the same value from an earlier command.
-    pub(super) fn reads_back(&self, address: RegisterAddress) -> bool {
+    pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
         }
@@ -276,16 +276,16 @@ impl fmt::Display for Station {
 
 impl FrameParameters {
     /// Returns the frame layout given in the link, with the usual checksum unless another is given.
-    fn layout(self, query: &Query) -> Result<Option<Layout>, Refused> {
+    fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, Refused> {
         let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
             let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
-            return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
+            return other.map_or(Ok(None), |name| Err(alone(name, AllowedValues::OnlyWith("st"))));
         };
         let crc = self.crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
         // Widths of 32 and 32 bits leave no space for flags and checksum.
         let layout = Layout::new(self.multiturn.unwrap_or(0), singleturn, true, true, crc);
-        layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
+        layout.map(Some).map_err(|_| alone("st", AllowedValues::ShortFrame))
     }
 }
 
@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
-        let tells = |station: &Station, text: &str| station.reads_back(text.parse().unwrap());
+        let tells = |station: &Station, text: &str| station.is_readback_conclusive(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");
         station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
         for text in ["0x40", "0x6A", "0x6B", "0x01:0x02", "0x01:0x07", "0x04:0x00", "0x43:0x3F"] {

@@ -4,8 +4,8 @@ use super::identify::identify_with;
 use super::registers::Registers;
 use super::{Error, Identity, Master, PositionReading};
 use crate::devices::biss::protocol::{
-    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Filter, Name, PresetValue, ProcedureKind,
-    RegisterAddress, Role, WiegandResult,
+    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Name, PositionFilter, PresetValue,
+    ProcedureKind, RegisterAddress, Role, WiegandResult,
 };
 
 /// The status of an encoder. A value is `None` if the encoder or its firmware has no register for it.
@@ -13,11 +13,11 @@ use crate::devices::biss::protocol::{
 pub struct Status {
     pub mode: Option<DeviceMode>,
     pub protection: Option<u8>,
-    pub errors: Option<Bits>,
-    pub warnings: Option<Bits>,
+    pub errors: Option<FlagRegister>,
+    pub warnings: Option<FlagRegister>,
     /// Temperature in degrees Celsius.
     pub celsius: Option<f64>,
-    pub filter: Option<Filter>,
+    pub filter: Option<PositionFilter>,
     /// Position with its error and warning bits, if available; `None` if no position could be read.
     pub position: Option<PositionReading>,
 }
@@ -32,7 +32,7 @@ impl Status {
 
 /// A register whose bits have individual meanings.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bits {
+pub struct FlagRegister {
     pub raw: u64,
     /// Set bits, lowest first, with their names from the description.
     pub set: Vec<(u8, Option<Name>)>,
@@ -127,12 +127,12 @@ fn status_of(description: &Description, registers: &Registers, position: Option<
         errors: bits(description, registers, Role::Errors),
         warnings: bits(description, registers, Role::Warnings),
         celsius: registers.quantity(description, Role::Temperature),
-        filter: byte(Role::Filter).map(Filter::from_byte),
+        filter: byte(Role::Filter).map(PositionFilter::from_byte),
         position,
     }
 }
 
-fn bits(description: &Description, registers: &Registers, role: Role) -> Option<Bits> {
+fn bits(description: &Description, registers: &Registers, role: Role) -> Option<FlagRegister> {
     let register = description.with_role(role)?;
     let bytes = registers.bytes(register)?;
     let raw = register.number(&bytes)?;
@@ -140,7 +140,7 @@ fn bits(description: &Description, registers: &Registers, role: Role) -> Option<
         Decoded::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.cloned())).collect(),
         _ => (0..64).filter(|bit| raw >> bit & 1 == 1).map(|bit| (bit, None)).collect(),
     };
-    Some(Bits { raw, set })
+    Some(FlagRegister { raw, set })
 }
 
 fn wiegand(description: &Description, registers: &Registers, number: u8) -> Option<WiegandResult> {

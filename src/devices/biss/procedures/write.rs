@@ -6,7 +6,7 @@ use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedurePr
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
-    Area, Description, DeviceMode, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress, Role,
+    Area, Description, DeviceMode, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress, Role,
 };
 use crate::profile::{Confirmed, Write, WriteRecord};
 
@@ -190,7 +190,7 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     ];
     wanted.extend(serial.map(|serial| (serial, identity.serial_bytes.clone())));
     for (start, bytes) in wanted {
-        if master.read_run(start, bytes.len())? != bytes {
+        if master.read_consecutive(start, bytes.len())? != bytes {
             return Ok(false);
         }
     }
@@ -252,18 +252,18 @@ pub fn read_state(
 /// If the exchange fails.
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
-    let bytes = master.read_run(start, Bank::SIZE)?;
+    let bytes = master.read_consecutive(start, Bank::SIZE)?;
     Ok(Bank { number, bytes: exact_length(start, bytes)? })
 }
 
 /// Reads the filter in use, or `None` if the firmware offers no choice.
-fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<Filter>, Error> {
+fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<PositionFilter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
     if !has(description, firmware, ProcedureKind::FilterSelection) {
         return Ok(None);
     }
-    Ok(Some(Filter::from_byte(master.read(register.address)?)))
+    Ok(Some(PositionFilter::from_byte(master.read(register.address)?)))
 }
 
 /// Reads the stored preset value, or `None` if the firmware has none.
@@ -271,7 +271,7 @@ fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Opt
     let firmware = master.station().firmware;
     let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);
     let Some(place) = place.filter(|_| has(description, firmware, ProcedureKind::Preset)) else { return Ok(None) };
-    let bytes = master.read_run(place, PresetValue::BYTES.into())?;
+    let bytes = master.read_consecutive(place, PresetValue::BYTES.into())?;
     Ok(<[u8; 6]>::try_from(bytes).ok().map(PresetValue::parse))
 }
 

@@ -46,8 +46,8 @@ fn compare_bytes(item: &str, left: Option<Vec<u8>>, right: Option<Vec<u8>>, comp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::biss::profile::test_profiles::{profile, with_bytes};
-    use crate::devices::biss::protocol::Filter;
+    use crate::devices::biss::profile::test_profiles::{profile, set_bank_bytes};
+    use crate::devices::biss::protocol::PositionFilter;
 
     fn listed(comparison: &Comparison) -> Vec<(&str, &str, &str)> {
         comparison.differences.iter().map(|d| (d.item.as_str(), d.left.as_str(), d.right.as_str())).collect()
@@ -57,9 +57,9 @@ mod tests {
     fn only_differences_are_listed() {
         let left = profile("1");
         let mut right = profile("2");
-        with_bytes(&mut right, 0x24, &[(0x10, 0xA1), (0x11, 0xA2), (0x13, 0xA3)]);
-        with_bytes(&mut right, 0x23, &[(0x3F, 0x01)]);
-        right.filter = Some(Filter::Dynamic);
+        set_bank_bytes(&mut right, 0x24, &[(0x10, 0xA1), (0x11, 0xA2), (0x13, 0xA3)]);
+        set_bank_bytes(&mut right, 0x23, &[(0x3F, 0x01)]);
+        right.filter = Some(PositionFilter::Dynamic);
         right.preset.as_mut().unwrap().value = crate::devices::biss::protocol::PresetValue::new(0x18000, 0).unwrap();
         let comparison = compare(&left, &right);
         let expected = [
@@ -81,7 +81,7 @@ mod tests {
         let mut left = profile("1");
         let mut right = profile("1");
         left.data[1].empty = None;
-        with_bytes(&mut left, 0x30, &[(0, 1)]);
+        set_bank_bytes(&mut left, 0x30, &[(0, 1)]);
         (right.filter, right.preset) = (None, None);
         let comparison = compare(&left, &right);
         assert_eq!(comparison.only_left, ["0x6E", "0x01:0x02+6"]);

@@ -8,7 +8,7 @@ use super::{
     plan_data,
 };
 use crate::devices::biss::protocol::{
-    Area, Description, Filter, Firmware, PresetValue, Procedure, ProcedureKind, RegisterAddress,
+    Area, Description, Firmware, PositionFilter, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
 /// First firmware that can preset the singleturn or multiturn part separately (manual 6.7).
@@ -25,7 +25,7 @@ pub enum MotorSource {
 
 /// The steps of mounting an encoder, performed in field order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MountingRun {
+pub struct MountingSteps {
     /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
     /// Whether to save the result of the Wiegand test; `None` to skip the test.
@@ -36,7 +36,7 @@ pub struct MountingRun {
     pub data: Option<Box<BissProfile>>,
 }
 
-impl MountingRun {
+impl MountingSteps {
     /// Returns whether any step of the run needs a motor.
     pub fn needs_motor(&self) -> bool {
         self.calibrate || self.wiegand.is_some()
@@ -173,9 +173,9 @@ fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 
 ///
 /// # Errors
 /// If the filter does not exist, or the encoder offers no choice.
-pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) -> Result<BissPlan, PlanError> {
+pub fn plan_filter(description: &Description, device: &DeviceState, to: PositionFilter) -> Result<BissPlan, PlanError> {
     let from = have(description, device, ProcedureKind::FilterSelection, device.filter)?;
-    if let Filter::Unknown(code) = to {
+    if let PositionFilter::Unknown(code) = to {
         return Err(PlanError::UnknownFilter { code });
     }
     let base = Base { filter: Some(from), ..Base::default() };
@@ -217,7 +217,7 @@ pub fn plan_preset(
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,
-    run: &MountingRun,
+    run: &MountingSteps,
     motor: MotorSource,
 ) -> Result<BissPlan, PlanError> {
     let firmware = device.identity.firmware;
@@ -225,7 +225,7 @@ pub fn plan_mounting(
     let mut plan = BissPlan { base: Base::default(), ops: Vec::new() };
     if run.calibrate {
         procedure(description, firmware, ProcedureKind::Calibration)?;
-        if let Some(filter) = device.filter.filter(|filter| *filter != Filter::Balanced) {
+        if let Some(filter) = device.filter.filter(|filter| *filter != PositionFilter::Balanced) {
             return Err(PlanError::NotBalanced { code: filter.byte() });
         }
         plan.base.filter = device.filter;

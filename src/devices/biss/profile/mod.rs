@@ -17,7 +17,7 @@ mod test_profiles;
 mod text;
 
 pub use edit::{
-    MotorSource, MountingRun, RegisterKind, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
+    MotorSource, MountingSteps, RegisterKind, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
 };
 pub use entry_error::EntryError;
 pub use item::{ItemError, RegisterRange};

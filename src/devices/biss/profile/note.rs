@@ -3,7 +3,7 @@
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
-use crate::devices::biss::protocol::{Description, Filter, PresetValue};
+use crate::devices::biss::protocol::{Description, PositionFilter, PresetValue};
 
 impl Op {
     /// Returns a description of the changes with old and new values. If many registers change, only the first are
@@ -51,11 +51,11 @@ fn place(value: PresetValue) -> String {
     format!("step {}, turn {}", value.singleturn(), value.multiturn())
 }
 
-fn filter(filter: Filter) -> &'static str {
+fn filter(filter: PositionFilter) -> &'static str {
     match filter {
-        Filter::Balanced => "balanced",
-        Filter::Dynamic => "dynamic",
-        Filter::Unknown(_) => "unknown",
+        PositionFilter::Balanced => "balanced",
+        PositionFilter::Dynamic => "dynamic",
+        PositionFilter::Unknown(_) => "unknown",
     }
 }
 
@@ -93,7 +93,7 @@ mod tests {
             ),
             (Op::FirePreset { parts: PresetParts::Singleturn, value }, "position: → step 98304".to_owned()),
             (
-                Op::SelectFilter { from: Filter::Balanced, to: Filter::Dynamic },
+                Op::SelectFilter { from: PositionFilter::Balanced, to: PositionFilter::Dynamic },
                 "0x6E filter: balanced → dynamic".to_owned(),
             ),
             (Op::Calibrate, "calibration".to_owned()),

@@ -1,7 +1,7 @@
 //! The operations that change an encoder, their cost, and the values that a plan is based on.
 
 use super::{Bank, BissProfile, RegisterRange};
-use crate::devices::biss::protocol::{Area, Filter, PresetCommand, PresetValue, RegisterAddress};
+use crate::devices::biss::protocol::{Area, PositionFilter, PresetCommand, PresetValue, RegisterAddress};
 use crate::profile::{Operation, Plan};
 
 /// A plan of writes to a BiSS encoder.
@@ -13,7 +13,7 @@ pub struct Base {
     /// Plain data banks that the plan changes.
     pub banks: Vec<Bank>,
     /// Filter in use.
-    pub filter: Option<Filter>,
+    pub filter: Option<PositionFilter>,
     /// Preset value stored in the encoder.
     pub preset: Option<PresetValue>,
     /// Individual registers that the plan changes, with their current values.
@@ -47,9 +47,9 @@ pub enum Op {
     /// Selects the position filter (manual 6.6).
     SelectFilter {
         /// Filter in use before the operation.
-        from: Filter,
+        from: PositionFilter,
         /// Filter to select.
-        to: Filter,
+        to: PositionFilter,
     },
     /// Calibrates the encoder in guided steps (manual 6.4).
     Calibrate,
@@ -104,12 +104,12 @@ impl PresetParts {
     }
 
     /// Returns whether the position within the revolution is set.
-    pub const fn sets_singleturn(self) -> bool {
+    pub const fn includes_singleturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Singleturn)
     }
 
     /// Returns whether the number of revolutions is set.
-    pub const fn sets_multiturn(self) -> bool {
+    pub const fn includes_multiturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Multiturn)
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::RegisterRange;
 use crate::devices::biss::protocol::{
-    Area, DeviceMode, Filter, Firmware, Identity, PresetValue, ProfileId, RegisterAddress, WiegandResult,
+    Area, DeviceMode, Firmware, Identity, PositionFilter, PresetValue, ProfileId, RegisterAddress, WiegandResult,
 };
 use crate::profile::ron_text::Unknown;
 
@@ -15,7 +15,7 @@ pub struct BissProfile {
     /// Identity of the encoder that the profile was read from.
     pub identity: ProfileIdentity,
     /// Position filter; `None` if the encoder offers no choice.
-    pub filter: Option<Filter>,
+    pub filter: Option<PositionFilter>,
     /// Preset value, which belongs to the mounting; `None` if the encoder has none.
     pub preset: Option<PresetSetting>,
     /// Values that change on their own or cannot be written; recorded, but neither compared nor restored.
@@ -211,7 +211,7 @@ impl Bank {
     }
 
     /// Returns the byte that all registers have in common, or `None` if they differ.
-    fn only_byte(&self) -> Option<u8> {
+    fn common_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)
     }
@@ -234,11 +234,11 @@ impl DataImage {
     /// left out.
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
-        let count = |byte| banks.iter().filter(|bank| bank.only_byte() == Some(byte)).count();
+        let count = |byte| banks.iter().filter(|bank| bank.common_byte() == Some(byte)).count();
         // Contents of memory that was never written, or has been erased.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
-        let holds = |bank: &Bank| empty.is_none() || bank.only_byte() != empty;
+        let holds = |bank: &Bank| empty.is_none() || bank.common_byte() != empty;
         DataImage {
             name: area.name.english().to_owned(),
             first: area.first,

@@ -5,7 +5,7 @@ pub use crate::profile::RestoreOptions;
 
 use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
-use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
+use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
 /// The current state of an encoder, as far as planning requires it.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
     /// Filter in use, or `None` if the encoder offers no choice.
-    pub filter: Option<Filter>,
+    pub filter: Option<PositionFilter>,
     /// Stored preset value, or `None` if the encoder has none.
     pub preset: Option<PresetValue>,
     /// Plain data areas of the encoder.
@@ -294,7 +294,7 @@ impl<'a> Planner<'a> {
             (None, _) => {}
             (Some(_), None) => self.missing.push(BissProfile::FILTER.to_owned()),
             (Some(to), Some(from)) if to == from => self.unchanged += 1,
-            (Some(Filter::Unknown(code)), Some(_)) => return Err(PlanError::UnknownFilter { code }),
+            (Some(PositionFilter::Unknown(code)), Some(_)) => return Err(PlanError::UnknownFilter { code }),
             (Some(to), Some(from)) => {
                 self.base.filter = Some(from);
                 self.ops.push(Op::SelectFilter { from, to });

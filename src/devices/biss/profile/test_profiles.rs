@@ -1,7 +1,7 @@
 //! Test profiles based on a kit encoder as delivered.
 
 use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, Recorded};
-use crate::devices::biss::protocol::{Access, Area, Filter, Firmware, PresetValue, ProfileId};
+use crate::devices::biss::protocol::{Access, Area, Firmware, PositionFilter, PresetValue, ProfileId};
 
 /// Returns the data areas from table 12 of the manual.
 pub(super) fn areas() -> [Area; 2] {
@@ -30,7 +30,7 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
             singleturn_bits: Some(17),
             unknown: Default::default(),
         },
-        filter: Some(Filter::Balanced),
+        filter: Some(PositionFilter::Balanced),
         preset: Some(PresetSetting { value: PresetValue::default(), unknown: Default::default() }),
         recorded: Recorded::default(),
         mounting: Vec::new(),
@@ -39,7 +39,7 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
 }
 
 /// Changes bytes in a bank, which is added to the listed banks if necessary.
-pub(super) fn with_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
+pub(super) fn set_bank_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
     let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled(number, 0));
     for (at, byte) in bytes {
         if let Some(place) = bank.bytes.get_mut(*at) {

@@ -5,24 +5,26 @@ use super::{
     Recorded,
 };
 use crate::bits::hex;
-use crate::devices::biss::protocol::{self, DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
-use crate::expected::Expected;
+use crate::devices::biss::protocol::{
+    self, DeviceMode, Firmware, PositionFilter, PresetValue, ProfileId, WiegandResult,
+};
+use crate::expected::AllowedValues;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Writer, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
 /// Range of each part of a preset value, which occupies three registers.
-const PRESET_NUMBER: Expected = Expected::between(0, 16_777_215);
+const PRESET_NUMBER: AllowedValues = AllowedValues::between(0, 16_777_215);
 
 impl Profile for BissProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
-        let filter = entries.optional("filter", Expected::Byte)?.map(Filter::from_byte);
+        let filter = entries.optional("filter", AllowedValues::Byte)?.map(PositionFilter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("0x24:0x10+3"), read_marked)?;
+        let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("0x24:0x10+3"), parse_mounting_item)?;
         let mut data: Vec<DataImage> = Vec::new();
         for entries in entries.required_structures("data")? {
             let path = entries.path_of("banks");
@@ -40,9 +42,9 @@ impl Profile for BissProfile {
         self.write_identity(writer);
         if let Some(filter) = self.filter {
             let name = match filter {
-                Filter::Balanced => "balanced",
-                Filter::Dynamic => "dynamic",
-                Filter::Unknown(_) => "unknown",
+                PositionFilter::Balanced => "balanced",
+                PositionFilter::Dynamic => "dynamic",
+                PositionFilter::Unknown(_) => "unknown",
             };
             writer.entry("filter", &format!("0x{:02X}", filter.byte()), name);
         }
@@ -154,24 +156,24 @@ fn printable(bytes: &[u8]) -> String {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let firmware = match entries.optional::<String>("firmware", Expected::TextSuchAs("1.6.0"))? {
+    let firmware = match entries.optional::<String>("firmware", AllowedValues::TextSuchAs("1.6.0"))? {
         None => None,
         Some(text) => Some(
             read_firmware(&text)
                 .ok_or_else(|| ProfileError::refused(entries.path_of("firmware"), EntryError::Release(text)))?,
         ),
     };
-    let device_id = read_exactly(&mut entries, "device_id")?;
-    let manufacturer = read_exactly(&mut entries, "manufacturer")?;
+    let device_id = read_array(&mut entries, "device_id")?;
+    let manufacturer = read_array(&mut entries, "manufacturer")?;
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", Expected::Text)?,
-        profile_id: ProfileId::new(entries.required("profile_id", Expected::Word)?),
+        serial_number: entries.required("serial_number", AllowedValues::Text)?,
+        profile_id: ProfileId::new(entries.required("profile_id", AllowedValues::Word)?),
         device_id,
         manufacturer,
         firmware,
-        description: entries.optional("description", Expected::Text)?.unwrap_or_default(),
-        multiturn_bits: entries.optional("multiturn_bits", Expected::Byte)?,
-        singleturn_bits: entries.optional("singleturn_bits", Expected::Byte)?,
+        description: entries.optional("description", AllowedValues::Text)?.unwrap_or_default(),
+        multiturn_bits: entries.optional("multiturn_bits", AllowedValues::Byte)?,
+        singleturn_bits: entries.optional("singleturn_bits", AllowedValues::Byte)?,
         unknown: entries.rest()?,
     })
 }
@@ -184,7 +186,7 @@ fn read_firmware(text: &str) -> Option<Firmware> {
     }
 }
 
-fn read_exactly<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
+fn read_array<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
     let path = entries.path_of(name);
     let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
     let length = EntryError::Length { got: bytes.len(), expected: N };
@@ -205,21 +207,21 @@ fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     let mut result = |name| {
-        let tenths: Option<[u8; 4]> = entries.optional(name, Expected::FourTenths)?;
+        let tenths: Option<[u8; 4]> = entries.optional(name, AllowedValues::FourTenths)?;
         Ok(tenths.map(WiegandResult::parse))
     };
     Ok(Recorded {
         wiegand_last: result("wiegand_last")?,
         wiegand_production: result("wiegand_production")?,
         wiegand_saved: result("wiegand_saved")?,
-        calibration_status: entries.optional("calibration_status", Expected::Byte)?,
-        device_mode: entries.optional("device_mode", Expected::Byte)?.map(DeviceMode::new),
+        calibration_status: entries.optional("calibration_status", AllowedValues::Byte)?,
+        device_mode: entries.optional("device_mode", AllowedValues::Byte)?.map(DeviceMode::new),
         eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
         unknown: entries.rest()?,
     })
 }
 
-fn read_marked(text: &str) -> Result<MountingItem, EntryError> {
+fn parse_mounting_item(text: &str) -> Result<MountingItem, EntryError> {
     if text == MountingItem::CALIBRATION {
         return Ok(MountingItem::Calibration);
     }
@@ -228,7 +230,7 @@ fn read_marked(text: &str) -> Result<MountingItem, EntryError> {
 }
 
 fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
-    let (first, last): (u8, u8) = entries.required("banks", Expected::Banks)?;
+    let (first, last): (u8, u8) = entries.required("banks", AllowedValues::Banks)?;
     if first > last {
         return Err(ProfileError::refused(entries.path_of("banks"), EntryError::Order { first, last }));
     }
@@ -246,14 +248,14 @@ fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
         listed.push(own);
     }
     listed.sort_by_key(|listed| listed.bank.number);
-    let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
-    let empty = entries.optional("empty", Expected::Byte)?;
+    let name = entries.optional("name", AllowedValues::Text)?.unwrap_or_default();
+    let empty = entries.optional("empty", AllowedValues::Byte)?;
     Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
 }
 
 fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
-    let number = entries.required("bank", Expected::Byte)?;
-    let bytes = read_exactly(&mut entries, "bytes")?;
+    let number = entries.required("bank", AllowedValues::Byte)?;
+    let bytes = read_array(&mut entries, "bytes")?;
     Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
 }
 

@@ -36,7 +36,7 @@ impl RegisterAddress {
     }
 
     /// Creates the address of the first register in a bank.
-    pub const fn start_of(bank: u8) -> Self {
+    pub const fn bank_start(bank: u8) -> Self {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }
 
@@ -150,7 +150,7 @@ mod tests {
             assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
         }
         assert_eq!(RegisterAddress::from_global(0x403F), RegisterAddress::banked(0xFF, 0x3F));
-        assert_eq!(Some(RegisterAddress::start_of(0xFF)), RegisterAddress::banked(0xFF, 0));
+        assert_eq!(Some(RegisterAddress::bank_start(0xFF)), RegisterAddress::banked(0xFF, 0));
         for (address, place) in [
             (0x40, RegisterAddress::BANK_SELECT),
             (0x41, RegisterAddress::EDS_BANK),

@@ -14,7 +14,7 @@ use std::fmt;
 
 pub use flaw::{Claim, Flaw};
 pub use name::Name;
-pub use register::{Access, Area, Decoded, Decoding, Register, Role};
+pub use register::{Access, Area, Decoded, Register, Role, ValueDecoding};
 
 use super::address::RegisterAddress;
 use super::procedure::ProcedureKind;
@@ -241,7 +241,7 @@ impl Descriptions {
 
     /// Returns the descriptions merged with `others`, which take precedence for the same encoder.
     #[must_use]
-    pub fn overlaid_with(self, others: Descriptions) -> Self {
+    pub fn merged_with(self, others: Descriptions) -> Self {
         let mut all = others.0;
         all.extend(self.0);
         all.sort_by_key(|description| description.identity.is_none());

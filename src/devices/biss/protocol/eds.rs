@@ -65,7 +65,7 @@ pub enum EdsValue {
     /// Profile ID.
     Profile(ProfileId),
     /// Meaning of a status bit sent next to the position.
-    Feedback(Feedback),
+    Feedback(StatusBitMeaning),
     /// Encoder type. Type 0 is rotary; other numbers are unknown (`U`).
     EncoderType(u8),
     /// Number that stands for a code.
@@ -74,7 +74,7 @@ pub enum EdsValue {
 
 /// The meaning of a status bit sent next to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feedback {
+pub enum StatusBitMeaning {
     /// The frame has no such bit (code 0).
     None,
     /// Error bit, active low (code 1).
@@ -212,7 +212,7 @@ impl Eds {
     }
 
     /// Returns a kit encoder's bank with factory settings; bytes without a value in the manual are 0.
-    pub fn delivered(bank: EdsBank) -> Self {
+    pub fn factory_default(bank: EdsBank) -> Self {
         let mut bytes = [0; 64];
         for field in bank.fields() {
             let value = field.default.unwrap_or(0).to_be_bytes();
@@ -263,13 +263,14 @@ impl Eds {
 /// # Errors
 /// [`EdsError`] if the banks describe no layout, or disagree.
 pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
-    let feedback = |number: u8, offset: u8, expected: Feedback| match Feedback::from_byte(encoder.byte(offset)) {
-        Feedback::None => Ok(false),
-        meaning if meaning == expected => Ok(true),
-        _ => Err(EdsError::Feedback { number, code: encoder.byte(offset) }),
-    };
-    let error_bit = feedback(1, 0x04, Feedback::Error)?;
-    let warning_bit = feedback(2, 0x05, Feedback::Warning)?;
+    let feedback =
+        |number: u8, offset: u8, expected: StatusBitMeaning| match StatusBitMeaning::from_byte(encoder.byte(offset)) {
+            StatusBitMeaning::None => Ok(false),
+            meaning if meaning == expected => Ok(true),
+            _ => Err(EdsError::Feedback { number, code: encoder.byte(offset) }),
+        };
+    let error_bit = feedback(1, 0x04, StatusBitMeaning::Error)?;
+    let warning_bit = feedback(2, 0x05, StatusBitMeaning::Warning)?;
     let crc = Crc::from_data_sheet(encoder.number(0x1C), encoder.number(0x20))?;
     let layout = Layout::new(encoder.byte(0x0A), encoder.byte(0x0C), error_bit, warning_bit, crc)?;
     let (common, encoder) = (common.byte(0x15), layout.data_bits());
@@ -303,7 +304,7 @@ impl EdsField {
             Meaning::Ticks { .. } => EdsValue::Ticks(byte),
             Meaning::Format | Meaning::Hex => EdsValue::Code(raw),
             Meaning::Profile => EdsValue::Profile(ProfileId::new(raw as u16)),
-            Meaning::Feedback => EdsValue::Feedback(Feedback::from_byte(byte)),
+            Meaning::Feedback => EdsValue::Feedback(StatusBitMeaning::from_byte(byte)),
             Meaning::EncoderType => EdsValue::EncoderType(byte),
             Meaning::Polynomial if raw == 0 => EdsValue::Polynomial(0),
             Meaning::Polynomial => EdsValue::Polynomial(u64::from(raw) << 1 | 1),
@@ -322,13 +323,13 @@ impl EdsValue {
     }
 }
 
-impl Feedback {
+impl StatusBitMeaning {
     const fn from_byte(byte: u8) -> Self {
         match byte {
-            0 => Feedback::None,
-            1 => Feedback::Error,
-            2 => Feedback::Warning,
-            _ => Feedback::Unknown(byte),
+            0 => StatusBitMeaning::None,
+            1 => StatusBitMeaning::Error,
+            2 => StatusBitMeaning::Warning,
+            _ => StatusBitMeaning::Unknown(byte),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::single_cycle::Layout;
 
 /// One cycle of the data line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cycle {
+pub struct BissCycle {
     /// Number of clocks for which the encoder was still busy (SLO = 0), at least 1.
     pub acknowledge: usize,
     /// CDS, the control frame bit that the encoder sends in this cycle.
@@ -39,7 +39,7 @@ pub enum CycleError {
     },
 }
 
-impl Cycle {
+impl BissCycle {
     /// Finds the frame in the samples of a cycle. Samples after the first one of the time-out are ignored.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl Cycle {
             return Err(CycleError::TimeOut { bits: layout.bits() });
         }
         let raw = frame.iter().fold(0, |raw, bit| raw << 1 | u64::from(*bit));
-        Ok(Cycle { acknowledge, control: *control, raw })
+        Ok(BissCycle { acknowledge, control: *control, raw })
     }
 
     /// Returns the samples from the acknowledge to the first one of the time-out.
@@ -88,12 +88,12 @@ mod tests {
     #[test]
     fn published_samples_match() {
         let layout = Layout::default();
-        let cycle = Cycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
-        assert_eq!(Cycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
+        let cycle = BissCycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
+        assert_eq!(BissCycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
         assert_eq!(cycle.emit(&layout), samples(SAMPLES));
         // A line at rest before the cycle, and the level after the time-out, make no difference.
         let rested = [vec![true; 2], samples(SAMPLES), vec![false, true, true]].concat();
-        assert_eq!(Cycle::parse(&rested, &layout), Ok(cycle));
+        assert_eq!(BissCycle::parse(&rested, &layout), Ok(cycle));
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
         assert_eq!(layout.parse(cycle.raw), Ok(reading));
     }
@@ -103,7 +103,7 @@ mod tests {
         let whole = samples(SAMPLES);
         let layout = Layout::default();
         for cut in 0..whole.len() - 1 {
-            let got = Cycle::parse(&whole[..cut], &layout);
+            let got = BissCycle::parse(&whole[..cut], &layout);
             let expected = match cut {
                 0 => CycleError::NoAcknowledge,
                 1..=3 => CycleError::NotReady,
@@ -116,24 +116,24 @@ mod tests {
     #[test]
     fn a_line_without_encoder_is_reported() {
         let layout = Layout::default();
-        assert_eq!(Cycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
-        assert_eq!(Cycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
+        assert_eq!(BissCycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
+        assert_eq!(BissCycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
         let long = Layout::new(16, 16, true, true, layout.crc().cloned()).unwrap();
         // The layout is one bit shorter than the encoder's frame, whose last bit, 1, falls into the time-out.
-        assert_eq!(Cycle::parse(&samples(SAMPLES), &long), Err(CycleError::TimeOut { bits: 40 }));
+        assert_eq!(BissCycle::parse(&samples(SAMPLES), &long), Err(CycleError::TimeOut { bits: 40 }));
     }
 
     proptest! {
         #[test]
         fn emitted_cycles_parse_back(acknowledge in 1usize..80, control: bool, raw in 0u64..1 << 41) {
-            let cycle = Cycle { acknowledge, control, raw };
+            let cycle = BissCycle { acknowledge, control, raw };
             let layout = Layout::default();
-            prop_assert_eq!(Cycle::parse(&cycle.emit(&layout), &layout), Ok(cycle));
+            prop_assert_eq!(BissCycle::parse(&cycle.emit(&layout), &layout), Ok(cycle));
         }
 
         #[test]
         fn no_samples_panic(samples: Vec<bool>) {
-            let _ = Cycle::parse(&samples, &Layout::default());
+            let _ = BissCycle::parse(&samples, &Layout::default());
         }
     }
 }

@@ -28,15 +28,15 @@ pub use control::{
 };
 pub use crc::{Crc, CrcError};
 pub use description::{
-    Access, Area, Claim, Decoded, Decoding, Description, DescriptionError, Descriptions, Flaw, Identity, Lock,
-    Mismatch, Name, Procedure, Register, Role,
+    Access, Area, Claim, Decoded, Description, DescriptionError, Descriptions, Flaw, Identity, Lock, Mismatch, Name,
+    Procedure, Register, Role, ValueDecoding,
 };
-pub use eds::{Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
-pub use line::{Cycle, CycleError};
+pub use eds::{Eds, EdsBank, EdsError, EdsField, EdsValue, StatusBitMeaning, layout as eds_layout};
+pub use line::{BissCycle, CycleError};
 pub use procedure::{
     CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,
     PresetStatus, PresetValue, ProcedureKind, PulseVoltage, WiegandCommand, WiegandResult, WiegandStatus,
 };
 pub use single_cycle::{FrameError, Layout, LayoutError, PositionData};
-pub use status::{DeviceMode, ErrorRegister, Filter, Firmware, ProfileId, Temperature, WarningRegister};
+pub use status::{DeviceMode, ErrorRegister, Firmware, PositionFilter, ProfileId, Temperature, WarningRegister};
 pub use widths::data_bits_of;

@@ -172,9 +172,9 @@ codes! {
         Open = 0x01 "get write access",
         /// Saves the selected filter and restarts.
         Save = 0x02 "save filter selection",
-        /// Selects [`Filter::Balanced`](super::Filter).
+        /// Selects [`PositionFilter::Balanced`](super::PositionFilter).
         Balanced = 0x03 "balanced filter",
-        /// Selects [`Filter::Dynamic`](super::Filter).
+        /// Selects [`PositionFilter::Dynamic`](super::PositionFilter).
         Dynamic = 0x04 "dynamic filter",
     }
 }

@@ -163,7 +163,7 @@ impl fmt::Display for DeviceMode {
 
 /// The position filter (6Eh).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Filter {
+pub enum PositionFilter {
     /// Filter 03h, the factory setting, with low noise.
     Balanced,
     /// Filter 04h, with low latency and more noise.
@@ -172,22 +172,22 @@ pub enum Filter {
     Unknown(u8),
 }
 
-impl Filter {
+impl PositionFilter {
     /// Returns the filter for a register value.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
-            0x03 => Filter::Balanced,
-            0x04 => Filter::Dynamic,
-            _ => Filter::Unknown(byte),
+            0x03 => PositionFilter::Balanced,
+            0x04 => PositionFilter::Dynamic,
+            _ => PositionFilter::Unknown(byte),
         }
     }
 
     /// Returns the code, which is used both in 6Eh and as a command.
     pub const fn byte(self) -> u8 {
         match self {
-            Filter::Balanced => 0x03,
-            Filter::Dynamic => 0x04,
-            Filter::Unknown(byte) => byte,
+            PositionFilter::Balanced => 0x03,
+            PositionFilter::Dynamic => 0x04,
+            PositionFilter::Unknown(byte) => byte,
         }
     }
 }
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(known, [0, 1, 2, 4, 5, 7]);
         assert_eq!(DeviceMode::new(0x09).to_string(), "0x09 unknown mode");
         assert_eq!(DeviceMode::PRESET.to_string(), "0x07 preset");
-        assert!((0..=255).all(|byte| Filter::from_byte(byte).byte() == byte));
+        assert!((0..=255).all(|byte| PositionFilter::from_byte(byte).byte() == byte));
         assert!(ProfileId::new(0x6129).is_standard_encoder());
         assert!(!ProfileId::new(0x4129).is_standard_encoder() && !ProfileId::new(0xE129).is_standard_encoder());
     }

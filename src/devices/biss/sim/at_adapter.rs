@@ -2,7 +2,7 @@
 
 use super::{Config, Encoder};
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, BissDevice};
-use crate::sim::{ConfigError, Faults, Motor};
+use crate::sim::{ConfigError, Motor, SimulatedFaults};
 use crate::units::Moment;
 
 /// A kit encoder on the bus of an adapter, created from a [`Config`].
@@ -20,7 +20,7 @@ impl AttachableKind for AtAdapter {
 }
 
 impl BissDevice for Encoder {
-    fn another(&self) -> Box<dyn BissDevice> {
+    fn duplicate(&self) -> Box<dyn BissDevice> {
         Box::new(self.clone())
     }
 
@@ -41,7 +41,7 @@ impl BissDevice for Encoder {
         Encoder::set_rpm(self, now, rpm);
     }
 
-    fn set_faults(&mut self, faults: &Faults) {
+    fn set_faults(&mut self, faults: &SimulatedFaults) {
         Encoder::set_faults(self, faults);
     }
 

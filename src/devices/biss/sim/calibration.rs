@@ -6,17 +6,17 @@
 
 use std::time::Duration;
 
-use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, Filter};
+use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, PositionFilter};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Conditions {
+pub(super) struct CalibrationConditions {
     /// Shaft speed in revolutions per minute, positive for clockwise rotation.
     pub(super) rpm: f64,
     /// Speed variation in revolutions per minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
-    pub(super) filter: Filter,
+    pub(super) filter: PositionFilter,
 }
 
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl Calibration {
     }
 
     /// Handles a command, and returns `false` if it is refused.
-    pub(super) fn write(&mut self, now: Moment, value: u8, conditions: Conditions) -> bool {
+    pub(super) fn write(&mut self, now: Moment, value: u8, conditions: CalibrationConditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,
             CalibrationCommand::StartClockwise if self.status == CalibrationStatus::CounterclockwiseDone => true,
@@ -85,7 +85,7 @@ impl Calibration {
         true
     }
 
-    pub(super) fn disturb(&mut self, now: Moment) {
+    pub(super) fn force_failure(&mut self, now: Moment) {
         if let Some(run) = &mut self.run {
             (run.ends, run.outcome) = (now, CalibrationStatus::Failed);
         }
@@ -118,14 +118,14 @@ impl Calibration {
     }
 }
 
-fn failure(conditions: Conditions, clockwise: bool) -> Option<CalibrationStatus> {
+fn failure(conditions: CalibrationConditions, clockwise: bool) -> Option<CalibrationStatus> {
     if !Calibration::CELSIUS.contains(&conditions.celsius) {
         Some(CalibrationStatus::Temperature)
     } else if !Calibration::SPEED.contains(&conditions.rpm.abs()) {
         Some(CalibrationStatus::Speed)
     } else if (conditions.rpm > 0.0) != clockwise {
         Some(CalibrationStatus::WrongDirection)
-    } else if conditions.waver > Calibration::MAX_WAVER || conditions.filter != Filter::Balanced {
+    } else if conditions.waver > Calibration::MAX_WAVER || conditions.filter != PositionFilter::Balanced {
         Some(CalibrationStatus::Failed)
     } else {
         None

@@ -4,35 +4,35 @@
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use super::wiegand::Pulses;
+use super::wiegand::WiegandPulses;
 use crate::bits::ByteOrder;
-use crate::devices::biss::protocol::{Filter, Firmware};
-use crate::expected::{Expected, Limit, Quantity};
+use crate::devices::biss::protocol::{Firmware, PositionFilter};
+use crate::expected::{AllowedValues, Limit, Quantity};
 use crate::parameter::{Checked, SWITCH, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
+use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
     /// Settings of a virtual encoder. By default the encoder has factory settings and the newest known firmware, is at
     /// rest and has no faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
-        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => Checked(Expected::Release, firmware);
-        pub(super) serial_number: u32 = 0x0012_D687, "serial" => Checked(Expected::Number32, number::<u32>);
+        pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => Checked(AllowedValues::Release, firmware);
+        pub(super) serial_number: u32 = 0x0012_D687, "serial" => Checked(AllowedValues::Number32, number::<u32>);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         pub(super) reverses: bool = false, "motor" => Words(&[("steady", false), ("reverse", true)]);
-        pub(super) waver: f64 = 0.5, "waver" => Checked(Expected::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
+        pub(super) waver: f64 = 0.5, "waver" => Checked(AllowedValues::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
         pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => Whole(Quantity::Position, 0..=(1 << 33) - 1);
         pub(super) temperature: i16 = 30, "temperature" => Whole(Quantity::WholeCelsius, -50..=205);
-        pub(super) errors: u8 = 0, "errors" => Checked(Expected::ErrorRegister, number::<u8>);
-        pub(super) filter: Filter = Filter::Balanced,
-            "filter" => Words(&[("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)]);
-        pub(super) cycles: u32 = 3, "cycles" => Checked(Expected::WriteCycles, number::<u32>);
-        pub(super) pulses: Pulses = Pulses { average: 63, lowest: 58 },
-            "pulses" => Checked(Expected::Pulses, pulses);
+        pub(super) errors: u8 = 0, "errors" => Checked(AllowedValues::ErrorRegister, number::<u8>);
+        pub(super) filter: PositionFilter = PositionFilter::Balanced,
+            "filter" => Words(&[("balanced", PositionFilter::Balanced), ("dynamic", PositionFilter::Dynamic)]);
+        pub(super) cycles: u32 = 3, "cycles" => Checked(AllowedValues::WriteCycles, number::<u32>);
+        pub(super) pulses: WiegandPulses = WiegandPulses { average: 63, lowest: 58 },
+            "pulses" => Checked(AllowedValues::Pulses, pulses);
         pub(super) calibration_time: Duration = Duration::from_secs(5),
-            "calibration" => Checked(Expected::Seconds { low: Limit::thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
+            "calibration" => Checked(AllowedValues::Seconds { low: Limit::thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
         pub(super) silent_calibration: bool = true, "calibration-silent" => SWITCH;
         pub(super) keeps_status: bool = false, "calibration-status" => Words(&[("fresh", false), ("kept", true)]);
         pub(super) echo: bool = false, "echo" => SWITCH;
@@ -51,7 +51,7 @@ impl Config {
         setting::read(VirtualDevice::Encoder, pairs)
     }
 
-    pub const fn faults(&self) -> &Faults {
+    pub const fn faults(&self) -> &SimulatedFaults {
         &self.faults
     }
 
@@ -77,14 +77,14 @@ fn firmware(text: &str) -> Option<Firmware> {
     }
 }
 
-fn pulses(text: &str) -> Option<Pulses> {
+fn pulses(text: &str) -> Option<WiegandPulses> {
     let tenths = |volts: &str| {
         let volts: f64 = volts.parse().ok()?;
         // The product is at most 255.
         (0.0..=25.5).contains(&volts).then(|| (volts * 10.0).round() as u8)
     };
     let (average, lowest) = text.split_once(',')?;
-    Some(Pulses { average: tenths(average)?, lowest: tenths(lowest)? })
+    Some(WiegandPulses { average: tenths(average)?, lowest: tenths(lowest)? })
 }
 
 #[cfg(test)]
@@ -116,9 +116,9 @@ mod tests {
             position: 0x20000,
             temperature: -10,
             errors: 0x12,
-            filter: Filter::Dynamic,
+            filter: PositionFilter::Dynamic,
             cycles: 801,
-            pulses: Pulses { average: 61, lowest: 52 },
+            pulses: WiegandPulses { average: 61, lowest: 52 },
             calibration_time: Duration::from_millis(500),
             silent_calibration: false,
             keeps_status: true,

@@ -12,18 +12,18 @@ mod time;
 
 use std::time::Duration;
 
-use super::calibration::{Calibration, Conditions, Ended};
+use super::calibration::{Calibration, CalibrationConditions, Ended};
 use super::config::Config;
 use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
 use super::flash::Flash;
 use super::motor::Drive;
 use super::shaft::{FINE, Shaft};
-use super::wiegand::{Pulses, Wiegand};
+use super::wiegand::{Wiegand, WiegandPulses};
 use crate::devices::biss::protocol::{
     CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, PositionData, RegisterAddress,
     WiegandCommand, WiegandStatus,
 };
-use crate::sim::{Faults, Motor};
+use crate::sim::{Motor, SimulatedFaults};
 use crate::units::Moment;
 
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub struct Encoder {
     firmware: Firmware,
     serial_number: u32,
     waver: f64,
-    pulses: Pulses,
+    pulses: WiegandPulses,
     silent_calibration: bool,
     die_in_store: Option<u32>,
     eds: [Eds; 2],
@@ -76,7 +76,7 @@ impl Encoder {
 
     /// Creates an encoder from `config` that has been powered for a long time.
     pub fn new(config: &Config) -> Self {
-        let flash = Flash { filter: config.filter, ..Flash::delivered(config.cycles) };
+        let flash = Flash { filter: config.filter, ..Flash::factory_default(config.cycles) };
         let mut encoder = Encoder {
             firmware: config.firmware,
             serial_number: config.serial_number,
@@ -84,7 +84,7 @@ impl Encoder {
             pulses: config.pulses,
             silent_calibration: config.silent_calibration,
             die_in_store: config.faults.die_in_store(),
-            eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::delivered),
+            eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::factory_default),
             drive: Drive::new(config.rpm, config.reverses),
             shaft: Shaft::new(Layout::default(), config.position, config.rpm),
             celsius: config.temperature,
@@ -134,7 +134,7 @@ impl Encoder {
     }
 
     /// Replaces the flash faults without resetting the store count.
-    pub fn set_faults(&mut self, faults: &Faults) {
+    pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.die_in_store();
     }
 
@@ -240,7 +240,7 @@ impl Encoder {
                 true
             }
             (Some(0x00), 0x00) if self.mode == DeviceMode::CALIBRATION => {
-                let conditions = self.conditions();
+                let conditions = self.calibration_conditions();
                 self.calibration.write(now, value, conditions)
             }
             (Some(0x00), 0x06) if self.mode == DeviceMode::WIEGAND_TEST => self.wiegand_command(now, value),
@@ -275,8 +275,13 @@ impl Encoder {
         }
     }
 
-    fn conditions(&self) -> Conditions {
-        Conditions { rpm: self.shaft.rpm(), waver: self.waver, celsius: self.celsius, filter: self.flash.filter }
+    fn calibration_conditions(&self) -> CalibrationConditions {
+        CalibrationConditions {
+            rpm: self.shaft.rpm(),
+            waver: self.waver,
+            celsius: self.celsius,
+            filter: self.flash.filter,
+        }
     }
 
     fn change_mode(&mut self, mode: DeviceMode) -> bool {

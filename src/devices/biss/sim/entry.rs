@@ -2,7 +2,8 @@
 //! values; the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`).
 
 use crate::devices::biss::protocol::{
-    DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
+    DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,
+    PresetValue,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +32,7 @@ pub(super) enum Then {
     Open(Area),
     SaveData(Area, Vec<u8>),
     /// The filter is written to the flash, followed by a restart.
-    SaveFilter(Filter),
+    SaveFilter(PositionFilter),
     /// The preset value is written to the flash, followed by a restart.
     SavePreset(PresetValue),
     /// The singleturn part, the multiturn part or both are set to the preset value, followed by a restart.
@@ -90,12 +91,12 @@ impl DataEntry {
 pub(super) struct FilterEntry {
     pub(super) command: u8,
     pub(super) status: FilterStatus,
-    chosen: Filter,
+    chosen: PositionFilter,
 }
 
 impl Default for FilterEntry {
     fn default() -> Self {
-        FilterEntry { command: 0, status: FilterStatus::Closed, chosen: Filter::Balanced }
+        FilterEntry { command: 0, status: FilterStatus::Closed, chosen: PositionFilter::Balanced }
     }
 }
 
@@ -107,7 +108,7 @@ impl FilterEntry {
                 FilterCommand::Balanced | FilterCommand::Dynamic,
                 FilterStatus::WaitForValue | FilterStatus::WaitForSave,
             ) => {
-                self.chosen = Filter::from_byte(value);
+                self.chosen = PositionFilter::from_byte(value);
                 (FilterStatus::WaitForSave, Then::Nothing)
             }
             (FilterCommand::Save, FilterStatus::WaitForSave) => (FilterStatus::Closed, Then::SaveFilter(self.chosen)),

@@ -1,13 +1,13 @@
 //! The non-volatile memory and its write count, limited to 1000 writes over the encoder's lifetime (manual 6.1).
 
-use crate::devices::biss::protocol::{Filter, PresetValue};
+use crate::devices::biss::protocol::{PositionFilter, PresetValue};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flash {
     pub(super) motor_data: Vec<u8>,
     pub(super) oem_data: Vec<u8>,
     pub(super) preset: PresetValue,
-    pub(super) filter: Filter,
+    pub(super) filter: PositionFilter,
     /// Wiegand test result in tenths of a volt. Contains the average and the average minus four standard deviations,
     /// first clockwise, then counterclockwise.
     pub(super) wiegand: [u8; 4],
@@ -20,12 +20,12 @@ impl Flash {
     pub(super) const AREA: usize = 32 * 64;
 
     /// Creates the factory content after the given number of write cycles.
-    pub(super) fn delivered(cycles: u32) -> Self {
+    pub(super) fn factory_default(cycles: u32) -> Self {
         Flash {
             motor_data: vec![0; Self::AREA],
             oem_data: vec![0; Self::AREA],
             preset: PresetValue::default(),
-            filter: Filter::Balanced,
+            filter: PositionFilter::Balanced,
             wiegand: [0; 4],
             calibrated: true,
             cycles,
@@ -45,7 +45,7 @@ impl Flash {
     }
 
     /// Returns the filter that takes effect after a restart.
-    pub const fn filter(&self) -> Filter {
+    pub const fn filter(&self) -> PositionFilter {
         self.filter
     }
 

@@ -31,4 +31,4 @@ pub use at_adapter::AtAdapter;
 pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;
-pub use ubicom::Port;
+pub use ubicom::UbicomPort;

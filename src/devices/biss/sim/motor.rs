@@ -28,7 +28,7 @@ impl Drive {
     }
 
     /// Reports that a procedure is waiting for the opposite direction.
-    pub(super) fn reversed_motor(&self) {
+    pub(super) fn reverse_motor(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());
         }

@@ -38,7 +38,7 @@ impl Shaft {
 
     /// Returns the position at a moment, with error and warning cleared.
     pub(super) fn reading(&self, at: Moment) -> PositionData {
-        let position = (self.whole_steps(at) + self.offset) % self.range();
+        let position = (self.integer_steps(at) + self.offset) % self.range();
         let singleturn = position % self.steps();
         let multiturn = position / self.steps();
         // Fields are at most 32 bits wide.
@@ -48,7 +48,7 @@ impl Shaft {
 
     /// Returns the position at a moment with [`FINE`] fractional bits, for another encoder on the same shaft.
     pub(super) fn fine(&self, at: Moment) -> u64 {
-        let whole = (self.whole_steps(at) + self.offset) % self.range();
+        let whole = (self.integer_steps(at) + self.offset) % self.range();
         // The product is at least 0 and below 1 << FINE.
         let parts = (self.place(at).fract() * f64::from(1_u32 << FINE)) as u64;
         whole << FINE | parts
@@ -63,7 +63,7 @@ impl Shaft {
             ..now
         };
         let range = self.range();
-        self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
+        self.offset = (self.layout.steps(&wanted) % range + range - self.integer_steps(at)) % range;
     }
 
     fn steps(&self) -> u64 {
@@ -74,7 +74,7 @@ impl Shaft {
         self.steps() << self.layout.multiturn_bits()
     }
 
-    fn whole_steps(&self, at: Moment) -> u64 {
+    fn integer_steps(&self, at: Moment) -> u64 {
         self.place(at) as u64 // not negative, below the range
     }
 

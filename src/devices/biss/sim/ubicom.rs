@@ -12,24 +12,24 @@ use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits,
 };
 use crate::devices::biss::protocol::RegisterAddress;
-use crate::sim::Faults;
-use crate::sim::line::{Queue, VirtualLine, Wires};
+use crate::sim::SimulatedFaults;
+use crate::sim::line::{TransitQueue, VirtualLine, Wires};
 use crate::units::Moment;
 
 /// A line with a virtual encoder, as seen by the host. Created from a [`Config`].
 #[derive(Clone)]
-pub struct Port {
+pub struct UbicomPort {
     encoder: Encoder,
     receiver: Receiver,
     order: ByteOrder,
     echo: bool,
     wires: Wires,
     /// Bytes on their way to the encoder, with their arrival times.
-    to_encoder: Queue<u8>,
-    to_host: Queue<u8>,
+    to_encoder: TransitQueue<u8>,
+    to_host: TransitQueue<u8>,
     /// Time at which the last byte of an incomplete frame arrived at the encoder.
     heard: Option<Moment>,
-    work: Option<Work>,
+    work: Option<PendingRequest>,
     /// Time until which the encoder drives the line.
     talks_until: Moment,
     frames: u32,
@@ -37,7 +37,7 @@ pub struct Port {
 
 /// A request that the encoder is processing.
 #[derive(Clone, Copy)]
-struct Work {
+struct PendingRequest {
     ends: Moment,
     request: Request,
 }
@@ -51,18 +51,18 @@ pub(crate) enum Event {
     HostReceives,
 }
 
-impl Port {
+impl UbicomPort {
     const PROCESSING: Duration = Duration::from_millis(1);
 
     pub fn new(config: &Config) -> Self {
-        Port {
+        UbicomPort {
             encoder: Encoder::new(config),
             receiver: Receiver::new(NODE),
             order: config.order,
             echo: config.echo,
             wires: Wires::new(&config.faults, config.seed, FORMAT),
-            to_encoder: Queue::default(),
-            to_host: Queue::default(),
+            to_encoder: TransitQueue::default(),
+            to_host: TransitQueue::default(),
             heard: None,
             work: None,
             talks_until: Moment::START,
@@ -80,12 +80,12 @@ impl Port {
     }
 
     /// Replaces the faults, to simulate a cable that is repaired or breaks later. The frame and store counts are kept.
-    pub fn set_faults(&mut self, faults: &Faults) {
+    pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
     }
 
-    fn hear(&mut self) {
+    fn handle_input(&mut self) {
         let Some((at, byte)) = self.to_encoder.pop() else { return };
         if self.work.is_some() || at <= self.talks_until || !self.encoder.answers(at) {
             (self.receiver, self.heard) = (Receiver::new(NODE), None);
@@ -111,12 +111,12 @@ impl Port {
         self.frames = self.frames.saturating_add(1);
         let request = Frame::parse(frame).ok().and_then(|frame| Request::parse(&frame, self.order).ok());
         if let Some(request) = request.filter(|_| !silent && self.work.is_none()) {
-            self.work = Some(Work { ends: at + Self::PROCESSING + self.wires.faults.delay(), request });
+            self.work = Some(PendingRequest { ends: at + Self::PROCESSING + self.wires.faults.reply_delay(), request });
         }
     }
 
     fn answer(&mut self, at: Moment) {
-        let Some(Work { request, .. }) = self.work.take() else { return };
+        let Some(PendingRequest { request, .. }) = self.work.take() else { return };
         let reply = match request {
             Request::Read { register } => RegisterAddress::from_global(register)
                 .and_then(|address| self.encoder.read(at, address))
@@ -155,7 +155,7 @@ impl Port {
     }
 }
 
-impl VirtualLine for Port {
+impl VirtualLine for UbicomPort {
     type Event = Event;
 
     fn wires(&self) -> &Wires {
@@ -177,7 +177,7 @@ impl VirtualLine for Port {
     fn schedule_event(&mut self, at: Moment, event: Event) {
         match event {
             Event::EncoderAnswers => self.answer(at),
-            Event::EncoderHears => self.hear(),
+            Event::EncoderHears => self.handle_input(),
             Event::FrameEnds => self.end_frame(at),
             Event::HostReceives => {
                 let byte = self.to_host.pop().map(|(_, byte)| byte);

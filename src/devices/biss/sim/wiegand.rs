@@ -9,7 +9,7 @@ use crate::units::Moment;
 
 /// Pulse voltages of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pulses {
+pub(super) struct WiegandPulses {
     /// Average voltage, or 0 for no pulses.
     pub(super) average: u8,
     pub(super) lowest: u8,
@@ -71,7 +71,7 @@ impl Wiegand {
 
     /// Adds the revolutions since the previous call, at constant speed, and ends a run that has collected enough of
     /// them.
-    pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: Pulses) {
+    pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
             return;
         }

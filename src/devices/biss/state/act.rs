@@ -6,8 +6,8 @@ use super::action::BissAction;
 use super::encoder::Encoder;
 use super::words;
 use crate::app::services::Services;
-use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
-use crate::app::{ActContext, PendingEdits, Severity, Text};
+use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
+use crate::app::{ActionContext, PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Register, RegisterAddress};
@@ -21,7 +21,7 @@ use crate::devices::biss::state::explain as explained;
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
+    pub(crate) fn act(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
         let services = &mut *context.services;
         match action {
             BissAction::PlanMounting { mut run, motor, data } => {
@@ -69,10 +69,10 @@ impl Encoder {
             watched.push(register);
         }
         self.record.watch(&watched);
-        self.wish_watched();
+        self.update_watches();
     }
 
-    pub(super) fn wish_watched(&mut self) {
+    pub(super) fn update_watches(&mut self) {
         let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
         if let Some(line) = &self.session.line {
             line.watch(ranges.map(|range| (range, WATCHED_EVERY)).collect());
@@ -108,7 +108,7 @@ impl Encoder {
     }
 
     /// Returns the reason why an area cannot be edited now, or `None` if it can be.
-    pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
+    pub fn not_editable_reason(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));
         }
@@ -130,6 +130,6 @@ impl Encoder {
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();
-        self.session.write_read(Body::new(profile), edits, remarks, services);
+        self.session.save_read_values(Body::new(profile), edits, remarks, services);
     }
 }

@@ -6,7 +6,7 @@ use crate::app::DeviceAction;
 use crate::app::studio::SessionId;
 use crate::devices::biss::jobs::Change;
 use crate::devices::biss::procedures::procedure::{Answer, Task};
-use crate::devices::biss::profile::{MotorSource, MountingRun};
+use crate::devices::biss::profile::{MotorSource, MountingSteps};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
 pub enum BissAction {
@@ -34,7 +34,7 @@ pub enum BissAction {
     /// Plans a mounting run and shows its effect. The plain data comes from a profile that is open in another session.
     PlanMounting {
         /// Steps of the run, without the plain data.
-        run: Box<MountingRun>,
+        run: Box<MountingSteps>,
         motor: MotorSource,
         data: Option<SessionId>,
     },

@@ -2,10 +2,10 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, host_and_port, split_target, to_adapter};
+use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, for_adapter, host_and_port, split_target};
 use crate::bits::ByteOrder;
-use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::biss::jobs::check;
@@ -14,7 +14,7 @@ use crate::devices::biss::procedures::{
 };
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
-use crate::link::{LinkUrl, Scheme};
+use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _, Values, chosen};
 use crate::units::Parity;
 
@@ -90,15 +90,15 @@ impl FormModel for BissForm {
         let mut form = BissForm { behind_adapter: false, ..BissForm::default() };
         let target = url.target.as_str();
         let network = match url.scheme {
-            Scheme::Tcp => Some(target),
-            Scheme::Bridge => adapter_in_network(target),
+            LinkScheme::Tcp => Some(target),
+            LinkScheme::Bridge => adapter_in_network(target),
             _ => None,
         };
         form.kind = match url.scheme {
-            Scheme::Sim => BissLinkKind::Virtual,
-            Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => BissLinkKind::Pin,
-            Scheme::Bridge => BissLinkKind::Bus,
-            Scheme::Replay => BissLinkKind::Replay,
+            LinkScheme::Sim => BissLinkKind::Virtual,
+            LinkScheme::Serial | LinkScheme::Tcp | LinkScheme::Modbus | LinkScheme::Enip => BissLinkKind::Pin,
+            LinkScheme::Bridge => BissLinkKind::Bus,
+            LinkScheme::Replay => BissLinkKind::Replay,
         };
         if let Some(network) = network {
             form.network = true;
@@ -108,7 +108,7 @@ impl FormModel for BissForm {
         } else {
             form.port = target.to_owned();
         }
-        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -128,8 +128,8 @@ impl FormModel for BissForm {
 impl BissForm {
     /// Fills in the form field for a parameter; returns `false` if no field can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        if name == SupplyAfter::LEFT_ON.0 {
-            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
+        if name == SupplyAfterSession::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
             return self.leave_supply;
         }
         match name {
@@ -137,12 +137,12 @@ impl BissForm {
                 self.behind_adapter = value == BRIDGE.1;
                 self.behind_adapter
             }
-            "parity" | "order" | "echo" => self.take_choice(name, value),
+            "parity" | "order" | "echo" => self.set_choice(name, value),
             _ => self.typed.take(&self.entries(), name, value),
         }
     }
 
-    fn take_choice(&mut self, name: &str, value: &str) -> bool {
+    fn set_choice(&mut self, name: &str, value: &str) -> bool {
         let mut pin = PinParameters { parity: self.parity, order: self.order, echo: self.echo, ..Default::default() };
         let is_taken = pin.set(name, value).unwrap_or(false);
         (self.parity, self.order, self.echo) = (pin.parity, pin.order, pin.echo);
@@ -184,15 +184,15 @@ impl BissForm {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
 
-    fn target(&self) -> Result<(Scheme, String), Text> {
+    fn target(&self) -> Result<(LinkScheme, String), Text> {
         let port = || entered(&self.port, "form.port_missing");
         Ok(match self.kind {
-            BissLinkKind::Virtual => (Scheme::Sim, String::new()),
-            BissLinkKind::Pin if self.network => (Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
-            BissLinkKind::Pin => (Scheme::Serial, port()?),
-            BissLinkKind::Bus if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
-            BissLinkKind::Bus => (Scheme::Bridge, port()?),
-            BissLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            BissLinkKind::Virtual => (LinkScheme::Sim, String::new()),
+            BissLinkKind::Pin if self.network => (LinkScheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
+            BissLinkKind::Pin => (LinkScheme::Serial, port()?),
+            BissLinkKind::Bus if self.network => (LinkScheme::Bridge, for_adapter(&self.host, &self.tcp_port)?),
+            BissLinkKind::Bus => (LinkScheme::Bridge, port()?),
+            BissLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
@@ -207,7 +207,7 @@ impl BissForm {
         if self.is_on_the_bus() {
             parameters.typed(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
-                parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
+                parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
             }
         } else {
             parameters.typed(&PinParameters::entries(), &self.typed);

@@ -16,13 +16,13 @@ impl Encoder {
     pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
-        if let Some(text) = register.role.and_then(|role| self.of_role(role, bytes)) {
+        if let Some(text) = register.role.and_then(|role| self.role_meaning(role, bytes)) {
             return Some(text);
         }
         Some(match register.decode(bytes)? {
             Decoded::Scaled(value) => quantity(value, &register.unit),
             Decoded::Number(number) if !register.unit.is_empty() => quantity(number as f64, &register.unit),
-            Decoded::Number(_) | Decoded::Hex(_) => return self.of_data_sheet(register, bytes),
+            Decoded::Number(_) | Decoded::Hex(_) => return self.data_sheet_meaning(register, bytes),
             Decoded::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
             Decoded::Bits(set) => {
                 let named =
@@ -35,7 +35,7 @@ impl Encoder {
         })
     }
 
-    fn of_role(&self, role: Role, bytes: &[u8]) -> Option<Text> {
+    fn role_meaning(&self, role: Role, bytes: &[u8]) -> Option<Text> {
         let description = self.description.as_deref()?;
         match (role, bytes) {
             (Role::BankSelect | Role::EdsBank, [bank]) => {
@@ -60,13 +60,14 @@ impl Encoder {
 
     /// Returns the meaning of data sheet fields that a description cannot express, such as times, banks, polynomials
     /// and the checksum.
-    fn of_data_sheet(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
+    fn data_sheet_meaning(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]
             .into_iter()
             .find(|own| !register.name.is_empty() && register.address.bank() == Some(own.number()))?;
         if offset == Eds::CHECKSUM_OFFSET {
-            let all = self.memory.bytes(RegisterAddress::start_of(bank.number()), RegisterAddress::BANK_SIZE.into())?;
+            let all =
+                self.memory.bytes(RegisterAddress::bank_start(bank.number()), RegisterAddress::BANK_SIZE.into())?;
             return Some(match Eds::parse(bank, all.try_into().ok()?) {
                 Ok(_) => TEXTS.text("sheet_card.sum"),
                 Err(_) => TEXTS.text("registers.wrong_sum"),
@@ -91,7 +92,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::app::Kinds;
+    use crate::app::KindRegistry;
     use crate::app::Language;
     use crate::app::studio::SessionId;
     use crate::devices::biss::protocol::Descriptions;
@@ -107,7 +108,8 @@ mod tests {
     /// Covers every register in reference 4 whose raw number does not explain itself.
     #[test]
     fn every_reference_register_is_decoded() {
-        let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), Kinds::NONE));
+        let mut encoder =
+            Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         encoder.describe(Some(Arc::new(kit.clone())));
         for register in kit.registers() {
@@ -116,7 +118,7 @@ mod tests {
             encoder.memory.take(register.address, &bytes);
         }
         for bank in [EdsBank::Common, EdsBank::Encoder] {
-            encoder.memory.take(RegisterAddress::start_of(bank.number()), &Eds::delivered(bank).emit());
+            encoder.memory.take(RegisterAddress::bank_start(bank.number()), &Eds::factory_default(bank).emit());
         }
         for (at, byte) in [("0x66", 0x4B), ("0x68", 0x12), ("0x40", 0x24), ("0x00:0x09", 53)] {
             encoder.memory.take(at.parse().unwrap(), &[byte]);

@@ -2,11 +2,11 @@
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
+use crate::app::session::{HasDraft, HasSession, ProfileFile, Session};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::jobs::device_key;
 use crate::devices::biss::profile::BissProfile;
-use crate::profile::Document;
+use crate::profile::ProfileDocument;
 use crate::store::DeviceKey;
 
 /// Edited bytes, each with its global address.
@@ -24,7 +24,7 @@ impl HasSession for Encoder {
     }
 }
 
-impl Drafted for Encoder {
+impl HasDraft for Encoder {
     fn key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
@@ -45,9 +45,9 @@ impl Drafted for Encoder {
         &mut self.memory
     }
 
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<BissProfile>() else { return };
-        self.take_profile(profile);
-        self.session.take_document(file, document);
+        self.load_profile(profile);
+        self.session.apply_document(file, document);
     }
 }

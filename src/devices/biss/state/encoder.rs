@@ -10,7 +10,7 @@ use super::record::{Record, Streamed};
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::procedures::{Identity, Status, Survey};
@@ -69,7 +69,7 @@ impl Encoder {
         self.description = description;
     }
 
-    pub(super) fn take_profile(&mut self, profile: &BissProfile) {
+    pub(super) fn load_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {
             bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
@@ -129,12 +129,12 @@ impl Encoder {
     }
 
     /// Accepts a survey of the encoder. Edits are kept unless the survey belongs to another encoder.
-    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+    pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the same type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
         if unproven || self.is_another(&survey.identity) {
-            self.replaced_by(&survey.identity.serial_number, services);
+            self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         let Survey { identity, status, registers, .. } = &survey;

@@ -5,8 +5,8 @@ use super::encoder::Encoder;
 use super::words;
 use crate::app::Explained;
 use crate::app::review::{Review, written_texts};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory, first};
+use crate::app::services::{JobState, Services};
+use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, first};
 use crate::app::{Severity, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, Sample};
@@ -83,7 +83,7 @@ impl SessionEvents for Encoder {
     fn progressed(&mut self, what: JobStep) {
         let running = self.guide.as_mut().filter(|guide| guide.is_running());
         if let (JobStep::Operation { progress: news, .. }, Some(guide)) = (what, running) {
-            guide.take_progress(*news);
+            guide.set_progress(*news);
         }
     }
 
@@ -97,7 +97,7 @@ impl SessionEvents for Encoder {
     fn finished(&mut self, output: BissOutput, services: &mut Services) {
         match output {
             BissOutput::Surveyed(survey) => {
-                self.take_survey(*survey, services);
+                self.apply_survey(*survey, services);
                 self.read_back_changes(services);
             }
             BissOutput::Status(status) => {
@@ -128,7 +128,7 @@ impl SessionEvents for Encoder {
                 self.committed(*committed, services);
             }
             BissOutput::LedBack(mode) => {
-                self.note_restored();
+                self.mark_restored();
                 let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
@@ -171,7 +171,7 @@ impl SessionEvents for Encoder {
         self.session.submit(job, services)
     }
 
-    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
         self.forget_requests();
         self.session.let_go(end, services);

@@ -12,14 +12,16 @@ mod write;
 
 use crate::devices::biss::state::TEXTS;
 pub use check::check;
-pub use damage::damage;
+pub use damage::damage_text;
 pub use entry::entry;
-pub use guide::{advice, blocker_text, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
+pub use guide::{
+    advice_text, blocker_text, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_requirements,
+};
 pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
 
 use crate::app::Text;
-use crate::app::explain::{self as general, link, not_begun, syntax};
+use crate::app::explain::{self as general, link, not_started_text, syntax};
 use crate::buses::bridge::state::adapter;
 use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, RequestedItem};
@@ -37,9 +39,9 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![not_begun(why)],
+        JobError::NotBegun(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
-            write::interruption(interrupted, backup, *planned, *kind)
+            write::interruption_text(interrupted, backup, *planned, *kind)
         }
     }
 }
@@ -69,7 +71,7 @@ pub fn encoder(error: &Error) -> Text {
             .text("biss.damaged")
             .with_text("asked", self::item_text(*requested))
             .with("tries", tries)
-            .with_text("why", damage(cause)),
+            .with_text("why", damage_text(cause)),
         Error::NeverSilent => TEXTS.text("biss.never_silent"),
         Error::NoAcknowledge { tries, supply_off: false } => TEXTS.text("biss.no_acknowledge").with("tries", tries),
         Error::NoAcknowledge { tries, supply_off: true } => TEXTS.text("biss.supply_off").with("tries", tries),

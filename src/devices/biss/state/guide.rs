@@ -3,7 +3,7 @@
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Demand, OperatorChannel, Outcome, ProcedureProgress, ProcedureStep, StepDetail, Task, steps_of,
+    Answer, OperatorChannel, OperatorPrompt, Outcome, ProcedureProgress, ProcedureStep, StepDetail, Task, steps_of,
 };
 use crate::devices::biss::profile::Op;
 
@@ -69,7 +69,7 @@ impl Guide {
         &self.ops
     }
 
-    pub(super) fn take_progress(&mut self, progress: ProcedureProgress) {
+    pub(super) fn set_progress(&mut self, progress: ProcedureProgress) {
         self.progress = Some(progress);
     }
 
@@ -78,7 +78,7 @@ impl Guide {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
-    pub fn demand(&self) -> Option<&Demand> {
+    pub fn demand(&self) -> Option<&OperatorPrompt> {
         match self.detail()? {
             StepDetail::Demand(demand) => Some(demand),
             _ => None,
@@ -167,7 +167,7 @@ mod tests {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         reported
             .iter()
-            .for_each(|step| guide.take_progress(ProcedureProgress { op: 0, step: *step, detail: StepDetail::Begins }));
+            .for_each(|step| guide.set_progress(ProcedureProgress { op: 0, step: *step, detail: StepDetail::Begins }));
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
@@ -183,14 +183,14 @@ mod tests {
             (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
         ] {
             let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
-            guide.take_progress(ProcedureProgress {
+            guide.set_progress(ProcedureProgress {
                 op: 0,
                 step: ProcedureStep::Await(Task::Turn(task)),
                 detail: StepDetail::Begins,
             });
             guide.answer(Task::Turn(task), Answer::Skip);
             let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
-            guide.take_progress(ProcedureProgress { op: 1, step: next, detail: StepDetail::Begins });
+            guide.set_progress(ProcedureProgress { op: 1, step: next, detail: StepDetail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
             guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
             assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn a_cancelled_procedure_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
+        guide.set_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });

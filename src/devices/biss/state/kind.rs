@@ -6,7 +6,7 @@ use super::{BissForm, Encoder};
 use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::biss::jobs::{Biss, check, descriptions};
+use crate::devices::biss::jobs::{Biss, check, load_descriptions};
 use crate::devices::biss::procedures::{BusParameters, FrameParameters, LineParameters, PinParameters};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::Descriptions;
@@ -33,7 +33,7 @@ impl DeviceType for Encoder {
     }
 
     fn tables(store: &Store) -> Self::Tables {
-        descriptions(store).0
+        load_descriptions(store).0
     }
 
     fn begin(session: Session<Biss>, profile: Option<(&BissProfile, Descriptions)>, _: &mut Services) -> Self {
@@ -41,7 +41,7 @@ impl DeviceType for Encoder {
         if let Some((profile, tables)) = profile {
             let described = tables.named(&profile.identity.description).or_else(|| tables.iter().last()).cloned();
             encoder.describe(described.map(Arc::new));
-            encoder.take_profile(profile);
+            encoder.load_profile(profile);
         }
         encoder
     }

@@ -2,7 +2,7 @@
 //! the error and warning registers at the last status reading.
 
 use super::encoder::Encoder;
-use crate::devices::biss::procedures::Bits;
+use crate::devices::biss::procedures::FlagRegister;
 
 /// The validity mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ impl Encoder {
     pub fn mark(&self) -> Option<Mark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();
-        let is_set = |own: bool, bits: Option<&Bits>| own || bits.is_some_and(|bits| bits.raw != 0);
+        let is_set = |own: bool, bits: Option<&FlagRegister>| own || bits.is_some_and(|bits| bits.raw != 0);
         let errors = status.and_then(|own| own.errors.as_ref()).filter(|_| reading.error.is_none());
         let warnings = status.and_then(|own| own.warnings.as_ref()).filter(|_| reading.warning.is_none());
         if is_set(!reading.is_valid(), errors) {

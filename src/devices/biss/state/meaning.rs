@@ -57,7 +57,7 @@ impl Meaning {
     /// Decodes bytes received over the configuration pin after a request. The reply may still follow a damaged
     /// part.
     fn reply(&mut self, bytes: &[u8]) -> Explained {
-        let broken = |damage| Explained::broken(words::damage(&damage));
+        let broken = |damage| Explained::broken(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
         let Some(requested) = self.requested else { return Explained::default() };
         let reply = match Reply::parse(&frame, requested.command()) {

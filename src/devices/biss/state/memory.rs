@@ -43,7 +43,7 @@ pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 impl Memory {
     /// Stores bytes read from `start` onward. Edits are kept unless they equal the encoder's current values.
     pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
-        self.read_again(|own| {
+        self.reread(|own| {
             for (at, byte) in (start.global()..).zip(bytes) {
                 let Some(at) = RegisterAddress::from_global(at) else { break };
                 match own.read.insert(at, *byte) {

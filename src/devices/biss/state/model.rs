@@ -4,9 +4,9 @@ use std::convert::Infallible;
 
 use super::{BissAction, Encoder};
 use crate::app::action::Opened;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::{JobState, Services};
 use crate::app::session::SessionEvents;
-use crate::app::{ActContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
+use crate::app::{ActionContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
 use crate::devices::biss::jobs::{Biss, BissJob};
 
 impl DeviceModel for Encoder {
@@ -15,15 +15,15 @@ impl DeviceModel for Encoder {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
+        self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.session.adopt_line(opened, services);
-        self.wish_watched();
+        self.update_watches();
         self.submit(BissJob::Survey, services);
     }
 
-    fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: BissAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context);
     }
 

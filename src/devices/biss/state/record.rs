@@ -9,10 +9,10 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Recorder, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
 use crate::app::{Recording, Text};
 use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
-use crate::devices::biss::protocol::{Decoded, Decoding, Register};
+use crate::devices::biss::protocol::{Decoded, Register, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 
 /// A batch of consecutive positions with equal field widths.
@@ -40,7 +40,7 @@ impl From<&PositionReading> for Widths {
 /// The recorder of an encoder's positions, which also keeps the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
-    track: Track<Register>,
+    track: DeviceRecorder<Register>,
     last: Option<PositionReading>,
     crc_errors: u64,
     lost: u64,
@@ -58,7 +58,7 @@ pub struct Streamed {
 
 impl Streamed {
     /// Returns the frame rate in frames per second.
-    pub fn hz(&self) -> f64 {
+    pub fn frame_rate_hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
 }
@@ -73,7 +73,7 @@ impl Record {
         match self.stream {
             // In a stream, dropped frames are counted by their sequence numbers.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.note_dropped(dropped),
+            _ => self.track.record_dropped(dropped),
         }
         // Thousands of positions per second with equal widths are recorded in batches.
         let mut batch = Batch::default();
@@ -147,7 +147,7 @@ impl Record {
         }
         let before = self.last.as_ref().map(Widths::from);
         // If nothing has been read in this session, the meaning from the previous session is kept.
-        let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
+        let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::for_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
         self.track.add(&batch.sightings, &meaning);
         *batch = Batch::default();
@@ -215,8 +215,8 @@ impl Recording for Record {
     }
 
     // Includes frames that an adapter could not send.
-    fn dropped(&self) -> u64 {
-        self.track.dropped().saturating_add(self.lost)
+    fn dropped_count(&self) -> u64 {
+        self.track.dropped_count().saturating_add(self.lost)
     }
 
     fn poll(&mut self, interval: Option<Duration>, begins: bool) {
@@ -240,9 +240,9 @@ fn sighting(reading: &PositionReading) -> PositionSample {
 fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
-        return Meaning::of_steps(range);
+        return Meaning::for_steps(range);
     }
-    Meaning::of_turns(range, f64::from(singleturn).exp2())
+    Meaning::for_turns(range, f64::from(singleturn).exp2())
 }
 
 fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
@@ -254,7 +254,7 @@ fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
 
 impl Watchable for Register {
     fn is_whole(&self) -> bool {
-        !matches!(self.decoding, Decoding::Scaled { .. })
+        !matches!(self.decoding, ValueDecoding::Scaled { .. })
     }
 
     fn line(&self, group: GroupId) -> Series {
@@ -351,17 +351,17 @@ mod tests {
         let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
         add(&mut record, run(0, 100, 0), 0);
         assert_eq!(
-            (record.positions(), record.dropped(), record.streamed().map(Streamed::hz)),
+            (record.positions(), record.dropped_count(), record.streamed().map(Streamed::frame_rate_hz)),
             (100, 0, Some(20_000.0))
         );
         add(&mut record, run(110, 90, 10), 0);
-        assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
+        assert_eq!((record.positions(), record.dropped_count()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
-        assert_eq!((record.positions(), record.dropped()), (200, 310), "nobody took three runs of them");
+        assert_eq!((record.positions(), record.dropped_count()), (200, 310), "nobody took three runs of them");
         // The frame numbers of another stream start at zero.
         let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
-        assert_eq!((record.positions(), record.dropped()), (205, 315));
+        assert_eq!((record.positions(), record.dropped_count()), (205, 315));
         record.poll(None, false);
         assert_eq!(record.streamed(), None);
     }

@@ -1,7 +1,7 @@
 //! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
 
 use crate::app::explain::plain;
-use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewed};
+use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::Written;
@@ -17,7 +17,7 @@ pub(super) fn is_guided(op: &Op) -> bool {
     op.turns() || matches!(op, Op::FirePreset { .. })
 }
 
-impl Reviewed for Biss {
+impl Reviewable for Biss {
     type Change = Change;
     type Prepared = Prepared;
     type Written = Written;

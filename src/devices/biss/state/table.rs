@@ -3,7 +3,7 @@
 
 use super::memory::Memory;
 use crate::bits::ByteOrder;
-use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
+use crate::devices::biss::protocol::{Access, Description, EdsBank, Name, Register, RegisterAddress, ValueDecoding};
 
 /// Last bank of the kit encoder, used if the description does not name any.
 const LAST_BANK: u8 = 0x43;
@@ -136,7 +136,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
         access,
         order: ByteOrder::HighFirst,
         default: Vec::new(),
-        decoding: Decoding::Number,
+        decoding: ValueDecoding::Number,
         unit: String::new(),
         saves: Vec::new(),
         since: crate::devices::biss::protocol::Firmware::new(0, 0, 0),

@@ -7,7 +7,7 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::biss::jobs::BissJob;
 use crate::devices::biss::protocol::{
-    Description, Descriptions, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
+    Description, Descriptions, EdsBank, EdsError, EdsField, EdsValue, PositionFilter, RegisterAddress, StatusBitMeaning,
 };
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
@@ -36,11 +36,11 @@ pub(super) fn edit_error_text(error: MemoryError) -> Text {
     }
 }
 
-pub fn filter(filter: Filter) -> Text {
+pub fn filter(filter: PositionFilter) -> Text {
     match filter {
-        Filter::Balanced => TEXTS.text("biss_status.balanced"),
-        Filter::Dynamic => TEXTS.text("biss_status.dynamic"),
-        Filter::Unknown(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
+        PositionFilter::Balanced => TEXTS.text("biss_status.balanced"),
+        PositionFilter::Dynamic => TEXTS.text("biss_status.dynamic"),
+        PositionFilter::Unknown(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
     }
 }
 
@@ -55,7 +55,7 @@ pub fn sheet(error: &EdsError) -> Text {
     }
 }
 
-pub fn eds(value: EdsValue) -> Text {
+pub fn eds_value_text(value: EdsValue) -> Text {
     let text = |id| TEXTS.text(id);
     match value {
         EdsValue::Number(1, "banks") => text("eds.one_bank"),
@@ -73,10 +73,12 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::Polynomial(0) => text("eds.no_crc"),
         EdsValue::Polynomial(polynomial) => plain(format!("0x{polynomial:X}")),
         EdsValue::Profile(profile) => plain(profile),
-        EdsValue::Feedback(Feedback::None) => text("eds.no_bit"),
-        EdsValue::Feedback(Feedback::Error) => text("eds.error_bit"),
-        EdsValue::Feedback(Feedback::Warning) => text("eds.warning_bit"),
-        EdsValue::Feedback(Feedback::Unknown(code)) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::Feedback(StatusBitMeaning::None) => text("eds.no_bit"),
+        EdsValue::Feedback(StatusBitMeaning::Error) => text("eds.error_bit"),
+        EdsValue::Feedback(StatusBitMeaning::Warning) => text("eds.warning_bit"),
+        EdsValue::Feedback(StatusBitMeaning::Unknown(code)) => {
+            TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}"))
+        }
         EdsValue::EncoderType(0) => text("eds.rotary"),
         EdsValue::EncoderType(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
         EdsValue::Code(code) => plain(format!("0x{code:X}")),
@@ -88,7 +90,7 @@ pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
         EdsValue::Ticks(_) => Some(TEXTS.text("eds.no_unit")),
-        _ => Some(eds(value)),
+        _ => Some(eds_value_text(value)),
     }
 }
 

@@ -7,10 +7,10 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, EarlyEnd, KnownProfile, Saved, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, EarlyEnd, HasMemory, HasProfile, KnownProfile, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
-use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
+use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, UnattendedOperator};
 use crate::devices::biss::procedures::{Error, profile_of};
 use crate::devices::biss::profile::{
     Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
@@ -21,7 +21,7 @@ use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
 /// Patience for a shaft to come to rest when no operator is present.
-const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
+const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {
     pub(crate) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
@@ -42,7 +42,7 @@ impl Encoder {
     }
 
     /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
-    pub(super) fn note_restored(&mut self) {
+    pub(super) fn mark_restored(&mut self) {
         if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
@@ -77,7 +77,7 @@ impl Encoder {
     }
 }
 
-impl WithMemory for Encoder {
+impl HasMemory for Encoder {
     fn edited_change(&self) -> Option<Change> {
         let edit = |(start, _, bytes): (_, _, Vec<u8>)| {
             let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
@@ -147,7 +147,7 @@ impl WithMemory for Encoder {
     }
 }
 
-impl Saved for Encoder {
+impl HasProfile for Encoder {
     fn read_all() -> BissJob {
         BissJob::Save
     }
@@ -161,7 +161,7 @@ impl Saved for Encoder {
         let (mut data, mut missing) = (Vec::new(), Vec::new());
         for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {
             let bank = |number| {
-                let bytes = self.memory.bytes(RegisterAddress::start_of(number), Bank::SIZE);
+                let bytes = self.memory.bytes(RegisterAddress::bank_start(number), Bank::SIZE);
                 bytes.and_then(|bytes| Some(Bank { number, bytes: bytes.try_into().ok()? }))
             };
             match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
@@ -173,7 +173,8 @@ impl Saved for Encoder {
             return Some(Err(missing));
         }
         let profile = profile_of(survey, data, survey.status.unsaved_mode());
-        let remarks = without_edits(self.memory.count()).into_iter().chain(words::saved_unsaved(&profile)).collect();
+        let remarks =
+            unsaved_edits_remark(self.memory.count()).into_iter().chain(words::saved_unsaved(&profile)).collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

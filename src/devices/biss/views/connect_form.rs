@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::Connect as Dialog;
+use crate::app::connect::ConnectDialog as Dialog;
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissLinkKind};
 use crate::devices::biss::views::say;
@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, expandable_ui, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row,
+    echo, entry_row, expandable_ui, field, leave_supply, network, parity, recording, segments, serial, typed,
 };
 
 pub(crate) struct BissConnectForm;
@@ -86,7 +86,7 @@ impl TypedConnectForm for BissConnectForm {
             }
             let (frame, line) = BissForm::common_entries();
             entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
-                typed_in_a_row(ui, theme, say, frame, &mut form.typed);
+                entry_row(ui, theme, say, frame, &mut form.typed);
             });
             paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
             if form.is_on_the_bus() {

@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, places};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{empty, enabled_button, name, paragraph};
+use crate::ui::controls::{empty_placeholder, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexAddresses, HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
@@ -28,7 +28,7 @@ pub(super) fn page_ui(
     let areas = encoder.description.as_ref().map(|own| own.areas()).unwrap_or_default();
     let Some(area) = areas.get(view.area).or_else(|| areas.first()) else {
         let words = if encoder.description.is_some() { "data.none" } else { "registers.nothing" };
-        empty(ui, theme, &say(theme, words), None);
+        empty_placeholder(ui, theme, &say(theme, words), None);
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -60,11 +60,11 @@ pub(super) fn page_ui(
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
         Some(((read, wanted), own)) => bytes_ui(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
-            empty(ui, theme, &say(theme, "data.not_in_profile"), None);
+            empty_placeholder(ui, theme, &say(theme, "data.not_in_profile"), None);
         }
         None => {
             let read = (icons::ARROW_CLOCKWISE, say(theme, "data.read"), encoder.session.is_ready());
-            if empty(ui, theme, &say(theme, "data.not_read"), Some((read.0, &read.1, read.2))) {
+            if empty_placeholder(ui, theme, &say(theme, "data.not_read"), Some((read.0, &read.1, read.2))) {
                 actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
             }
         }
@@ -80,7 +80,7 @@ fn bytes_ui(
     view: &mut DataUiState,
     actions: &mut Vec<Action>,
 ) {
-    let read_only = encoder.why_not_editable(area);
+    let read_only = encoder.not_editable_reason(area);
     if let Some(why) = &read_only {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));

@@ -4,13 +4,13 @@ use egui::{RichText, Ui};
 
 use super::{frame, motor, sheet, wiring};
 use crate::app::{Action, DeviceCommand};
-use crate::devices::biss::procedures::{Bits, FrameSource, Identity};
+use crate::devices::biss::procedures::{FlagRegister, FrameSource, Identity};
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card_with, empty, enabled_button, encoder_page, paragraph, row};
+use crate::ui::controls::{card_with, empty_placeholder, enabled_button, encoder_page, paragraph, row};
 use crate::ui::{Theme, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -61,7 +61,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             ui.add_space(theme.space.inside);
             recorded_ui(ui, theme, encoder, identity);
         } else {
-            empty(ui, theme, &theme.say("encoder_card.nothing"), None);
+            empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
         }
     });
 }
@@ -184,7 +184,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&Bits>, icon: &str, colour: crate::app::Rgb) {
+fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, colour: crate::app::Rgb) {
     for (bit, name) in bits.iter().flat_map(|bits| &bits.set) {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));

@@ -42,7 +42,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     });
 }
 
-fn sent_data(reading: &PositionReading) -> PositionData {
+fn transmitted_data(reading: &PositionReading) -> PositionData {
     PositionData {
         multiturn: reading.turns,
         singleturn: reading.steps,
@@ -97,7 +97,7 @@ fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (
     }
     if layout.crc_bits() > 0 {
         // Only frames with a matching checksum are shown, so the checksum can be calculated from the other bits.
-        let crc = reading.map(|own| layout.emit(&sent_data(own)) & ((1 << layout.crc_bits().min(63)) - 1));
+        let crc = reading.map(|own| layout.emit(&transmitted_data(own)) & ((1 << layout.crc_bits().min(63)) - 1));
         let value = crc.map(|crc| format!("0x{crc:02X}")).unwrap_or_default();
         add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);
     }

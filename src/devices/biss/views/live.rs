@@ -45,7 +45,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     }
     if let Some(stream) = encoder.streamed() {
         let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };
-        let text = TEXTS.text(id).with_number("count", stream.hz(), 0);
+        let text = TEXTS.text(id).with_number("count", stream.frame_rate_hz(), 0);
         let words = theme.words(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
         ui.add(egui::Label::new(theme.caption(words)).wrap()).on_hover_text(theme.say("live.streamed_hint"));
     }

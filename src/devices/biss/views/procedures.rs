@@ -7,14 +7,14 @@ use super::{motor, run};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, SessionId, Studio, Text};
 use crate::devices::biss::jobs::Change;
-use crate::devices::biss::profile::{MotorSource, MountingRun, PresetParts};
-use crate::devices::biss::protocol::{DeviceMode, Filter, ProcedureKind};
+use crate::devices::biss::profile::{MotorSource, MountingSteps, PresetParts};
+use crate::devices::biss::protocol::{DeviceMode, PositionFilter, ProcedureKind};
 use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{
-    allowed_button, card, empty, enabled_button, folding_card, labelled_entry, options, paragraph, problem_below, row,
-    two_columns,
+    allowed_button, card, empty_placeholder, enabled_button, folding_card, labelled_entry, options, paragraph, row,
+    show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -42,11 +42,11 @@ pub(super) fn page_ui(
         return;
     }
     let Some(description) = encoder.description.as_ref().filter(|_| encoder.session.phase != Phase::Offline) else {
-        empty(ui, theme, &say(theme, "procedures.nothing"), None);
+        empty_placeholder(ui, theme, &say(theme, "procedures.nothing"), None);
         return;
     };
     if description.procedures().is_empty() {
-        empty(ui, theme, &say(theme, "procedures.none"), None);
+        empty_placeholder(ui, theme, &say(theme, "procedures.none"), None);
         return;
     }
     left_state_ui(ui, theme, encoder, actions);
@@ -135,7 +135,7 @@ fn mounting_ui(
         ui.add_space(theme.space.between);
         ui.label(say(theme, "mounting_card.what"));
         choice_ui(ui, theme, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
-        choice_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
+        choice_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_requirements());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 theme.gap(ui);
@@ -167,7 +167,7 @@ fn choice_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words:
 }
 
 /// Returns the requested procedures, or the reason why they cannot be reviewed yet.
-fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
+fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
         None if turns => return Err(TEXTS.text("mounting_card.no_motor")),
@@ -185,7 +185,7 @@ fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, T
         return Err(TEXTS.text("mounting_card.nothing"));
     }
     let wiegand = own.wiegand.then_some(*own.save_result);
-    Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
+    Ok(MountingSteps { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
 /// Draws the list of open profiles from which the data to write is selected.
@@ -220,9 +220,9 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let layout = &identity.layout;
         // Validation errors of a field are drawn below it.
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
-        problem_below(ui, theme, form.singleturn(layout).err().as_ref());
+        show_error_below(ui, theme, form.singleturn(layout).err().as_ref());
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        problem_below(ui, theme, form.multiturn(layout).err().as_ref());
+        show_error_below(ui, theme, form.multiturn(layout).err().as_ref());
         let value = form.value(layout);
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
@@ -260,7 +260,9 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
     folding_card(ui, theme, TEXTS.text("filter_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "filter_card.words")));
         let own = encoder.status.as_ref().and_then(|status| status.filter);
-        for (filter, hint) in [(Filter::Balanced, "filter_card.balanced"), (Filter::Dynamic, "filter_card.dynamic")] {
+        for (filter, hint) in
+            [(PositionFilter::Balanced, "filter_card.balanced"), (PositionFilter::Dynamic, "filter_card.dynamic")]
+        {
             ui.horizontal_wrapped(|ui| {
                 let word = theme.words(&words::filter(filter));
                 let is_own = own == Some(filter);

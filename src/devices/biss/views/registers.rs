@@ -3,11 +3,11 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, DeviceCommand, PendingEdits, Text};
-use crate::devices::biss::protocol::{Access, Decoding, Name};
+use crate::devices::biss::protocol::{Access, Name, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Group, RegisterEntry, TEXTS};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
+use crate::ui::controls::{choice, empty_placeholder, enabled_button, icon_menu};
 use crate::ui::widgets::{
     RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
     RegisterView, register_table,
@@ -34,7 +34,7 @@ pub(super) fn page_ui(
 ) {
     if encoder.description.is_none() {
         let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, theme, &say(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty_placeholder(ui, theme, &say(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
@@ -80,7 +80,7 @@ fn head_ui(
             }
         }
         if let Some(own) = encoder.table.groups().get(at) {
-            let word = theme.words(&read_words(own.bank));
+            let word = theme.words(&read_label(own.bank));
             if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
@@ -97,7 +97,7 @@ fn head_ui(
     });
 }
 
-fn read_words(bank: Option<u8>) -> Text {
+fn read_label(bank: Option<u8>) -> Text {
     match bank {
         None => TEXTS.text("registers.read_direct"),
         Some(bank) => TEXTS.text("registers.read_bank").with("bank", format!("0x{bank:02X}")),
@@ -163,7 +163,7 @@ fn table(
     let none = say(theme, "registers.elsewhere");
     let row = |place: RegisterLocation| {
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.entry(place.row, &encoder.memory));
-        shown.map(|own| row_of(theme, encoder, &own, &none)).unwrap_or_default()
+        shown.map(|own| register_row(theme, encoder, &own, &none)).unwrap_or_default()
     };
     let label = theme.say("page.registers");
     let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
@@ -205,12 +205,12 @@ fn group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
     RegisterGroup { title, note, rows: own.rows().len() }
 }
 
-fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere: &str) -> RegisterRow {
+fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
     let name =
         if register.name.is_empty() { say(theme, "registers.byte") } else { theme.words(&words::name(&register.name)) };
     // A code is not a physical quantity.
-    let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
+    let is_quantity = matches!(register.decoding, ValueDecoding::Number | ValueDecoding::Scaled { .. });
     RegisterRow {
         address: register.address.to_string(),
         name,
@@ -235,7 +235,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
 }
 
 fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
-    let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
+    let ValueDecoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();
     let bit = |(bit, name): &(u8, Name)| {
         let is_set = number.map(|number| number >> bit & 1 == 1);

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::motor;
 use crate::app::{Action, Severity};
-use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Run, StepDetail, Task};
+use crate::devices::biss::procedures::procedure::{Advice, Answer, OperatorPrompt, Run, StepDetail, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, Reached, TEXTS};
@@ -83,9 +83,9 @@ fn step(
         (Reached::Waits, Some(StepDetail::Demand(demand))) => {
             // The recommended speed is marked on the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
-            let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
+            let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");
-            step.gauges = gauges(theme, demand);
+            step.gauges = speed_gauges(theme, demand);
         }
         (Reached::Runs, Some(StepDetail::Count { done, total })) => {
             step.progress = Some(*done as f32 / (*total).max(1) as f32);
@@ -102,10 +102,10 @@ fn step(
 
 /// Returns the gauges shown while the operator turns the motor. Their marks use the limits that also apply to starting
 /// the run.
-fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
+fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
-    if let Some(fluctuation) = run.fluctuation() {
+    if let Some(fluctuation) = run.max_fluctuation() {
         let unit = theme.say("unit.revolutions_per_minute");
         let spread = demand.motion.map(|own| own.spread);
         let accepted =
@@ -122,7 +122,7 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     }
     if run.is_calibration() {
         let celsius = demand.celsius.map(f64::from);
-        let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
+        let (coldest, warmest) = (*OperatorPrompt::CELSIUS.start(), *OperatorPrompt::CELSIUS.end());
         gauges.push(Gauge {
             name: say(theme, "biss_status.temperature"),
             value: celsius,
@@ -136,7 +136,7 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     gauges
 }
 
-fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
+fn speed(theme: &Theme, run: Run, demand: &OperatorPrompt) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended_range());
     // Standstill is shown as 0 regardless of sign.

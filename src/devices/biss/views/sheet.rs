@@ -44,7 +44,7 @@ fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsEr
                 ui.set_min_width(room);
                 paragraph(ui, theme.label(theme.words(&words::eds_name(bank, field))));
             });
-            paragraph(ui, theme.words(&words::eds(value)));
+            paragraph(ui, theme.words(&words::eds_value_text(value)));
         });
     }
     ui.horizontal(|ui| {

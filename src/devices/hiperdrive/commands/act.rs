@@ -1,14 +1,14 @@
 //! The `do` command: save and recall, factory settings, the presence test, acknowledging a fault, setting the position,
 //! and the device check.
 
-use super::args::{DoOptions, HiperdriveAction, OfDrive};
+use super::args::{DoOptions, DriveOption, HiperdriveAction};
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::{Runner, drive};
-use crate::cli::args::{Common, Do};
+use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::profiles::print_done;
+use crate::cli::profiles::print_write_result;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result, check};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
@@ -21,7 +21,7 @@ use crate::result_of;
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
 
-pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let action = act.action_of(KIND, ACTIONS);
     let of_drive = matches!(action, Ok(HiperdriveAction::Acknowledge | HiperdriveAction::SetPosition));
@@ -70,7 +70,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         _ => {}
     }
     let drive_list: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
-    let done = print_done(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
+    let done = print_write_result(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
     // The action may have been carried out without the desired effect.
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,
@@ -107,7 +107,7 @@ fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     }
 }
 
-fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
+fn set_position(of: &DriveOption, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let position = i32::try_from(number).map_err(|_| {
         let text_of_range = TEXTS.text("hd_cli.position_range").with("value", text);
@@ -116,7 +116,7 @@ fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
     Ok(Change::SetPosition { drive: drive(of), position, save: true })
 }
 
-fn check_device(common: &Common, output: &Output) -> Result {
+fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }

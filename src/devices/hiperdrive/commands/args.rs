@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
 
 /// Option that selects a drive behind a hub; only a hub has several drives.
 #[derive(Args)]
-pub(super) struct OfDrive {
+pub(super) struct DriveOption {
     /// hiperdrive: drive of a hub, 1 to 8. Default: the first, or the one in the parameter number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
     pub(super) drive: Option<u8>,
@@ -18,7 +18,7 @@ pub(super) struct OfDrive {
 #[derive(Args)]
 pub(super) struct DoOptions {
     #[command(flatten)]
-    pub(super) of: OfDrive,
+    pub(super) of: DriveOption,
     /// hiperdrive factory: reset everything including the address (DHCP), and save.
     #[arg(long)]
     pub(super) all: bool,
@@ -43,7 +43,7 @@ pub(super) struct HubOption {
 }
 
 #[derive(Args)]
-pub(crate) struct Move {
+pub(crate) struct MoveArgs {
     /// Kind of device.
     #[arg(value_parser = PossibleValuesParser::new([KIND]))]
     pub(crate) device: String,
@@ -54,7 +54,7 @@ pub(crate) struct Move {
     #[arg(long)]
     pub(crate) yes: bool,
     #[command(flatten)]
-    pub(crate) of: OfDrive,
+    pub(crate) of: DriveOption,
     /// Speed, in percent of the drive's maximum.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
     pub(crate) speed: u8,

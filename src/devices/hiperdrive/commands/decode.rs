@@ -5,21 +5,21 @@ use serde_json::{Map, json};
 
 use super::args::WordOptions;
 use super::image;
-use super::meaning::{self, BytesContext, WordMeaning, parameter_words};
+use super::meaning::{self, DecodeContext, WordMeaning, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
-use crate::cli::args::Decode;
+use crate::cli::args::DecodeArgs;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::protocol::{KIND, Layout};
 
-pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
+pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
     let options: WordOptions = arguments.own.read()?;
     let known =
-        BytesContext { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
+        DecodeContext { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
     let explained: Vec<Explained> =
-        captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
+        parse_captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
     show(output, &explained)
 }
 
@@ -30,7 +30,7 @@ enum Captured {
 }
 
 /// Parses the arguments: four hexadecimal digits are a word, everything else is bytes.
-fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
+fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
     let word = |text: &String| {
         let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
         let is_word = digits.len() == 4 && digits.chars().all(|c| c.is_ascii_hexdigit());
@@ -46,13 +46,13 @@ fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
     }
 }
 
-fn explain(captured: &Captured, known: &BytesContext) -> Explained {
+fn explain(captured: &Captured, known: &DecodeContext) -> Explained {
     let (shown, compact, meaning_lines) = match captured {
         Captured::Word(word) => {
             let text = format!("{word:04X}");
             (text.clone(), text, meaning::of_word(*word, known).map(|readings| lines(&readings)))
         }
-        Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), of_bytes(bytes, known)),
+        Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), decode_bytes(bytes, known)),
     };
     let (meaning, mut more) = match meaning_lines {
         Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
@@ -70,8 +70,8 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
 
 /// Decodes a packet, or process data recognised by its length. If the direction is known, bytes of a matching length
 /// are taken as process data.
-fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBytes, String> {
-    let fits = Layout::of_length(bytes.len()).next().is_some();
+fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<DecodedBytes, String> {
+    let fits = Layout::all_with_length(bytes.len()).next().is_some();
     let packet =
         ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
     if let Some(explained) = packet {
@@ -90,5 +90,5 @@ fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBy
             bytes.len()
         ));
     }
-    image::of_bytes(bytes, known).map(|readings| lines(&readings))
+    image::decode_bytes(bytes, known).map(|readings| lines(&readings))
 }

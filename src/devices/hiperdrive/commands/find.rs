@@ -8,26 +8,27 @@ use serde_json::{Value as Json, json};
 
 use crate::app::explain;
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
-use crate::cli::args::Common;
+use crate::cli::args::CommonArgs;
 use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperdrive::procedures::{DiscoveredDevice, discover};
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpBroadcast, Wire};
+use crate::link::{CancelToken, Clock, LinkScheme, LinkUrl, RealClock, UdpBroadcast, Wire};
 
-pub(super) fn find(common: &Common, output: &Output) -> Result {
+pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
-        None => UdpBroadcast::to_all(EXPLICIT_PORT, clock.clone()),
+        None => UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone()),
         Some(url) => UdpBroadcast::to(addresses(url)?, clock.clone()),
     };
     let mut shout = shout.map_err(|error| failed(&explain::link(&error)))?;
-    let found = discover(&mut shout, &*clock, &Cancel::default()).map_err(|error| failed(&words::device(&error)))?;
+    let found =
+        discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| failed(&words::device(&error)))?;
     let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =
         found.into_iter().partition(DiscoveredDevice::is_hiperdrive);
     let list: Vec<Json> = drives.iter().map(json_of).collect();
-    let text: String = drives.iter().map(text_of).collect();
+    let text: String = drives.iter().map(discovered_device_text).collect();
     output.show(&json!({"devices": list, "others": others.len()}), &text)?;
     if !drives.is_empty() {
         return Ok(Done::Well);
@@ -48,7 +49,7 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
 /// Returns the addresses to query for a link: that of a single device, or the broadcast address of a network
 /// (enip:192.168.1.255).
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
-    let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
+    let (LinkScheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage(
             "find hiperdrive takes --link enip:ADDRESS, or no link to search the whole network".to_owned(),
         ));
@@ -88,7 +89,7 @@ fn json_of(found: &DiscoveredDevice) -> Json {
     })
 }
 
-fn text_of(found: &DiscoveredDevice) -> String {
+fn discovered_device_text(found: &DiscoveredDevice) -> String {
     let identity = &found.identity.identity;
     format!("{}  {}, serial number {}\n", link_of(found), identity.product_name, identity.serial_number)
 }

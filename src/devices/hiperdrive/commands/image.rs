@@ -2,11 +2,11 @@
 
 use serde_json::{Value as Json, json};
 
-use super::meaning::{self, BytesContext, WordMeaning, control_words, parameter_name, status_words};
+use super::meaning::{self, DecodeContext, WordMeaning, control_words, parameter_name, status_word_text};
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
-    Actual, Answer, ControlWord, InImage, Kind, Layout, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Task,
-    Value, turns,
+    ActualValues, Answer, ControlWord, InputImage, Kind, Layout, OutputData, OutputImage, ParameterNumber,
+    ParameterRow, Pkw, Task, Value, turns,
 };
 
 /// Returns the meanings of process data: one per possible layout, restricted to the direction if known. The result is
@@ -14,9 +14,9 @@ use crate::devices::hiperdrive::protocol::{
 ///
 /// # Errors
 /// Returns the reason why the data cannot have been sent in the known direction.
-pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
-    let words = parameter_word(bytes, known);
+    let words = decode_parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
         // An implausible status word is shown only if no other meaning fits.
         let from = || decode_input_image(bytes, layout).filter(|_| words.is_empty() || is_input_image(bytes, layout));
@@ -35,23 +35,23 @@ pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMea
     Ok(readings)
 }
 
-fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> {
-    Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
+fn layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item = Layout> {
+    Layout::all_with_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
 /// Returns whether any control word is nonzero. No drive sends 0 as a status word.
 fn is_anything(bytes: &[u8], layout: Layout) -> bool {
-    OutImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
+    OutputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
 
 /// Returns whether a drive can send every status word in the data.
 fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
-    InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
+    InputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
 /// Returns the meanings of the process data in a cyclic packet. The packet's direction is used if no direction is
 /// known. The result is empty if no layout has this length.
-pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<WordMeaning> {
+pub(super) fn cyclic(data: &[u8], to_target: bool, known: &DecodeContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
@@ -64,12 +64,12 @@ pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<
 }
 
 fn decode_output_image(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
-    let image = OutImage::parse(bytes, layout).map_err(|why| why.to_string())?;
+    let image = OutputImage::parse(bytes, layout).map_err(|why| why.to_string())?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
     for (number, drive) in (1..).zip(&image.drives) {
-        let control = drive.control().map_err(|why| format!("drive {number}: {why}"))?;
-        lines.push(format!("drive {number}: {}", out_words(drive, control)));
+        let control = drive.control_word().map_err(|why| format!("drive {number}: {why}"))?;
+        lines.push(format!("drive {number}: {}", output_text(drive, control)));
         list.push(json!({
             "drive": number,
             "control": format!("{:04X}", drive.control),
@@ -78,12 +78,12 @@ fn decode_output_image(bytes: &[u8], layout: Layout) -> Result<WordMeaning, Stri
             "target": drive.target,
         }));
     }
-    lines.extend(image.pkw.map(request_words));
+    lines.extend(image.pkw.map(pkw_request_text));
     Ok(WordMeaning { direction: "OUT", lines, json: json!({"drives": list}) })
 }
 
 fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
-    let image = InImage::parse(bytes, layout).ok()?;
+    let image = InputImage::parse(bytes, layout).ok()?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
     for (number, drive) in (1..).zip(&image.drives) {
@@ -100,8 +100,8 @@ fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
     Some(WordMeaning { direction: "IN", lines, json: json!({"drives": list}) })
 }
 
-fn out_words(drive: &OutData, control: ControlWord) -> String {
-    let OutData { control: word, speed, torque, target } = drive;
+fn output_text(drive: &OutputData, control: ControlWord) -> String {
+    let OutputData { control: word, speed, torque, target } = drive;
     let none = if *speed == 0 || *torque == 0 { "; with 0 % nothing begins" } else { "" };
     format!(
         "control word {word:04X} ({}), speed {speed} %, torque {torque} %, target {target}{}{none}",
@@ -110,13 +110,13 @@ fn out_words(drive: &OutData, control: ControlWord) -> String {
     )
 }
 
-fn in_words(drive: &Actual) -> String {
-    let Actual { status, speed, position } = drive;
+fn in_words(drive: &ActualValues) -> String {
+    let ActualValues { status, speed, position } = drive;
     let rpm = f64::from(*speed) / 10.0;
     format!(
         "status word {:04X} ({}), speed {rpm} rpm, position {position}{}",
         status.word(),
-        status_words(*status),
+        status_word_text(*status),
         in_turns(*position)
     )
 }
@@ -129,7 +129,7 @@ fn in_turns(position: i32) -> String {
 
 /// Returns the meanings of eight bytes as a parameter word, if the manual lists the parameter. Only string parameters
 /// have elements.
-fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
+fn decode_parameter_word(bytes: &[u8], known: &DecodeContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
     let Some(row) = row(pkw) else { return Vec::new() };
@@ -140,7 +140,7 @@ fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
     });
     let is_answer = !matches!(pkw.answer(), Answer::None | Answer::Unknown);
     let readings = [
-        (is_request, "OUT", Direction::Out, request_words as fn(Pkw) -> String),
+        (is_request, "OUT", Direction::Out, pkw_request_text as fn(Pkw) -> String),
         (is_answer, "IN", Direction::In, answer_words),
     ];
     readings
@@ -154,15 +154,15 @@ fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
         .collect()
 }
 
-fn request_words(pkw: Pkw) -> String {
+fn pkw_request_text(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
     let request = match pkw.task() {
         None => return format!("parameter word: a request {}, which there is not, about {name}", pkw.pke >> 12),
         Some(Task::None) => return "parameter word: nothing is asked".to_owned(),
         Some(task @ (Task::Read | Task::Count)) => format!("{} of {name}", task.name()),
         Some(Task::ReadElement) => format!("read element {} of {name}", pkw.ind),
-        Some(Task::WriteWord) => written_words(pkw, pkw.pwe & 0xFFFF, true),
-        Some(Task::WriteDouble) => written_words(pkw, pkw.pwe, false),
+        Some(Task::WriteWord) => write_request_text(pkw, pkw.pwe & 0xFFFF, true),
+        Some(Task::WriteDouble) => write_request_text(pkw, pkw.pwe, false),
         Some(task @ (Task::WriteElementWord | Task::WriteElementDouble)) => {
             format!("{} {} of {name}: {}", task.name(), pkw.ind, pkw.pwe)
         }
@@ -175,8 +175,8 @@ fn answer_words(pkw: Pkw) -> String {
     let answer = match pkw.answer() {
         Answer::None => return "parameter word: nothing is answered".to_owned(),
         Answer::Unknown => format!("an answer {}, which there is not, about {name}", pkw.pke >> 12),
-        Answer::Word(word) => format!("{name} is {}", value_words(pkw, word.into(), true)),
-        Answer::Double(double) => format!("{name} is {}", value_words(pkw, double, false)),
+        Answer::Word(word) => format!("{name} is {}", value_description(pkw, word.into(), true)),
+        Answer::Double(double) => format!("{name} is {}", value_description(pkw, double, false)),
         Answer::Elements(count) => format!("{name} has {count} elements"),
         Answer::Refused(error) => format!("{name} refused: {error}"),
     };
@@ -198,14 +198,14 @@ fn matches_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
 }
 
-fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
+fn write_request_text(pkw: Pkw, raw: u32, word: bool) -> String {
     let own = row(pkw).filter(|row| matches_width(row, word));
     let warning = own.map_or(String::new(), |row| meaning::warning(row, number(row, raw)));
-    format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
+    format!("write {} to {}{warning}", value_description(pkw, raw, word), parameter_name(pkw.number()))
 }
 
 /// Formats a value in the parameter's unit, or as four characters of a string.
-fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
+fn value_description(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),
         Some(row) if !matches_width(row, word) => {
@@ -216,7 +216,7 @@ fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
             Ok(Value::Text(text)) => format!("\"{text}\""),
             _ => raw.to_string(),
         },
-        Some(row) => meaning::number_words(row, number(row, raw)),
+        Some(row) => meaning::number_meaning(row, number(row, raw)),
     }
 }
 

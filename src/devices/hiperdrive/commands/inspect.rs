@@ -2,10 +2,10 @@
 
 use serde_json::{Value as Json, json};
 
-use super::args::OfDrive;
+use super::args::DriveOption;
 use super::item;
 use super::run::{Runner, value};
-use crate::cli::args::{Common, Read, Status as StatusArguments};
+use crate::cli::args::{CommonArgs, Read, Status as StatusArguments};
 use crate::cli::output::{Lines, Output};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Result};
@@ -23,7 +23,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 
-pub(super) fn identify(common: &Common, output: &Output) -> Result {
+pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let json = json!({
@@ -74,8 +74,8 @@ fn identity_text(identity: &Identity) -> String {
     lines.text()
 }
 
-pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments) -> Result {
-    let only = status.own.read::<OfDrive>()?.drive.and_then(DriveNumber::new);
+pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArguments) -> Result {
+    let only = status.own.read::<DriveOption>()?.drive.and_then(DriveNumber::new);
     let mut runner = Runner::open(common)?;
     let mut status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
     if let Some(drive) = only {
@@ -96,7 +96,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments)
         .map(|drive| {
             json!({
                 "number": drive.number.get(),
-                "state": state_word(drive.status.state()),
+                "state": state_keyword(drive.status.state()),
                 "status_word": drive.status.word(),
                 "requested": drive.requested,
                 "faults": drive.faults,
@@ -174,7 +174,7 @@ pub(super) fn error_text(code: ErrorCode) -> String {
     format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
 }
 
-pub(super) fn state_word(state: State) -> &'static str {
+pub(super) fn state_keyword(state: State) -> &'static str {
     match state {
         State::NotReady => "not-ready",
         State::Ready => "ready",
@@ -241,7 +241,7 @@ fn number_text(item: Item, number: i64) -> String {
 
 /// Reads the speed scale of a drive (162, 164), or returns `None` if either part is 0.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
-    let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
+    let mut part = |base| match ParameterNumber::for_drive(base, drive).map(|number| value(runner, number)) {
         Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
         Some(Err(why)) => Err(why),
         Some(Ok(Value::Text(_))) | None => Ok(0),
@@ -257,7 +257,7 @@ fn nominal_text(text: &str, unit: &str) -> String {
     }
 }
 
-pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
+pub(super) fn read(common: &CommonArgs, output: &Output, read: &Read) -> Result {
     let item = item(&read.item, &read.own.read()?)?;
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;

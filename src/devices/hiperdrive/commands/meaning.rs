@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{
     Travel, Value, Variant,
 };
 
-pub(super) struct BytesContext {
+pub(super) struct DecodeContext {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
 }
@@ -44,7 +44,7 @@ impl WordMeaning {
 ///
 /// # Errors
 /// Returns the reason why the word must not be sent, if its direction makes it a control word.
-pub(super) fn of_word(word: u16, known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
         (Some(Direction::Out), Err(why)) => Err(why.to_string()),
@@ -72,7 +72,7 @@ fn control_meaning(control: ControlWord) -> WordMeaning {
 
 fn status_meaning(status: StatusWord) -> WordMeaning {
     let names: Vec<&str> = status.set().map(StatusBit::name).collect();
-    let lines = vec![format!("status word, {}", status_words(status))];
+    let lines = vec![format!("status word, {}", status_word_text(status))];
     WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
@@ -108,7 +108,7 @@ fn purpose(control: ControlWord) -> &'static str {
 }
 
 /// Formats a status word: the state, then its bits.
-pub(super) fn status_words(status: StatusWord) -> String {
+pub(super) fn status_word_text(status: StatusWord) -> String {
     let bits: Vec<String> = status.set().map(|bit| format!("{} {}", bit.number(), bit.name())).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
     let present = match (status.is_plausible(), status.is_present()) {
@@ -125,7 +125,7 @@ pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option
     let number = ParameterNumber::from_attribute(class, attribute)?;
     let row = number.row();
     let value = match row.map(|row| (row, row.kind.parse(data))) {
-        Some((row, Ok(Value::Number(value)))) => Ok(format!("{}{}", number_words(row, value), warning(row, value))),
+        Some((row, Ok(Value::Number(value)))) => Ok(format!("{}{}", number_meaning(row, value), warning(row, value))),
         Some((_, Ok(Value::Text(text)))) => Ok(format!("\"{text}\"")),
         Some((_, Err(why))) => Err(why.to_string()),
         None => Ok(hex(data)),
@@ -142,14 +142,14 @@ pub(super) fn parameter_name(own: u16) -> String {
     format!("parameter {own} ({name}{drive})")
 }
 
-pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
+pub(super) fn number_meaning(row: &ParameterRow, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (row.number, word) {
         (CONTROL, Some(word)) => ControlWord::parse(word).map_or_else(
             |why| format!("{word:04X} ({why})"),
             |control| format!("{word:04X} ({})", control_words(control)),
         ),
-        (STATUS, Some(word)) => format!("{word:04X} ({})", status_words(StatusWord::new(word))),
+        (STATUS, Some(word)) => format!("{word:04X} ({})", status_word_text(StatusWord::new(word))),
         (NEWEST_ERROR..=OLDEST_ERROR, Some(0)) => "no error".to_owned(),
         (NEWEST_ERROR..=OLDEST_ERROR, Some(word)) => {
             let code = ErrorCode::new(word);
@@ -159,7 +159,7 @@ pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
             let name = Variant::new(word).row().map_or("in no table", |row| row.name);
             format!("{word} ({name})")
         }
-        (SERVICE, _) => format!("{number}{}", save_words(number)),
+        (SERVICE, _) => format!("{number}{}", service_code_note(number)),
         _ => match row.unit {
             "0.1 rpm" => format!("{number} ({} rpm)", number as f64 / 10.0),
             "0.1 V" => format!("{number} ({} V)", number as f64 / 10.0),
@@ -180,7 +180,7 @@ pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
     }
 }
 
-fn save_words(number: i64) -> &'static str {
+fn service_code_note(number: i64) -> &'static str {
     match number {
         -4 => " (reset the drives)",
         -3 => " (everything from the factory, with the IP address, and save)",

@@ -18,9 +18,9 @@ mod write;
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args};
 
-use self::args::{DoOptions, HiperdriveAction, HubOption, Move, OfDrive, WordOptions};
-use crate::cli::args::{Command, Common, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse, values_of};
+use self::args::{DoOptions, DriveOption, HiperdriveAction, HubOption, MoveArgs, WordOptions};
+use crate::cli::args::{Command, CommonArgs, SimulateArgs};
+use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, enum_values, options_of, parse};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
@@ -67,7 +67,7 @@ impl DeviceCommands for HiperdriveCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
+            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => options_of::<DriveOption>(),
             CommandId::Do => options_of::<DoOptions>(),
             CommandId::Decode => options_of::<WordOptions>(),
             _ => Vec::new(),
@@ -75,14 +75,14 @@ impl DeviceCommands for HiperdriveCommands {
     }
 
     fn actions(&self) -> Vec<PossibleValue> {
-        values_of::<HiperdriveAction>()
+        enum_values::<HiperdriveAction>()
     }
 
     fn setting_options(&self) -> Vec<Arg> {
         options_of::<HubOption>()
     }
 
-    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+    fn extra_commands(&self) -> &'static [&'static dyn CliCommand] {
         &[&MoveCommand]
     }
 
@@ -90,7 +90,7 @@ impl DeviceCommands for HiperdriveCommands {
         true
     }
 
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Find(_) => find::find(common, output),
             Command::Identify(_) => inspect::identify(common, output),
@@ -105,20 +105,20 @@ impl DeviceCommands for HiperdriveCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         simulate::simulated(output, arguments)
     }
 }
 
 struct MoveCommand;
 
-impl OwnCommand for MoveCommand {
+impl CliCommand for MoveCommand {
     fn command(&self) -> clap::Command {
-        Move::augment_args(clap::Command::new("move"))
+        MoveArgs::augment_args(clap::Command::new("move"))
             .about("hiperdrive: move a drive to a position. Ctrl-C stops it; afterwards the drive is switched off")
     }
 
-    fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result {
+    fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
         r#move::execute_move(common, output, &parse(matches)?)
     }
 }
@@ -137,7 +137,7 @@ Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201
 }
 
 /// Parses a parameter given by the user; `of` selects the drive.
-fn item(text: &str, of: &OfDrive) -> Result<Item> {
+fn item(text: &str, of: &DriveOption) -> Result<Item> {
     let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
         (Some(drive), Some(number)) => Item::of(number, Some(drive)),
         (Some(drive), None) if item.0.drive().map(|own| own.get()) != Some(drive) => {

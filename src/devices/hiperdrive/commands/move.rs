@@ -11,20 +11,22 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 use serde_json::json;
 
-use super::args::Move;
+use super::args::MoveArgs;
 use super::inspect::error_text;
 use super::run::{Runner, drive, value};
 use crate::app::Text;
-use crate::cli::args::Common;
+use crate::cli::args::CommonArgs;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperdrive::jobs::{DriveView, HiperdriveJob, HiperdriveOutput};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, MotionRequest, Permit, Phase, Refusal};
-use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, Rules};
+use crate::devices::hiperdrive::jobs::{DriveSnapshot, HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::procedures::dead_man::{
+    Ended, MotionRequest, Permit, Phase, Refusal, SpeedTorque, TargetState,
+};
+use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionRules};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
-use crate::devices::hiperdrive::state::Measure;
+use crate::devices::hiperdrive::state::PositionUnit;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 use crate::units::Moment;
@@ -40,7 +42,7 @@ enum MotionOutcome {
     Late,
 }
 
-pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> Result {
+pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveArgs) -> Result {
     let target = parse_number(&wanted.target)
         .ok_or_else(|| Failure::Usage(format!("{} is not a position: enter a number of steps", wanted.target)))?;
     if !wanted.yes {
@@ -48,7 +50,7 @@ pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> R
         return Err(Failure::Usage(what.to_owned()));
     }
     let percent = |percent| Percent::new(percent).unwrap_or(Percent::FULL);
-    let effort = Effort { speed: percent(wanted.speed), torque: percent(wanted.torque) };
+    let effort = SpeedTorque { speed: percent(wanted.speed), torque: percent(wanted.torque) };
     let mut runner = Runner::open(common)?;
     let drive = drive(&wanted.of);
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
@@ -89,7 +91,7 @@ pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> R
 
 /// Reads the error that stopped the drive, if it is still reported.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
-    let newest = value(runner, ParameterNumber::of_drive(NEWEST_ERROR, drive)?).ok()?;
+    let newest = value(runner, ParameterNumber::for_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
@@ -108,12 +110,12 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
     let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
     let mut values = Vec::new();
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT] {
-        let Some(number) = ParameterNumber::of_drive(base, drive) else { continue };
+        let Some(number) = ParameterNumber::for_drive(base, drive) else { continue };
         if let Value::Number(value) = value(runner, number)? {
             values.push((base, value));
         }
     }
-    let rules = Rules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
+    let rules = MotionRules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
     // The parameters have just been read.
     let now = Moment::START;
     let limits = DriveLimits::of(rules, (identity.topology, variant), now);
@@ -130,7 +132,7 @@ fn within(permit: &Permit, target: i64) -> Result<i32> {
 }
 
 fn place(steps: impl Into<i64>) -> Text {
-    let unit = TEXTS.text(Measure::Steps.unit());
+    let unit = TEXTS.text(PositionUnit::Steps.unit());
     TEXTS.text("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
 }
 
@@ -172,7 +174,7 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
 }
 
 /// Stops the drive, switches it off, and returns its last known state.
-fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
+fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
     let motion = &runner.kept;
     let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
     let until = Instant::now() + END;
@@ -181,7 +183,7 @@ fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
         sleep(REFRESH);
     }
     let stood = find();
-    let act = motion.intend(drive, MotionRequest::Lead(Goal::Off));
+    let act = motion.intend(drive, MotionRequest::Lead(TargetState::Off));
     while over(runner, drive, act).is_none() && Instant::now() < until {
         motion.refresh();
         sleep(REFRESH);
@@ -190,7 +192,7 @@ fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     stood.filter(|own| own.actual.status.is_present())
 }
 
-fn stop_reasons(came: &MotionOutcome, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
+fn stop_reasons(came: &MotionOutcome, stood: Option<DriveSnapshot>, seconds: u16) -> Vec<String> {
     let first = match came {
         MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal(),
         MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),

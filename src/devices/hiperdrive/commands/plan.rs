@@ -4,7 +4,7 @@ use serde_json::{Value as Json, json};
 
 use super::run::Runner;
 use crate::cli::Result;
-use crate::cli::args::Consenting;
+use crate::cli::args::ConsentArgs;
 use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, PlanReport, WriteSummary};
@@ -42,7 +42,7 @@ pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
-    consent: &Consenting,
+    consent: &ConsentArgs,
 ) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
         return Ok(WriteSummary::default());

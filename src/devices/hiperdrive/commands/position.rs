@@ -2,10 +2,10 @@
 
 use serde_json::json;
 
-use super::inspect::state_word;
+use super::inspect::state_keyword;
 use super::run::{Runner, drive, value};
 use crate::cli::Result;
-use crate::cli::args::{Common, Position};
+use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
 
 /// Prints the position. The scale is read once, and afterwards only parameters 105 to 107 are read.
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
     let (numerator, denominator) = (part(&mut runner, NUMERATOR, drive)?, part(&mut runner, DENOMINATOR, drive)?);
@@ -33,7 +33,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
 }
 
 fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
-    let Some(number) = ParameterNumber::of_drive(number, drive) else { return Ok(None) };
+    let Some(number) = ParameterNumber::for_drive(number, drive) else { return Ok(None) };
     Ok(match value(runner, number)? {
         Value::Number(part) => u16::try_from(part).ok(),
         Value::Text(_) => None,
@@ -88,7 +88,7 @@ fn show(output: &Output, reading: &DriveReading, place: Option<TurnPosition>) ->
         "valid": is_valid(reading),
         "drive": reading.drive.get(),
         "speed": actual.speed,
-        "state": state_word(state),
+        "state": state_keyword(state),
     });
     let words = match place {
         _ if !is_valid(reading) => "not valid".to_owned(),

@@ -5,10 +5,10 @@ use serde_json::json;
 use super::HiperdriveCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::cli::args::{Common, Restore, Save};
+use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{UnrestoredItems, restore_options, save_profile, to_restore, write_restore};
+use crate::cli::profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Body;
 use crate::result_of;
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = saved(common)?;
     let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
     save_profile(&save.file, Body::new(profile))?;
@@ -28,9 +28,9 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 impl ProfileCommands for HiperdriveCommands {
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
-        let profile = to_restore::<HiperdriveProfile>(restore, profile)?;
+        let profile = profile_to_restore::<HiperdriveProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         for types in &prepared.other_types {
@@ -53,13 +53,13 @@ impl ProfileCommands for HiperdriveCommands {
     }
 
     /// Reads the complete device for a comparison.
-    fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn present(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common)?))
     }
 
     /// Returns a message if the two profiles are from different devices or have different drives. A profile without a
     /// serial number does not match any device.
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+    fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
                 .err()?;
@@ -72,7 +72,7 @@ impl ProfileCommands for HiperdriveCommands {
     }
 }
 
-fn saved(common: &Common) -> Result<HiperdriveProfile> {
+fn saved(common: &CommonArgs) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 

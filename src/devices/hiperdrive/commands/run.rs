@@ -4,7 +4,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::HiperdriveCommands;
-use super::args::OfDrive;
+use super::args::DriveOption;
 use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
@@ -51,7 +51,7 @@ impl Runs for Hiperdrive {
         doing.to_string()
     }
 
-    fn reply_pace(session: &Session<Self>) -> Option<Pace> {
+    fn reply_times(session: &Session<Self>) -> Option<Pace> {
         let station = session.station();
         Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
     }
@@ -82,6 +82,6 @@ pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Valu
 }
 
 /// Returns the drive selected by the user, or the first drive by default.
-pub(super) fn drive(of: &OfDrive) -> DriveNumber {
+pub(super) fn drive(of: &DriveOption) -> DriveNumber {
     of.drive.and_then(DriveNumber::new).unwrap_or(DriveNumber::FIRST)
 }

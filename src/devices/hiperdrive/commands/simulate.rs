@@ -2,14 +2,14 @@
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 
-use crate::cli::args::Simulate;
+use crate::cli::args::SimulateArgs;
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::sim::DatagramDevice;
 
-pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
         return Err(Failure::Usage(what.to_owned()));
@@ -24,7 +24,7 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 
 impl Simulated for Target {
     /// Accepts another connection, since a target can serve several originators at once.
-    fn another(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn duplicate(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection(peer)))
     }
 
@@ -32,7 +32,7 @@ impl Simulated for Target {
         Some(Box::new(self.clone()))
     }
 
-    fn listens(&self, at: SocketAddrV4) {
+    fn on_listening(&self, at: SocketAddrV4) {
         self.listen(at);
     }
 

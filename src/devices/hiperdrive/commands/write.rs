@@ -4,11 +4,11 @@ use super::act::check_acknowledged;
 use super::item;
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
-use crate::cli::args::{Common, Write};
+use crate::cli::args::{CommonArgs, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::profiles::print_done;
+use crate::cli::profiles::print_write_result;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
@@ -18,7 +18,7 @@ use crate::devices::hiperdrive::protocol::{Access, Travel};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let item = item(&write.item, &write.own.read()?)?;
     let change = change(item, &write.value)?;
     require_consent(&write.consent)?;
@@ -37,7 +37,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     if let Some(drive) = drive.filter(|_| operations.is_empty()) {
         output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal());
     }
-    let done = print_done(output, &item.to_string(), &operations, &spent, &[], &changes)?;
+    let done = print_write_result(output, &item.to_string(), &operations, &spent, &[], &changes)?;
     if let Some(drive) = drive.filter(|_| !operations.is_empty()) {
         check_acknowledged(&mut runner, output, drive)?;
     }
@@ -66,7 +66,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     match (row.number, number.drive()) {
         // Writing 0 clears the errors, which amounts to an acknowledgement (manual 6.2).
         (ACKNOWLEDGE, Some(drive)) => Ok(Change::Do(Service::Acknowledge(drive))),
-        (SERVICE, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
+        (SERVICE, _) => Service::from_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
         (REFERENCE, Some(drive)) => {
             // The checked value fits into 32 bits.
             let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;

@@ -7,17 +7,17 @@ use super::commit::commit as carry_through;
 use super::rules_refresh::RulesRefresh;
 use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
-use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, ParameterReading, ParameterResult};
+use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
 use crate::devices::hiperdrive::procedures::{
-    DriveLimits, Error, GROUPS, Identity, Rules, Survey, Temperature, TemperatureReading, identify,
+    DriveLimits, Error, GROUPS, Identity, MotionRules, Survey, Temperature, TemperatureReading, identify,
 };
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, PkwError, Value};
+use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterNumber, PkwError, Value};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
 /// Cyclic connection to a device and the motion permits of its drives.
-pub(super) struct Control {
+pub(super) struct CyclicControl {
     port: Option<Box<dyn DatagramPort>>,
     clock: Arc<dyn Clock>,
     motion: Motion,
@@ -32,9 +32,9 @@ struct Open {
     close: ForwardClose,
 }
 
-impl Control {
+impl CyclicControl {
     pub(super) fn new(port: Option<Box<dyn DatagramPort>>, clock: Arc<dyn Clock>) -> Self {
-        Control {
+        CyclicControl {
             port,
             clock: clock.clone(),
             motion: Motion::new(clock),
@@ -50,7 +50,7 @@ impl Control {
 
     /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received any
     /// data.
-    pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+    pub(super) fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
         let view = self.motion.view();
         let speaks = view.open && view.link.received > 0;
         view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
@@ -75,18 +75,18 @@ impl Control {
     /// Stops the drives after explicit messaging was lost.
     pub(super) fn mark_session_lost(&self) {
         if let Some(open) = &self.open {
-            open.cyclic.lose(CyclicLost::Session);
+            open.cyclic.lose(ConnectionLoss::Session);
         }
     }
 
     /// Updates the motion permits of the drives from a survey that began at the given moment.
-    pub(super) fn rule_by(&mut self, survey: &Survey, began: Moment) {
+    pub(super) fn update_permits(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
-            let read = |base| match survey.values.get(&ParameterNumber::of_drive(base, drive.number)?)? {
+            let read = |base| match survey.values.get(&ParameterNumber::for_drive(base, drive.number)?)? {
                 Value::Number(value) => Some(*value),
                 Value::Text(_) => None,
             };
-            self.limit(&survey.identity, drive.number, Rules::by(read), [began; GROUPS]);
+            self.limit(&survey.identity, drive.number, MotionRules::by(read), [began; GROUPS]);
         }
     }
 
@@ -95,7 +95,7 @@ impl Control {
     }
 
     /// Publishes a drive's limits, derived from its parameters, with the times at which these were read.
-    pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
+    pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: MotionRules, times: [Moment; GROUPS]) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
     }
@@ -197,7 +197,7 @@ impl Hiperdrive {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
             // The values before the plan, against which a changed scale is detected.
-            let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
+            let rules = MotionRules::by(|base| commit.prepared.image.for_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {
                 limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);

@@ -14,7 +14,7 @@ use crossbeam_channel::{Receiver, bounded};
 
 use super::motion::Motion;
 use crate::devices::hiperdrive::procedures::Opened;
-use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
+use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::{Clock, DatagramChannel, wake_before_others};
 
@@ -30,14 +30,14 @@ pub struct Cyclic {
 #[derive(Default)]
 struct CyclicCommands {
     end: AtomicBool,
-    lost: Mutex<Option<CyclicLost>>,
+    lost: Mutex<Option<ConnectionLoss>>,
 }
 
 /// Item type of a channel that never carries a value and only signals, by disconnecting, that the thread has ended.
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
-pub struct CyclicPump {
+pub struct CyclicRunner {
     drives: Drives,
     port: Box<dyn DatagramChannel>,
     clock: Arc<dyn Clock>,
@@ -65,13 +65,13 @@ impl Cyclic {
         clock: Arc<dyn Clock>,
         motion: &Motion,
     ) -> std::io::Result<Self> {
-        let mut pump = CyclicPump::new(port, opened, drives, clock, motion);
+        let mut pump = CyclicRunner::new(port, opened, drives, clock, motion);
         let commands = pump.commands.clone();
         let (alive, ended) = bounded(0);
         let failed = motion.clone();
         let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
             let _alive: crossbeam_channel::Sender<Never> = alive;
-            failed.set_punctual(wake_before_others());
+            failed.set_realtime_priority(wake_before_others());
             let turned = catch_unwind(AssertUnwindSafe(|| while pump.turn() {}));
             if turned.is_err() {
                 failed.fail();
@@ -85,18 +85,18 @@ impl Cyclic {
     }
 
     /// Returns the reason if the connection was lost. The owner must then close it over the session's own connection.
-    pub fn lost(&self) -> Option<CyclicLost> {
+    pub fn lost(&self) -> Option<ConnectionLoss> {
         self.motion.lost()
     }
 
     /// Reports a loss detected by the session and stops the drives.
-    pub fn lose(&self, why: CyclicLost) {
+    pub fn lose(&self, why: ConnectionLoss) {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
     /// Stops the drives, switches them off and ends the thread; the connection itself must still be closed. Returns the
     /// reason if the connection was lost.
-    pub fn close(self) -> Option<CyclicLost> {
+    pub fn close(self) -> Option<ConnectionLoss> {
         self.commands.end.store(true, Ordering::SeqCst);
         // The channel disconnects when the thread ends; a thread that takes longer is not awaited.
         let _ = self.ended.recv_timeout(PATIENCE);
@@ -110,7 +110,7 @@ impl Drop for Cyclic {
     }
 }
 
-impl CyclicPump {
+impl CyclicRunner {
     /// Creates the pump for a newly opened connection; `port` must be directed at the target.
     pub fn new(
         port: Box<dyn DatagramChannel>,
@@ -122,7 +122,7 @@ impl CyclicPump {
         let drives = Drives::new(opened, drives, motion.open(), clock.now());
         motion.publish(&drives);
         let (motion, commands) = (motion.clone(), Arc::default());
-        CyclicPump { drives, port, clock, motion, commands, packet: Vec::new() }
+        CyclicRunner { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
     /// Requests that the drives stop and the connection end; [`turn`](Self::turn) carries this out.
@@ -167,7 +167,7 @@ impl CyclicPump {
         }
     }
 
-    fn is_gone(&mut self, why: CyclicLost) -> bool {
+    fn is_gone(&mut self, why: ConnectionLoss) -> bool {
         self.drives.connection_lost(self.clock.now(), why);
         self.motion.publish(&self.drives);
         false

@@ -15,15 +15,15 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use control::Control;
-pub use cyclic::{Cyclic, CyclicPump};
+use control::CyclicControl;
+pub use cyclic::{Cyclic, CyclicRunner};
 pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
     WEAR_WARNING, device_key,
 };
-pub use motion::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
+pub use motion::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 pub use open::{check, open};
-use session_watch::WatchedWire;
+use session_watch::MonitoredLink;
 
 use crate::devices::hiperdrive::procedures::check::check as check_device;
 use crate::devices::hiperdrive::procedures::{
@@ -39,7 +39,7 @@ use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, 
 pub struct Hiperdrive {
     wire: Box<dyn ByteLink>,
     station: Station,
-    control: Control,
+    control: CyclicControl,
     watched: DriveNumber,
     target: Option<Target>,
     remark: Option<DeviceMessage>,
@@ -74,11 +74,11 @@ pub struct DeviceConnection {
 impl Session<Hiperdrive> {
     /// Creates a session on an open connection. `target` is the virtual device if it runs in this process; its saves
     /// are counted separately.
-    pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
+    pub fn for_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
         let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
-        let control = Control::new(port, clock.clone());
-        let wire = Box::new(WatchedWire::new(wire, clock.clone(), control.motion()));
+        let control = CyclicControl::new(port, clock.clone());
+        let wire = Box::new(MonitoredLink::new(wire, clock.clone(), control.motion()));
         let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
         Session::with(device, clock, store, is_virtual)
     }
@@ -126,7 +126,7 @@ impl Device for Hiperdrive {
             HiperdriveJob::Survey => {
                 let began = context.clock.now();
                 let survey = survey(&mut self.master(context), &mut parameter)?;
-                self.control.rule_by(&survey, began);
+                self.control.update_permits(&survey, began);
                 Out::Surveyed(Box::new(survey))
             }
             HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(context), &mut parameter)?)),

@@ -8,11 +8,13 @@ use std::time::Duration;
 
 use super::session_watch::SessionWatch;
 use crate::devices::hiperdrive::procedures::cyclic::{
-    CyclicLost, Drives, LinkFigures, ParameterReading, ParameterReadings,
+    ConnectionLoss, Drives, LinkStatistics, ParameterReading, ParameterReadings,
 };
-use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Lock, MotionRequest, Permit, Phase};
-use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, Setpoint};
+use crate::devices::hiperdrive::procedures::dead_man::{
+    DeadMan, Ended, Lock, MotionIntent, MotionRequest, Permit, Phase,
+};
+use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
+use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterNumber, Setpoint};
 use crate::link::Clock;
 use crate::units::Moment;
 
@@ -26,7 +28,7 @@ struct Shared {
 }
 
 struct Cell {
-    intent: Intent,
+    intent: MotionIntent,
     /// Limits of each drive, stored nowhere else.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
@@ -53,20 +55,20 @@ pub struct DrivesSnapshot {
 pub struct MotionSnapshot {
     pub open: bool,
     /// Drives of the connection with their latest state, by number.
-    pub drives: Vec<DriveView>,
-    pub link: LinkFigures,
+    pub drives: Vec<DriveSnapshot>,
+    pub link: LinkStatistics,
     /// Parameters read through the parameter words, or `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
     /// Whether the connection thread runs with priority over ordinary threads.
     pub punctual: bool,
     /// Reason for the loss, if the connection was lost without being closed.
-    pub lost: Option<CyclicLost>,
+    pub lost: Option<ConnectionLoss>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveView {
+pub struct DriveSnapshot {
     pub number: DriveNumber,
-    pub actual: Actual,
+    pub actual: ActualValues,
     /// Time at which the data in `actual` was received, or `None` before the first reception.
     pub received_at: Option<Moment>,
     pub sent: Setpoint,
@@ -83,7 +85,7 @@ const WATCHED: Duration = Duration::from_secs(5);
 impl Motion {
     /// Creates the motion state with no request and no permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
-        let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
+        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
             intent,
             limits: BTreeMap::new(),
@@ -104,7 +106,7 @@ impl Motion {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
-        cell.intent = Intent { drive, request, number, refreshed };
+        cell.intent = MotionIntent { drive, request, number, refreshed };
         number
     }
 
@@ -173,7 +175,7 @@ impl Motion {
 
     /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have
     /// changed since.
-    pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+    pub fn confirm_limits(&self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         self.with_limits(drive, |limits| limits.confirm(seen))
     }
 
@@ -214,13 +216,13 @@ impl Motion {
         let now = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
-        cell.intent = Intent::rest(cell.intent.drive, number, now);
+        cell.intent = MotionIntent::rest(cell.intent.drive, number, now);
         cell.view = MotionSnapshot { open: true, ..MotionSnapshot::default() };
         number
     }
 
     /// Passes the current request to the closure that builds the next packet.
-    pub(super) fn with_intent<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+    pub(super) fn with_intent<T>(&self, make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
         make(&cell.intent, &|drive| cell.permitted(drive, now))
@@ -238,7 +240,7 @@ impl Motion {
     }
 
     pub(super) fn publish(&self, drives: &Drives) {
-        let of = |man: &DeadMan| DriveView {
+        let of = |man: &DeadMan| DriveSnapshot {
             number: man.drive(),
             actual: man.actual(),
             received_at: man.received_at(),
@@ -247,7 +249,7 @@ impl Motion {
             act: man.act(),
             ended: man.ended(),
         };
-        let mut views: Vec<DriveView> = drives.dead_man_switches().map(of).collect();
+        let mut views: Vec<DriveSnapshot> = drives.dead_man_switches().map(of).collect();
         views.sort_by_key(|view| view.number);
         let view = MotionSnapshot {
             open: !drives.is_ending(),
@@ -261,17 +263,17 @@ impl Motion {
         cell.view = MotionSnapshot { punctual: cell.punctual, ..view };
     }
 
-    pub(super) fn set_punctual(&self, punctual: bool) {
+    pub(super) fn set_realtime_priority(&self, punctual: bool) {
         self.lock().punctual = punctual;
     }
 
     /// Records that the connection thread has failed or could not start.
     pub(super) fn fail(&self) {
         let mut cell = self.lock();
-        (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
+        (cell.view.open, cell.view.lost) = (false, Some(ConnectionLoss::Failed));
     }
 
-    pub(super) fn lost(&self) -> Option<CyclicLost> {
+    pub(super) fn lost(&self) -> Option<ConnectionLoss> {
         self.lock().view.lost.clone()
     }
 
@@ -331,7 +333,7 @@ impl fmt::Debug for Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::hiperdrive::procedures::dead_man::Effort;
+    use crate::devices::hiperdrive::procedures::dead_man::SpeedTorque;
     use crate::link::VirtualClock;
 
     /// A window that resumes before the connection thread, after both were suspended, does not revive a stale request.
@@ -341,16 +343,16 @@ mod tests {
         let motion = Motion::new(clock.clone());
         let is_stale = || motion.with_intent(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
-        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: Effort::MOVE });
+        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
         for _ in 0..3 {
-            later(Intent::FRESH);
+            later(MotionIntent::FRESH);
             motion.refresh();
         }
         assert!(!is_stale(), "said in time, again and again");
-        later(Intent::FRESH + Duration::from_millis(1));
+        later(MotionIntent::FRESH + Duration::from_millis(1));
         motion.refresh();
         assert!(is_stale(), "too late");
-        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: Effort::MOVE });
+        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
         assert!(!is_stale(), "another act");
     }
 }

@@ -8,10 +8,10 @@ use crate::bits::MaskedBytes;
 use crate::devices::hiperdrive::procedures::{LinkParameters, Station};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::link::{
-    Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
+    Clock, Direction, LinkScheme, LinkUrl, RealClock, ReplayLink, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
 };
 use crate::store::Store;
-use crate::worker::open::{inside, margin, read_recording, simulated, wrong_target_error};
+use crate::worker::open::{inside, read_recording, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an adapter or a hub without opening it.
@@ -32,7 +32,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let way = match url.wire() {
         Wire::File(path) => {
-            let entries = read_recording(path)?.into_iter().map(without_number).collect();
+            let entries = read_recording(path)?.into_iter().map(mask_numbers).collect();
             let wire = Box::new(ReplayLink::new(path, entries, clock.clone()));
             DeviceConnection { wire, port: None, station, target: None }
         }
@@ -43,7 +43,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
         }
         Wire::Inside => open_virtual(&config, station, clock.clone()),
     };
-    Ok(Session::to_target(way, clock, store))
+    Ok(Session::for_target(way, clock, store))
 }
 
 /// Returns the connection to a virtual device in this process.
@@ -57,7 +57,7 @@ fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Dev
 
 /// Parses the settings of the station and of the virtual device. The latter apply only to a link to a virtual device.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    if !matches!(url.scheme, Scheme::Sim | Scheme::Enip | Scheme::Replay) {
+    if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Enip | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, enip:, replay:"));
     }
     let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
@@ -65,13 +65,13 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
         Wire::Host(host) => host.rsplit_once(':').and_then(|(_, port)| port.parse().ok()),
         _ => None,
     };
-    let mut station = Station::from_query(&url.query, tcp, margin(url.scheme))?;
-    station.recorded = url.scheme == Scheme::Replay;
+    let mut station = Station::from_query(&url.query, tcp, reply_margin(url.scheme))?;
+    station.recorded = url.scheme == LinkScheme::Replay;
     Ok((station, config))
 }
 
 /// Removes session and request numbers, which differ on each run, so that a recording matches any run.
-fn without_number(entry: TraceEntry) -> TraceEntry {
+fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &NUMBERS), ..entry }

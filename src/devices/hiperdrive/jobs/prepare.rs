@@ -1,11 +1,11 @@
 //! Preparation of a plan from a change. Only reads.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
-use crate::devices::hiperdrive::procedures::write::{Remedy, remedy};
+use crate::devices::hiperdrive::procedures::write::{FaultReset, remedy};
 use crate::devices::hiperdrive::procedures::{Error, Identity, Master, read_state, settings};
 use crate::devices::hiperdrive::profile::{
-    HiperdrivePlan, Image, Op, Restore, Service, other_types, plan_edits, plan_network, plan_restore, plan_service,
-    plan_set_position,
+    HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
+    plan_set_position, type_differences,
 };
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::worker::commit::cycles_seen;
@@ -54,9 +54,9 @@ pub(super) fn prepare(
             let mut plan = plan_service(&state.image, *service);
             if let Service::Acknowledge(drive) = service {
                 match remedy(&mut master, *drive)? {
-                    Remedy::Nothing => plan.ops.clear(),
-                    Remedy::Acknowledgement => {}
-                    Remedy::Reset => {
+                    FaultReset::Nothing => plan.ops.clear(),
+                    FaultReset::Acknowledgement => {}
+                    FaultReset::Reset => {
                         // It concerns all drives, and the plan shows it as a reset.
                         plan = plan_service(&state.image, Service::Reset);
                         plan.ops.push(Op::Service(*service));
@@ -75,7 +75,7 @@ pub(super) fn prepare(
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
     let other_types = match change {
-        Change::Restore { profile, .. } => other_types(&profile.identity, &identity.profile()),
+        Change::Restore { profile, .. } => type_differences(&profile.identity, &identity.profile()),
         _ => Vec::new(),
     };
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;

@@ -73,20 +73,20 @@ impl SessionWatch {
     }
 }
 
-pub(super) struct WatchedWire {
+pub(super) struct MonitoredLink {
     wire: Box<dyn ByteLink>,
     clock: Arc<dyn Clock>,
     motion: Motion,
     frames: Receiver,
 }
 
-impl WatchedWire {
+impl MonitoredLink {
     pub(super) fn new(wire: Box<dyn ByteLink>, clock: Arc<dyn Clock>, motion: Motion) -> Self {
-        WatchedWire { wire, clock, motion, frames: Receiver::default() }
+        MonitoredLink { wire, clock, motion, frames: Receiver::default() }
     }
 }
 
-impl ByteLink for WatchedWire {
+impl ByteLink for MonitoredLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let now = self.clock.now();
         self.motion.with_session(|session| session.ask(now));
@@ -126,8 +126,8 @@ impl ByteLink for WatchedWire {
         self.wire.set_format(format)
     }
 
-    fn sets_format(&self) -> bool {
-        self.wire.sets_format()
+    fn can_set_format(&self) -> bool {
+        self.wire.can_set_format()
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
@@ -204,10 +204,10 @@ mod tests {
         };
         let later = |ms| clock.sleep_until(clock.now() + Duration::from_millis(ms));
         let receive = |bytes: &[u8]| {
-            let mut wire = WatchedWire::new(Box::new(Line(bytes.to_vec())), clock.clone(), motion.clone());
+            let mut wire = MonitoredLink::new(Box::new(Line(bytes.to_vec())), clock.clone(), motion.clone());
             wire.receive(clock.now(), &mut Vec::new()).unwrap();
         };
-        let mut wire = WatchedWire::new(Box::new(Line::default()), clock.clone(), motion.clone());
+        let mut wire = MonitoredLink::new(Box::new(Line::default()), clock.clone(), motion.clone());
         wire.send(&[0]).unwrap();
         later(130);
         let _ = wire.receive(clock.now(), &mut Vec::new());

@@ -281,13 +281,13 @@ fn check_drive(
         HiperdriveStepResult::of(CheckStep::Request(number), request),
         HiperdriveStepResult::of(CheckStep::Line(number), vec![rs485]),
         HiperdriveStepResult::of(CheckStep::Timeout(number), vec![timeout]),
-        HiperdriveStepResult::of(CheckStep::Errors(number), errors(&status)),
+        HiperdriveStepResult::of(CheckStep::Errors(number), error_findings(&status)),
         HiperdriveStepResult::of(CheckStep::DriveTemperature(number), vec![temperature]),
         HiperdriveStepResult::of(CheckStep::Range(number), range(master, drive)?),
     ])
 }
 
-fn errors(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
+fn error_findings(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     let DriveStatus { status: word, words: [drive, motion, _], buffer, faults, .. } = status;
     let mut findings = Vec::new();
     if word.is_plausible() {

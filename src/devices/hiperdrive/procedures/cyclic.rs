@@ -19,5 +19,5 @@ mod tests;
 
 pub use connection::Connection;
 pub use drives::Drives;
-pub use figures::{Bucket, CyclicLost, Histogram, LinkFigures};
+pub use figures::{Bucket, ConnectionLoss, Histogram, LinkStatistics};
 pub use parameter_words::{ParameterReading, ParameterReadings, ParameterResult, ParameterWords};

@@ -25,31 +25,35 @@ mod watch;
 
 use std::time::Duration;
 
-pub use act::{Effort, Ended, Goal, Intent, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal, StopLevel};
+pub use act::{
+    Ended, Lock, MotionIntent, MotionKind, MotionRequest, Permit, Phase, Refusal, SpeedTorque, StopLevel, TargetState,
+};
 pub use watch::{Outside, Side};
 
-use lead::Lead;
+use lead::StateSequencer;
 use stage::{Mark, Stage};
 use watch::Watch;
 
-use crate::devices::hiperdrive::protocol::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
+use crate::devices::hiperdrive::protocol::{
+    ActualValues, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit,
+};
 use crate::units::Moment;
 
 #[derive(Clone, Debug)]
 pub struct DeadMan {
     drive: DriveNumber,
-    received: Option<(Moment, Actual)>,
+    received: Option<(Moment, ActualValues)>,
     /// Time of the first report from the drive.
     first: Option<Moment>,
     reports: u64,
     sent: Setpoint,
     stage: Stage,
-    level: Goal,
+    level: TargetState,
     act: Option<Act>,
     /// Number of the last act that can no longer start.
     spent: u64,
     /// Effort of the last motion.
-    effort: Effort,
+    effort: SpeedTorque,
     /// Whether speed mode was entered, so that the drive may remember the run and must first go below operational.
     after_run: bool,
     /// Whether reports are missing at the moment, so that no motion may start.
@@ -98,10 +102,10 @@ impl DeadMan {
             reports: 0,
             sent: NONE,
             stage: Stage::Rest { moves: None },
-            level: Goal::Off,
+            level: TargetState::Off,
             act: None,
             spent,
-            effort: Effort::NONE,
+            effort: SpeedTorque::NONE,
             after_run: false,
             is_out_of_contact: false,
             ended: None,
@@ -110,7 +114,13 @@ impl DeadMan {
 
     /// Returns the setpoint to send now; `received` is the data received since the last call, or `None` if nothing
     /// arrived.
-    pub fn next(&mut self, now: Moment, received: Option<Actual>, intent: &Intent, permit: &Permit) -> Setpoint {
+    pub fn next(
+        &mut self,
+        now: Moment,
+        received: Option<ActualValues>,
+        intent: &MotionIntent,
+        permit: &Permit,
+    ) -> Setpoint {
         if let Some(actual) = received {
             self.receive(now, actual);
         }
@@ -134,7 +144,7 @@ impl DeadMan {
     }
 
     /// Returns the data received last, or zeros before the first reception.
-    pub fn actual(&self) -> Actual {
+    pub fn actual(&self) -> ActualValues {
         self.received.map(|(_, actual)| actual).unwrap_or_default()
     }
 
@@ -198,12 +208,12 @@ impl DeadMan {
         }
     }
 
-    fn receive(&mut self, now: Moment, actual: Actual) {
+    fn receive(&mut self, now: Moment, actual: ActualValues) {
         self.reports += 1;
         self.is_out_of_contact = false;
         self.received = Some((now, actual));
         self.first = self.first.or(Some(now));
-        let below = Goal::of_word(self.sent.control) < Goal::Operational;
+        let below = TargetState::of_word(self.sent.control) < TargetState::Operational;
         let forgotten = |bit| !actual.status.has(bit);
         if below && forgotten(StatusBit::Operational) && forgotten(StatusBit::SetpointAcknowledged) {
             self.after_run = false;
@@ -212,7 +222,7 @@ impl DeadMan {
 
     /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time:
     /// neither it nor an earlier one starts any more.
-    fn drop_void_state(&mut self, now: Moment, intent: &Intent) {
+    fn drop_void_state(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
         if intent.number <= self.spent || !(intent.drive != self.drive || rests || stale) {
@@ -232,7 +242,7 @@ impl DeadMan {
     }
 
     /// Starts a new act if one is requested and the last act has ended.
-    fn take(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
+    fn take(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.drop_void_state(now, intent);
         // A step counts from the present position.
         let has_arrived = self.first.is_some_and(|first| now.since(first) >= ARRIVAL_TIME);
@@ -249,7 +259,13 @@ impl DeadMan {
         }
     }
 
-    fn begin(&mut self, now: Moment, actual: Actual, request: MotionRequest, permit: &Permit) -> Result<(), Refusal> {
+    fn begin(
+        &mut self,
+        now: Moment,
+        actual: ActualValues,
+        request: MotionRequest,
+        permit: &Permit,
+    ) -> Result<(), Refusal> {
         let status = actual.status;
         if !status.is_present() {
             return Err(Refusal::Absent);
@@ -280,14 +296,14 @@ impl DeadMan {
             act.motion = Some(Motion { request, kind });
         }
         self.effort = request.effort().unwrap_or(self.effort);
-        self.stage = Stage::Lead(Lead::to(Goal::Enabled));
+        self.stage = Stage::Lead(StateSequencer::to(TargetState::Enabled));
         self.advance(now, actual);
         Ok(())
     }
 
     /// Applies the last safeguard, which replaces any control word that could start a motion unless an act with a
     /// motion is running.
-    fn run_guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
+    fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::Error;
 use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
 use crate::devices::hiperdrive::protocol::VENDOR;
-use crate::link::{Broadcast, Cancel, Clock};
+use crate::link::{BroadcastChannel, CancelToken, Clock};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DiscoveredDevice {
@@ -30,7 +30,11 @@ const SLICE: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// Network errors; [`Error::Cancelled`].
-pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -> Result<Vec<DiscoveredDevice>, Error> {
+pub fn discover(
+    shout: &mut dyn BroadcastChannel,
+    clock: &dyn Clock,
+    cancel: &CancelToken,
+) -> Result<Vec<DiscoveredDevice>, Error> {
     shout.broadcast(&Frame::list_identity([0; 8]).emit())?;
     let until = clock.now() + GATHER;
     let mut found: Vec<DiscoveredDevice> = Vec::new();

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED, SPEED, STATUS, VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    Access, Actual, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
+    Access, ActualValues, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
 };
 use crate::units::Moment;
 
@@ -109,7 +109,7 @@ pub struct DriveReading {
     pub at: Moment,
     pub drive: DriveNumber,
     /// Parameters 105 to 107.
-    pub actual: Actual,
+    pub actual: ActualValues,
 }
 
 impl Identity {
@@ -214,7 +214,7 @@ fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNum
     let drives = identity
         .drives
         .iter()
-        .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::of_drive(row.number, drive.number)));
+        .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::for_drive(row.number, drive.number)));
     device.chain(drives)
 }
 
@@ -277,7 +277,7 @@ pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveRead
     // Both have this width.
     let speed = master.read_number(of(SPEED, drive)?)? as i16;
     let position = master.read_number(of(POSITION, drive)?)? as i32;
-    Ok(DriveReading { at: master.now(), drive, actual: Actual { status, speed, position } })
+    Ok(DriveReading { at: master.now(), drive, actual: ActualValues { status, speed, position } })
 }
 
 /// Returns the topology, read once a session.
@@ -305,5 +305,5 @@ pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
 
 /// Returns a drive's parameter number, given the corresponding number of drive 1.
 pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
-    ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
+    ParameterNumber::for_drive(base, drive).ok_or(Error::NoNumber(base))
 }

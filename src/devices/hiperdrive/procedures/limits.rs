@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use super::dead_man::{Lock, Permit};
-use super::rules::{GROUPS, Rules};
+use super::rules::{GROUPS, MotionRules};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
 };
@@ -15,7 +15,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
-    rules: Rules,
+    rules: MotionRules,
     /// Whether the scale and limits have factory values, as far as the drive family is known.
     is_factory: bool,
     /// Whether the scale has changed since the user confirmed the limits.
@@ -28,7 +28,7 @@ pub struct DriveLimits {
 
 /// Limits as shown to the user, with their scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LimitsSeen {
+pub struct DisplayedLimits {
     /// Parameters 154 and 156.
     pub scale: (i64, i64),
     /// Parameters 158 and 160, in scaled steps.
@@ -47,7 +47,7 @@ pub(super) fn ends_by_itself(timeout: i64) -> bool {
 
 impl DriveLimits {
     /// Creates the limits of a drive whose parameters were all read at the given time.
-    pub fn of(rules: Rules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
+    pub fn of(rules: MotionRules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
         let mut limits = DriveLimits::default();
         limits.take(rules, (topology, variant), [at; GROUPS]);
         limits
@@ -55,7 +55,7 @@ impl DriveLimits {
 
     /// Adopts parameter readings; `times` contains the start of reading each group. If the scale has changed, the
     /// limits must be confirmed, since they denote other positions. Readings older than a doubt do not clear it.
-    pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
+    pub fn take(&mut self, rules: MotionRules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.has_factory_settings(topology, variant);
         self.rules = rules;
@@ -63,7 +63,7 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    pub const fn rules(&self) -> Rules {
+    pub const fn rules(&self) -> MotionRules {
         self.rules
     }
 
@@ -82,7 +82,7 @@ impl DriveLimits {
     /// Discards the parameter readings. Unconfirmed limits remain unconfirmed.
     pub fn forget(&mut self) {
         // The scale stays, so that a change can be detected.
-        let rules = Rules { scale: self.rules.scale, ..Rules::default() };
+        let rules = MotionRules { scale: self.rules.scale, ..MotionRules::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
@@ -97,15 +97,15 @@ impl DriveLimits {
     }
 
     /// Confirms the limits as shown to the user. If the limits have changed since, returns `false` without effect.
-    pub fn confirm(&mut self, seen: LimitsSeen) -> bool {
+    pub fn confirm(&mut self, seen: DisplayedLimits) -> bool {
         let counts = self.seen() == Some(seen);
         self.unconfirmed &= !counts;
         counts
     }
 
     /// Returns the limits to show for a confirmation, or `None` if they have not been read.
-    pub fn seen(&self) -> Option<LimitsSeen> {
-        Some(LimitsSeen { scale: self.rules.scale?, limits: self.rules.limits? })
+    pub fn seen(&self) -> Option<DisplayedLimits> {
+        Some(DisplayedLimits { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
     /// Returns parameters 158 and 160 in scaled steps, or `None` if they have not been read or do not form a range.
@@ -137,7 +137,7 @@ impl DriveLimits {
 
     /// Returns the reasons why motion is locked, the most important first.
     pub fn locks(&self) -> Vec<Lock> {
-        let Rules { requested, timeout, .. } = self.rules;
+        let MotionRules { requested, timeout, .. } = self.rules;
         // An invalid scale or range counts as not read.
         let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
@@ -156,16 +156,22 @@ impl DriveLimits {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
         let endless = self.is_factory && expert;
-        Permit { limits: self.limits(), locks, endless, doubted: self.doubted.is_some(), degree: self.degree() }
+        Permit {
+            limits: self.limits(),
+            locks,
+            endless,
+            doubted: self.doubted.is_some(),
+            degree: self.steps_per_degree(),
+        }
     }
 
     /// Returns the number of scaled steps per degree, at least 1; also 1 if the scale has not been read.
-    pub fn degree(&self) -> u32 {
+    pub fn steps_per_degree(&self) -> u32 {
         self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
     }
 }
 
-impl Rules {
+impl MotionRules {
     fn has_factory_settings(&self, topology: Topology, variant: Variant) -> bool {
         let factory = |number| {
             let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
@@ -195,8 +201,8 @@ mod tests {
         })
     }
 
-    fn rules(changed: &[(u16, Option<i64>)]) -> Rules {
-        Rules::by(|number| {
+    fn rules(changed: &[(u16, Option<i64>)]) -> MotionRules {
+        MotionRules::by(|number| {
             let own = changed.iter().find(|(own, _)| *own == number);
             own.map_or_else(|| factory(number), |(_, value)| *value)
         })
@@ -308,7 +314,8 @@ mod tests {
         assert_eq!(limits.locks(), [Lock::LimitsUnconfirmed]);
         assert!(!limits.confirm(before), "shown under the scale of before");
         let seen = limits.seen().unwrap();
-        for other in [LimitsSeen { limits: (-1000, 1001), ..seen }, LimitsSeen { scale: (400, 255), ..seen }] {
+        for other in [DisplayedLimits { limits: (-1000, 1001), ..seen }, DisplayedLimits { scale: (400, 255), ..seen }]
+        {
             assert!(!limits.confirm(other) && limits.is_unconfirmed(), "{other:?}");
         }
         limits.forget();

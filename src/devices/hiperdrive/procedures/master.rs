@@ -15,8 +15,8 @@ use super::error::{Damage, Late, Refusal, RequestedItem, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::buses::ethernet_ip::protocol::{
-    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
-    Request,
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, ItemList, Receiver,
+    Reply, Request,
 };
 use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, CONTROL, REFERENCE, RESET, SERVICE, TARGET};
 use crate::devices::hiperdrive::protocol::{
@@ -52,7 +52,7 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
 
 /// Whether a request may be repeated without checking its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Repeats {
+enum RetryPolicy {
     Always,
     /// The request is sent once. The reply may take `takes` if that is longer than usual.
     Never {
@@ -61,7 +61,7 @@ enum Repeats {
 }
 
 /// Setting for requests that are sent once, with the usual time limit.
-const ONCE: Repeats = Repeats::Never { takes: None };
+const ONCE: RetryPolicy = RetryPolicy::Never { takes: None };
 
 impl<'a> Master<'a> {
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
@@ -113,7 +113,7 @@ impl<'a> Master<'a> {
         }
         let requested = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
-        let data = match self.request(requested, &request, Repeats::Always) {
+        let data = match self.request(requested, &request, RetryPolicy::Always) {
             Err(Error::Refused { refusal, .. }) => return Err(self.refusal_reason(requested, number, refusal)?),
             ended => ended?.data,
         };
@@ -158,7 +158,7 @@ impl<'a> Master<'a> {
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let requested = RequestedItem::Set(number);
         let request = Request::set(number.class(), 1, number.attribute(), data);
-        let once = Repeats::Never { takes: row.takes(wanted, self.station.known.topology) };
+        let once = RetryPolicy::Never { takes: row.takes(wanted, self.station.known.topology) };
         let mut tries = 0;
         loop {
             tries += 1;
@@ -184,7 +184,7 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; errors of the exchange.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
-        let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
+        let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), RetryPolicy::Always)?;
         IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged {
             requested,
             tries: 1,
@@ -193,7 +193,7 @@ impl<'a> Master<'a> {
     }
 
     pub(super) fn attribute(&mut self, requested: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
-        Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
+        Ok(self.request(requested, &Request::get(class, 1, attribute), RetryPolicy::Always)?.data)
     }
 
     /// Sets an attribute of the TCP/IP object, sending the request once. The device stores the attribute before
@@ -207,31 +207,31 @@ impl<'a> Master<'a> {
         (class, attribute): (u16, u16),
         data: Vec<u8>,
     ) -> Result<(), Error> {
-        self.request(requested, &Request::set(class, 1, attribute, data), Repeats::Never { takes: Some(STORES) })?;
+        self.request(requested, &Request::set(class, 1, attribute, data), RetryPolicy::Never { takes: Some(STORES) })?;
         Ok(())
     }
 
     /// Returns how long to wait for the operation that is started by setting a parameter to this value.
     pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
-        Repeats::Never { takes }.within(self.station.link.timeout)
+        RetryPolicy::Never { takes }.within(self.station.link.timeout)
     }
 
-    fn request(&mut self, requested: RequestedItem, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
-        self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
+    fn request(&mut self, requested: RequestedItem, request: &Request, repeats: RetryPolicy) -> Result<Reply, Error> {
+        self.request_with_items(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
     /// Sends a request to an object, with additional items beside the message. Also returns the items beside the reply.
-    fn request_with(
+    fn request_with_items(
         &mut self,
         requested: RequestedItem,
         request: &Request,
         beside: &[Item],
-        repeats: Repeats,
-    ) -> Result<(Reply, Items), Error> {
+        repeats: RetryPolicy,
+    ) -> Result<(Reply, ItemList), Error> {
         let (reply, items) = self.again(requested, repeats, |master| {
             let session = master.session()?;
-            let items = Items([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
+            let items = ItemList([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
             let body = Body::Data { interface: 0, timeout_s: 0, items };
             let frame = Frame { session, data: body.emit(), ..Frame::unconnected(session, [0; 8], Vec::new()) };
             Ok(match master.exchange(frame, repeats)? {
@@ -251,8 +251,8 @@ impl<'a> Master<'a> {
         if let Some(session) = self.station.session {
             return Ok(session);
         }
-        let frame = self.again(RequestedItem::Session, Repeats::Always, |master| {
-            master.exchange(Frame::register([0; 8]), Repeats::Always)
+        let frame = self.again(RequestedItem::Session, RetryPolicy::Always, |master| {
+            master.exchange(Frame::register([0; 8]), RetryPolicy::Always)
         })?;
         self.station.session = Some(frame.session);
         Ok(frame.session)
@@ -273,7 +273,7 @@ impl<'a> Master<'a> {
     fn again<T>(
         &mut self,
         requested: RequestedItem,
-        repeats: Repeats,
+        repeats: RetryPolicy,
         mut once: impl FnMut(&mut Self) -> Result<Result<T, ExchangeError>, Error>,
     ) -> Result<T, Error> {
         let (mut tries, late) = (0, self.station.late);
@@ -305,9 +305,9 @@ impl<'a> Master<'a> {
                     self.station.session = None;
                 }
                 ExchangeError::Status(status) => return Err(Error::Encapsulation { requested, status }),
-                _ if may && repeats == Repeats::Always => {}
+                _ if may && repeats == RetryPolicy::Always => {}
                 ExchangeError::Silence => {
-                    let took = self.station.replies.longest();
+                    let took = self.station.replies.longest_reply_time();
                     let is_late = self.station.late > late && took >= longest;
                     let late = is_late.then_some(Late { took, waited: within });
                     return Err(Error::NoReply { requested, tries, late });
@@ -317,16 +317,16 @@ impl<'a> Master<'a> {
         }
     }
 
-    fn show_rest(&mut self) {
+    fn trace_remaining(&mut self) {
         let (now, rest) = (self.line.now(), self.station.receiver.take_remaining());
         self.line.show(now, MaskedBytes::clear(&rest));
     }
 
     /// Sends a frame under a new number, and waits for the reply with that number.
-    fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, ExchangeError>, Error> {
+    fn exchange(&mut self, mut frame: Frame, repeats: RetryPolicy) -> Result<Result<Frame, ExchangeError>, Error> {
         self.line.start()?;
         let sent_at = self.line.now();
-        let takes_long = matches!(repeats, Repeats::Never { takes: Some(_) });
+        let takes_long = matches!(repeats, RetryPolicy::Never { takes: Some(_) });
         frame.context = self.station.begin(sent_at, takes_long).to_le_bytes();
         let bytes = frame.emit();
         self.station.line.sent(sent_at);
@@ -339,7 +339,7 @@ impl<'a> Master<'a> {
                     Ok(Some(answer)) => {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&answer.emit()));
-                        self.station.note_reply(u64::from_le_bytes(answer.context), now);
+                        self.station.record_reply(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.answers(&frame) {
                             self.station.late += 1;
@@ -351,7 +351,7 @@ impl<'a> Master<'a> {
                     }
                     Ok(None) => break,
                     Err(cause) => {
-                        self.show_rest();
+                        self.trace_remaining();
                         self.line.wait_for_silence(&mut self.station.line, QUIET)?;
                         self.station.receiver = Receiver::default();
                         return Ok(Err(cause.into()));
@@ -361,12 +361,12 @@ impl<'a> Master<'a> {
             let now = self.line.now();
             if now >= deadline {
                 let bytes = self.station.receiver.pending();
-                self.show_rest();
+                self.trace_remaining();
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
             }
             // Requests that set something are always awaited.
-            if repeats == Repeats::Always {
+            if repeats == RetryPolicy::Always {
                 self.line.check_cancel()?;
             }
             heard.clear();
@@ -384,7 +384,7 @@ fn has_session(answer: &Frame) -> bool {
         && answer.session != 0
 }
 
-fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeError> {
+fn judge(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), ExchangeError> {
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());
@@ -409,12 +409,12 @@ const fn triggers_action(row: &ParameterRow) -> bool {
     matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }
 
-impl Repeats {
+impl RetryPolicy {
     /// Returns the time limit of a reply, excluding the line margin; `timeout` is the usual time limit.
     fn within(self, timeout: Duration) -> Duration {
         match self {
-            Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),
-            Repeats::Always | Repeats::Never { takes: None } => timeout,
+            RetryPolicy::Never { takes: Some(takes) } => timeout.max(takes + SPARE),
+            RetryPolicy::Always | RetryPolicy::Never { takes: None } => timeout,
         }
     }
 }

@@ -26,10 +26,10 @@ pub use error::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
 pub use identify::{
     DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,
 };
-pub use limits::{DriveLimits, LimitsSeen};
+pub use limits::{DisplayedLimits, DriveLimits};
 pub use master::{Master, Opened};
 pub use network::{Network, network, settings};
-pub use rules::{GROUPS, Rules, read_rule, read_rules};
+pub use rules::{GROUPS, MotionRules, read_rule, read_rules};
 pub use save::{read_state, save};
 pub use station::{LinkParameters, Station};
 pub use temperature::{Sample, Temperature, TemperatureReading, temperature};

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 
 /// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rules {
+pub struct MotionRules {
     /// Parameter 152.
     pub requested: Option<i64>,
     /// Parameters 154 and 156.
@@ -22,10 +22,10 @@ pub struct Rules {
     pub reference: Option<i64>,
 }
 
-impl Rules {
+impl MotionRules {
     /// Creates the rules from parameters; `read` is called with the parameter numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
-        Rules {
+        MotionRules {
             requested: read(REQUESTED),
             scale: read(NUMERATOR).zip(read(DENOMINATOR)),
             limits: read(LOWER).zip(read(UPPER)),
@@ -39,7 +39,7 @@ impl Rules {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
+pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionRules, Error> {
     let mut values = Vec::new();
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
         match master.read_number(of(base, drive)?) {
@@ -48,7 +48,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
             Err(error) => return Err(error),
         }
     }
-    Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
+    Ok(MotionRules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
 }
 
 /// Number of groups in which a drive's limit parameters are read again. Related parameters are read together.
@@ -58,16 +58,21 @@ pub const GROUPS: usize = 4;
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, group: usize) -> Result<Rules, Error> {
+pub fn read_rule(
+    master: &mut Master<'_>,
+    drive: DriveNumber,
+    known: MotionRules,
+    group: usize,
+) -> Result<MotionRules, Error> {
     let mut read = |base| match master.read_number(of(base, drive)?) {
         Ok(value) => Ok(Some(value)),
         Err(error) if error.is_unsaid() => Ok(None),
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {
-        0 => Rules { requested: read(REQUESTED)?, ..known },
-        1 => Rules { timeout: read(TIMEOUT)?, ..known },
-        2 => Rules { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
-        _ => Rules { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
+        0 => MotionRules { requested: read(REQUESTED)?, ..known },
+        1 => MotionRules { timeout: read(TIMEOUT)?, ..known },
+        2 => MotionRules { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
+        _ => MotionRules { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
     })
 }

@@ -37,7 +37,7 @@ impl Identity {
         let drives = self
             .drives
             .iter()
-            .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::of_drive(row.number, drive.number)));
+            .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::for_drive(row.number, drive.number)));
         device.chain(drives)
     }
 }

@@ -10,8 +10,8 @@ use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
 use crate::expected::Quantity;
 use crate::link::line::LineState;
-use crate::link::{Query, Replies, UrlError};
-use crate::parameter::{Maybe, Milliseconds, Parameters, Values, Whole};
+use crate::link::{ReplyTimes, UrlError, UrlQuery};
+use crate::parameter::{Milliseconds, OptionalValue, Parameters, Values, Whole};
 use crate::parameters;
 use crate::units::Moment;
 
@@ -22,7 +22,7 @@ parameters! {
         /// Byte order of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// UDP port of cyclic data, unless the device reports another.
-        pub udp: Option<u16> = None, "udp" => Maybe(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
+        pub udp: Option<u16> = None, "udp" => OptionalValue(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
         /// Time limit of a reply, excluding the line margin.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
     }
@@ -44,7 +44,7 @@ pub struct Station {
     /// Last unanswered requests: the number, the time of sending, and whether the operation takes the device long.
     open: VecDeque<(u64, Moment, bool)>,
     /// Reply times including late replies, but excluding operations that take the device long.
-    pub(super) replies: Replies,
+    pub(super) replies: ReplyTimes,
     /// Received bytes that do not yet form a complete frame.
     pub(super) receiver: Receiver,
     /// Number of frames that arrived after their time limit.
@@ -77,7 +77,7 @@ impl Station {
             session: None,
             next: 1,
             open: VecDeque::new(),
-            replies: Replies::default(),
+            replies: ReplyTimes::default(),
             receiver: Receiver::default(),
             late: 0,
             originator: random as u32,
@@ -91,7 +91,7 @@ impl Station {
     ///
     /// # Errors
     /// A value is invalid; the error lists the allowed ones.
-    pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &UrlQuery, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         // A server with its own port for messages uses it for cyclic data as well.
         let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
@@ -107,7 +107,7 @@ impl Station {
         self.late
     }
 
-    pub fn replies(&self) -> Replies {
+    pub fn replies(&self) -> ReplyTimes {
         self.replies.clone()
     }
 
@@ -121,7 +121,7 @@ impl Station {
     }
 
     /// Records a reply, whether in time or late, to the request with the given number.
-    pub(super) fn note_reply(&mut self, number: u64, at: Moment) {
+    pub(super) fn record_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)
         {

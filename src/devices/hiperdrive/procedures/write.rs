@@ -197,7 +197,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
 
 /// Method of clearing a drive's fault (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remedy {
+pub enum FaultReset {
     /// The drive has no fault.
     Nothing,
     /// Setting parameter 197 to 0, which only clears an RS-485 fault.
@@ -210,16 +210,16 @@ pub enum Remedy {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Error> {
+pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset, Error> {
     let status = drive_status(master, drive)?;
     // Older ones are already acknowledged.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
     let word = status.status;
     let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
     Ok(match status.faults {
-        0 if !has_failed => Remedy::Nothing,
-        _ if recent.any(|code| *code != ErrorCode::RS485) => Remedy::Reset,
-        _ => Remedy::Acknowledgement,
+        0 if !has_failed => FaultReset::Nothing,
+        _ if recent.any(|code| *code != ErrorCode::RS485) => FaultReset::Reset,
+        _ => FaultReset::Acknowledgement,
     })
 }
 

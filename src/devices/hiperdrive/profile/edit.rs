@@ -47,7 +47,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
             writes.iter().any(|write| write.number.drive() == Some(drive) && numbers.contains(&write.number.base()))
         };
         if touches(&PLACE) {
-            base.extend(device.of(PLACE.iter().filter_map(|number| ParameterNumber::of_drive(*number, drive))));
+            base.extend(device.of(PLACE.iter().filter_map(|number| ParameterNumber::for_drive(*number, drive))));
             let order = check_place(device, &after, drive, positions.get(&drive).copied())?;
             upper_first.extend((order == Order::UpperFirst).then_some(drive));
         }
@@ -70,7 +70,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
 /// The rounded position is outside the limits or beyond the travel of the drive, or the drive is missing.
 pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
     let device = &state.image;
-    let own = |number| ParameterNumber::of_drive(number, drive);
+    let own = |number| ParameterNumber::for_drive(number, drive);
     let known = |number| own(number).and_then(|number| Some((number, device.get(number)?)));
     let not_read = |number| {
         let number = own(number).unwrap_or(ParameterNumber::SAVE);
@@ -163,7 +163,7 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
 /// Checks that the limits of a drive are in order and include its position after all writes. Returns the order in which
 /// they must be written.
 fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
-    let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
+    let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::for_drive(number, drive));
     for number in missing {
         device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;
     }

@@ -25,8 +25,8 @@ impl Image {
     }
 
     /// Returns the value of a parameter of a drive, given the parameter number for drive 1.
-    pub fn of_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
-        self.get(ParameterNumber::of_drive(number, drive)?)
+    pub fn for_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
+        self.get(ParameterNumber::for_drive(number, drive)?)
     }
 
     /// Returns the drives with at least one known value.
@@ -39,13 +39,13 @@ impl Image {
 
     /// Returns the position scale of a drive (154, 156), or `None` if the scale is unknown or invalid.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
-        let part = |number| self.of_drive(drive, number).and_then(|value| u16::try_from(value).ok());
+        let part = |number| self.for_drive(drive, number).and_then(|value| u16::try_from(value).ok());
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
     /// Returns the lower and upper limits of a drive (158, 160), in scaled steps.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
+        Some((self.for_drive(drive, LOWER)?, self.for_drive(drive, UPPER)?))
     }
 
     /// Returns the known values of the given parameters.

@@ -47,7 +47,7 @@ impl Item {
                 // 258 already names drive 2.
                 match own.drive() {
                     Some(named) if named == drive => own,
-                    Some(DriveNumber::FIRST) => ParameterNumber::of_drive(number, drive).ok_or(no_drive)?,
+                    Some(DriveNumber::FIRST) => ParameterNumber::for_drive(number, drive).ok_or(no_drive)?,
                     _ => return Err(no_drive),
                 }
             }

@@ -25,5 +25,5 @@ pub use item::{Item, ItemError};
 pub use network::{NetworkSettings, plan_network};
 pub use plan::{Base, HiperdrivePlan, Op, Service, written};
 pub use record::{HiperdriveProfile, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
-pub use restore::{DeviceState, Restore, RestoreOptions, check_device, other_types, plan_restore};
+pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore, type_differences};
 pub use warning::{Warning, warnings};

@@ -93,7 +93,7 @@ impl Service {
     }
 
     /// Returns the service requested by a value of parameter 47, or `None` if the value requests nothing.
-    pub const fn of_code(code: i64) -> Option<Self> {
+    pub const fn from_code(code: i64) -> Option<Self> {
         match code {
             1 => Some(Service::Save),
             -1 => Some(Service::Factory),
@@ -130,7 +130,7 @@ impl Op {
     pub fn item(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
-            Op::Service(Service::Acknowledge(drive)) => ParameterNumber::of_drive(ACKNOWLEDGE, *drive)
+            Op::Service(Service::Acknowledge(drive)) => ParameterNumber::for_drive(ACKNOWLEDGE, *drive)
                 .map_or_else(|| ACKNOWLEDGE.to_string(), |number| Item(number).to_string()),
             Op::Service(_) => Item(ParameterNumber::SAVE).to_string(),
             Op::Network { .. } => "network".to_owned(),

@@ -74,7 +74,7 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
 }
 
 /// Returns the type differences between a profile and a device, first for the device itself and then for each drive.
-pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
+pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
         let (profile, device) = own.variant.zip(drive_at(device, own.number)?.variant)?;
@@ -89,7 +89,7 @@ fn check_allowed(
     device: &ProfileIdentity,
     options: RestoreOptions,
 ) -> Result<(), PlanError> {
-    if let Some(first) = other_types(&profile.identity, device).first().filter(|_| !options.allow_other_type) {
+    if let Some(first) = type_differences(&profile.identity, device).first().filter(|_| !options.allow_other_type) {
         return Err((*first).into());
     }
     if options.allow_other_device {
@@ -125,7 +125,7 @@ fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdent
 
 /// Returns whether the profile was read from this device and the parameter from this drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
-    let types = other_types(&profile.identity, device);
+    let types = type_differences(&profile.identity, device);
     let is_other = |own: &OtherType| match own {
         OtherType::Device { .. } => true,
         OtherType::Drive { drive, .. } => item.0.drive() == Some(*drive),

@@ -35,7 +35,7 @@ pub(super) fn image_of(values: &[(u16, i64)]) -> Image {
 pub(super) fn image(places: &[u8]) -> Image {
     let mut image = image_of(&[(24, 0), (26, 7)]);
     for place in places {
-        let own = DRIVE.iter().map(|(own, value)| (ParameterNumber::of_drive(*own, drive(*place)).unwrap(), *value));
+        let own = DRIVE.iter().map(|(own, value)| (ParameterNumber::for_drive(*own, drive(*place)).unwrap(), *value));
         image.values.extend(own);
     }
     image

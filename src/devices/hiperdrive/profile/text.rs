@@ -6,13 +6,14 @@
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Writer, value_text};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const PLACE: Expected = Expected::between(1, 8);
-const VARIANT: Expected = Expected::between(0, 65_535);
-const CATEGORY: Expected = Expected::words(&["\"HIPERDRIVE SINGLE\"", "\"HIPERDRIVE HUB-4\"", "\"HIPERDRIVE HUB-8\""]);
+const PLACE: AllowedValues = AllowedValues::between(1, 8);
+const VARIANT: AllowedValues = AllowedValues::between(0, 65_535);
+const CATEGORY: AllowedValues =
+    AllowedValues::words(&["\"HIPERDRIVE SINGLE\"", "\"HIPERDRIVE HUB-4\"", "\"HIPERDRIVE HUB-8\""]);
 
 impl Profile for HiperdriveProfile {
     const KIND: &'static str = protocol::KIND;
@@ -22,7 +23,7 @@ impl Profile for HiperdriveProfile {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
         };
-        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("198 drive 2"), read_marked)?;
+        let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("198 drive 2"), parse_mounting_item)?;
         let (mut image, mut unknown) = (Image::default(), UnknownEntries::default());
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.structures("drives")? {
@@ -163,7 +164,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     let topology = category
         .map(|category| Topology::from_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
     let topology = topology.transpose()?;
-    let mut text = |name: &str| entries.optional::<String>(name, Expected::Text).map(Option::unwrap_or_default);
+    let mut text = |name: &str| entries.optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     let unknown = entries.rest()?;
@@ -172,13 +173,13 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 
 fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive, ProfileError> {
     let variant = entries.optional("variant", VARIANT)?.map(Variant::new);
-    let mut text = |name: &str| entries.optional::<String>(name, Expected::Text).map(Option::unwrap_or_default);
+    let mut text = |name: &str| entries.optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })
 }
 
-fn read_marked(text: &str) -> Result<Item, EntryError> {
+fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
     let item = text.parse::<Item>()?;
     if item.0.row().is_none_or(|row| !Image::holds(row)) {
         return Err(EntryError::NoMounting(item));
@@ -198,12 +199,12 @@ fn read_parameters(
         let own = name.clone().into_rust::<u16>().ok();
         let number = own.and_then(|own| match drive {
             None => ParameterNumber::new(own),
-            Some(drive) => ParameterNumber::of_drive(own, drive),
+            Some(drive) => ParameterNumber::for_drive(own, drive),
         });
         let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
             if let ron::Value::Number(own) = &name {
                 let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
-                return Err(ProfileError::refused(path, no_parameter(own, drive)));
+                return Err(ProfileError::refused(path, invalid_parameter_error(own, drive)));
             }
             entries.is_beyond(format!("{}.{}", entries.path_of("parameters"), value_text(&name)));
             unknown.0.entry(drive).or_default().push((name, value));
@@ -214,8 +215,9 @@ fn read_parameters(
         if !Image::holds(row) {
             return Err(wrong(EntryError::NotKept(Item(number))));
         }
-        let value: i64 =
-            value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: Expected::Whole })?;
+        let value: i64 = value
+            .into_rust()
+            .map_err(|_| ProfileError::Shape { path: path.clone(), expected: AllowedValues::Whole })?;
         // The turns depend on the drive to be written: the plan checks them.
         let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
         if image.values.insert(number, value).is_some() {
@@ -226,7 +228,7 @@ fn read_parameters(
 }
 
 /// Explains why a number is not a valid parameter.
-fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
+fn invalid_parameter_error(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
     let number = number.into_f64().to_string();
     match drive {
         None => EntryError::NoParameter(number),

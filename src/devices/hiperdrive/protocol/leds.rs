@@ -2,7 +2,7 @@
 
 /// State of a two-colour RS485 LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum DriveLight {
+pub enum DriveLedState {
     /// Off.
     Off,
     /// Green.
@@ -34,7 +34,7 @@ pub enum LedSubject {
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
     /// State of the LED.
-    pub light: DriveLight,
+    pub light: DriveLedState,
     /// Meaning in the manual.
     pub meaning: &'static str,
     /// Remedy.
@@ -43,7 +43,7 @@ pub struct LedRow {
 
 /// Network LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BusLamp {
+pub enum NetworkLed {
     /// MS.
     Module,
     /// NS.
@@ -52,7 +52,7 @@ pub enum BusLamp {
 
 /// State of a network LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BusLight {
+pub enum NetworkLedState {
     /// Off.
     Off,
     /// Green.
@@ -69,11 +69,11 @@ pub enum BusLight {
 
 /// Meaning and remedy of a state of a network LED.
 #[derive(Clone, Copy, Debug)]
-pub struct BusLedRow {
+pub struct NetworkLedRow {
     /// The LED.
-    pub lamp: BusLamp,
+    pub lamp: NetworkLed,
     /// State of the LED.
-    pub light: BusLight,
+    pub light: NetworkLedState,
     /// Meaning that ODVA defines for the LED on all devices.
     pub meaning: &'static str,
     /// Remedy.
@@ -82,7 +82,7 @@ pub struct BusLedRow {
 
 /// State of the two LEDs of a network port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PortLight {
+pub enum PortLedState {
     /// Both are off.
     Off,
     /// Green.
@@ -95,74 +95,74 @@ pub enum PortLight {
 #[derive(Clone, Copy, Debug)]
 pub struct PortLedRow {
     /// State of both LEDs.
-    pub light: PortLight,
+    pub light: PortLedState,
     /// Meaning in the manual.
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
 }
 
-const fn drive(light: DriveLight, meaning: &'static str, remedy: &'static str) -> LedRow {
+const fn drive(light: DriveLedState, meaning: &'static str, remedy: &'static str) -> LedRow {
     LedRow { light, meaning, remedy }
 }
 
-const fn port(light: PortLight, meaning: &'static str, remedy: &'static str) -> PortLedRow {
+const fn port(light: PortLedState, meaning: &'static str, remedy: &'static str) -> PortLedRow {
     PortLedRow { light, meaning, remedy }
 }
 
-const fn bus(lamp: BusLamp, light: BusLight, meaning: &'static str, remedy: &'static str) -> BusLedRow {
-    BusLedRow { lamp, light, meaning, remedy }
+const fn bus(lamp: NetworkLed, light: NetworkLedState, meaning: &'static str, remedy: &'static str) -> NetworkLedRow {
+    NetworkLedRow { lamp, light, meaning, remedy }
 }
 
 /// States of the RS485 LED of a bus adapter (manual 4.4).
 const ADAPTER_LEDS: [LedRow; 7] = [
-    drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
+    drive(DriveLedState::Off, "no supply", "check the control supply and its fuse"),
+    drive(DriveLedState::Alternating, "presence test", "wait until it has finished"),
     drive(
-        DriveLight::Red,
+        DriveLedState::Red,
         "communication error with the requested drive",
         "check the drive's cable and supply, then acknowledge its fault (set parameter 197 to 0)",
     ),
-    drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
+    drive(DriveLedState::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
     drive(
-        DriveLight::GreenFlashing,
+        DriveLedState::GreenFlashing,
         "the drive has no error but is not requested",
         "to move the drive, set its parameter 152 to 1",
     ),
     drive(
-        DriveLight::RedGreenFlashing,
+        DriveLedState::RedGreenFlashing,
         "the drive is not requested and has an error",
         "request the drive (parameter 152 = 1), then read its errors",
     ),
-    drive(DriveLight::Green, "the drive has no error", "no action needed"),
+    drive(DriveLedState::Green, "the drive has no error", "no action needed"),
 ];
 
 /// States of the RS485 LED of a hub with switch S3 at 0, which apply to all drives (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
-    drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
+    drive(DriveLedState::Off, "no supply", "check the control supply and its fuse"),
+    drive(DriveLedState::Alternating, "presence test", "wait until it has finished"),
     drive(
-        DriveLight::Red,
+        DriveLedState::Red,
         "communication error with a requested drive",
         "turn S3 to each drive to find the one affected. Check its cable, then acknowledge its fault (set parameter 197 to 0)",
     ),
     drive(
-        DriveLight::RedGreen,
+        DriveLedState::RedGreen,
         "error of a requested drive",
         "turn S3 to each drive to find the one affected. Read its errors, remove the cause, then acknowledge",
     ),
     drive(
-        DriveLight::GreenFlashing,
+        DriveLedState::GreenFlashing,
         "a connected drive is not requested. No drive has an error",
         "set its parameter 152 to 1, or unplug it",
     ),
     drive(
-        DriveLight::RedGreenFlashing,
+        DriveLedState::RedGreenFlashing,
         "a drive that is not requested has an error",
         "request the drive (parameter 152 = 1) and read its errors, or unplug it",
     ),
     drive(
-        DriveLight::Green,
+        DriveLedState::Green,
         "the connected drives are exactly the requested ones. No drive has an error",
         "no action needed",
     ),
@@ -170,52 +170,57 @@ const DRIVES_LEDS: [LedRow; 7] = [
 
 /// States of the RS485 LED of a hub with switch S3 at the number of a drive, which apply to that drive (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
-    drive(DriveLight::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
+    drive(DriveLedState::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
     drive(
-        DriveLight::Red,
+        DriveLedState::Red,
         "communication error",
         "check the drive's cable, then acknowledge its fault (set parameter 197 to 0)",
     ),
-    drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
-    drive(DriveLight::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
+    drive(DriveLedState::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
+    drive(DriveLedState::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
 ];
 
 /// States of the two LEDs of port P1 or P2.
 pub const PORT_LEDS: [PortLedRow; 3] = [
-    port(PortLight::Off, "no network link", "check the cable and the device at its other end"),
-    port(PortLight::Link, "network link, no data traffic", "no action needed"),
-    port(PortLight::Active, "network link, data traffic", "no action needed"),
+    port(PortLedState::Off, "no network link", "check the cable and the device at its other end"),
+    port(PortLedState::Link, "network link, no data traffic", "no action needed"),
+    port(PortLedState::Active, "network link, data traffic", "no action needed"),
 ];
 
 /// States of the MS and NS LEDs.
-pub const BUS_LEDS: [BusLedRow; 12] = [
-    bus(BusLamp::Module, BusLight::Off, "no supply", "check the control supply and its fuse"),
-    bus(BusLamp::Module, BusLight::Green, "the device is operating", "no action needed"),
-    bus(BusLamp::Module, BusLight::GreenFlashing, "not configured", "open a connection to the device"),
-    bus(BusLamp::Module, BusLight::RedFlashing, "recoverable fault", "read the errors and remove the cause"),
+pub const BUS_LEDS: [NetworkLedRow; 12] = [
+    bus(NetworkLed::Module, NetworkLedState::Off, "no supply", "check the control supply and its fuse"),
+    bus(NetworkLed::Module, NetworkLedState::Green, "the device is operating", "no action needed"),
+    bus(NetworkLed::Module, NetworkLedState::GreenFlashing, "not configured", "open a connection to the device"),
+    bus(NetworkLed::Module, NetworkLedState::RedFlashing, "recoverable fault", "read the errors and remove the cause"),
     bus(
-        BusLamp::Module,
-        BusLight::Red,
+        NetworkLed::Module,
+        NetworkLedState::Red,
         "unrecoverable fault",
         "switch the device off and on. If the fault remains, have it repaired",
     ),
-    bus(BusLamp::Module, BusLight::Alternating, "self-test", "wait until it has finished"),
-    bus(BusLamp::Network, BusLight::Off, "no address or no supply", "check the switches S1 and S2 and the DHCP server"),
-    bus(BusLamp::Network, BusLight::Green, "a connection is open", "no action needed"),
-    bus(BusLamp::Network, BusLight::GreenFlashing, "no connection", "connect, or start the control (PLC)"),
+    bus(NetworkLed::Module, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
     bus(
-        BusLamp::Network,
-        BusLight::RedFlashing,
+        NetworkLed::Network,
+        NetworkLedState::Off,
+        "no address or no supply",
+        "check the switches S1 and S2 and the DHCP server",
+    ),
+    bus(NetworkLed::Network, NetworkLedState::Green, "a connection is open", "no action needed"),
+    bus(NetworkLed::Network, NetworkLedState::GreenFlashing, "no connection", "connect, or start the control (PLC)"),
+    bus(
+        NetworkLed::Network,
+        NetworkLedState::RedFlashing,
         "a connection has timed out",
         "check the cables and network switches, then reopen the connection",
     ),
     bus(
-        BusLamp::Network,
-        BusLight::Red,
+        NetworkLed::Network,
+        NetworkLedState::Red,
         "another device has the same address",
         "assign a different address to one of them",
     ),
-    bus(BusLamp::Network, BusLight::Alternating, "self-test", "wait until it has finished"),
+    bus(NetworkLed::Network, NetworkLedState::Alternating, "self-test", "wait until it has finished"),
 ];
 
 impl LedSubject {
@@ -229,22 +234,22 @@ impl LedSubject {
     }
 
     /// Returns the row of an LED state, or `None` if the manual does not list it.
-    pub fn row(self, light: DriveLight) -> Option<&'static LedRow> {
+    pub fn row(self, light: DriveLedState) -> Option<&'static LedRow> {
         self.rows().iter().find(|row| row.light == light)
     }
 }
 
-impl BusLamp {
+impl NetworkLed {
     /// Returns the label printed beside the LED.
     pub const fn name(self) -> &'static str {
         match self {
-            BusLamp::Module => "MS",
-            BusLamp::Network => "NS",
+            NetworkLed::Module => "MS",
+            NetworkLed::Network => "NS",
         }
     }
 
     /// Returns the row of an LED state.
-    pub fn row(self, light: BusLight) -> Option<&'static BusLedRow> {
+    pub fn row(self, light: NetworkLedState) -> Option<&'static NetworkLedRow> {
         BUS_LEDS.iter().find(|row| row.lamp == self && row.light == light)
     }
 }

@@ -35,13 +35,15 @@ pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, Refused, RunEnd};
 pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
 pub use leds::{
-    BUS_LEDS, BusLamp, BusLedRow, BusLight, DriveLight, LedRow, LedSubject, PORT_LEDS, PortLedRow, PortLight,
+    BUS_LEDS, DriveLedState, LedRow, LedSubject, NetworkLed, NetworkLedRow, NetworkLedState, PORT_LEDS, PortLedRow,
+    PortLedState,
 };
-pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range, SlowValue};
+pub use parameter::{Access, DriveNumber, FactoryValue, OutOfRange, ParameterNumber, ParameterRow, Range, SlowValue};
 pub use parameters::{PARAMETERS, STORES};
 pub use pkw::{Answer, Pkw, PkwError, Task};
 pub use process_data::{
-    Actual, ByteOrder, ImageError, InImage, Layout, OutData, OutImage, Percent, Setpoint, Topology,
+    ActualValues, ByteOrder, InputImage, Layout, OutputData, OutputImage, Percent, ProcessImageError, Setpoint,
+    Topology,
 };
 pub use recipe::{ACKNOWLEDGE, ENABLE, Step, UNLOCK};
 pub use scaling::{Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, turns};

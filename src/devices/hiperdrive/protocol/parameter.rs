@@ -39,7 +39,7 @@ pub struct ParameterRow {
     /// Range in turns of the drive around 0, in addition to `range`, or `None` if turns do not limit the value.
     pub reach: Option<StepLimit>,
     /// Factory value.
-    pub factory: Factory,
+    pub factory: FactoryValue,
     /// Values that the device takes long to apply. The reply to writing any other value takes as long as the reply to a
     /// read.
     pub slow: &'static [SlowValue],
@@ -82,7 +82,7 @@ pub enum Range {
 
 /// Factory value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Factory {
+pub enum FactoryValue {
     /// No factory value, because the parameter is measured or identifies the device.
     None,
     /// The same number for every topology.
@@ -155,7 +155,7 @@ impl ParameterNumber {
 
     /// Converts a parameter number of drive 1 to that of another drive, or returns `None` if the number does not belong
     /// to drive 1.
-    pub const fn of_drive(number: u16, drive: DriveNumber) -> Option<Self> {
+    pub const fn for_drive(number: u16, drive: DriveNumber) -> Option<Self> {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }
 
@@ -193,7 +193,7 @@ impl ParameterNumber {
     pub fn from_attribute(class: u16, attribute: u16) -> Option<Self> {
         match class.checked_sub(CLASS)? {
             0 if attribute < 100 => ParameterNumber::new(attribute),
-            drive => ParameterNumber::of_drive(attribute, DriveNumber::new(u8::try_from(drive).ok()?)?),
+            drive => ParameterNumber::for_drive(attribute, DriveNumber::new(u8::try_from(drive).ok()?)?),
         }
     }
 }
@@ -237,10 +237,12 @@ impl ParameterRow {
     /// it.
     pub fn factory_value(&self, topology: Topology, family: Family) -> Option<i64> {
         match self.factory {
-            Factory::None | Factory::Automatic => None,
-            Factory::Number(number) => Some(number),
-            Factory::Topology { adapter, hub } => Some(if topology == Topology::Adapter { adapter } else { hub }),
-            Factory::Turns(sign) => PositionScale::FACTORY.steps_of_turns(sign * family.factory_turns()).map(i64::from),
+            FactoryValue::None | FactoryValue::Automatic => None,
+            FactoryValue::Number(number) => Some(number),
+            FactoryValue::Topology { adapter, hub } => Some(if topology == Topology::Adapter { adapter } else { hub }),
+            FactoryValue::Turns(sign) => {
+                PositionScale::FACTORY.steps_of_turns(sign * family.factory_turns()).map(i64::from)
+            }
         }
     }
 }

@@ -11,7 +11,7 @@ use super::drive_parameter::{
     REFERENCE, REQUESTED, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR, SPEED_NUMERATOR,
     TIMEOUT, UPPER, VARIANT,
 };
-use super::parameter::{Access, Factory, ParameterRow, Range, SlowValue};
+use super::parameter::{Access, FactoryValue, ParameterRow, Range, SlowValue};
 use super::travel::StepLimit;
 use super::value::Kind;
 
@@ -26,14 +26,14 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
         kept_by_device: number < 100,
         range: Range::Any,
         reach: None,
-        factory: Factory::None,
+        factory: FactoryValue::None,
         slow: &[],
     }
 }
 
 impl ParameterRow {
     /// Makes the row writable, with a value that is lost at power-off.
-    const fn written(self, range: Range, factory: Factory) -> Self {
+    const fn written(self, range: Range, factory: FactoryValue) -> Self {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
     }
 
@@ -42,7 +42,7 @@ impl ParameterRow {
         ParameterRow { kept_by_device: true, ..self }
     }
 
-    const fn kept(self, range: Range, factory: Factory) -> Self {
+    const fn kept(self, range: Range, factory: FactoryValue) -> Self {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
 
@@ -88,7 +88,7 @@ const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterR
 }
 
 const fn register(number: u16, name: &'static str) -> ParameterRow {
-    read(number, name, U32, "").kept(Any, Factory::Number(0))
+    read(number, name, U32, "").kept(Any, FactoryValue::Number(0))
 }
 
 const fn error(number: u16, name: &'static str) -> ParameterRow {
@@ -96,11 +96,11 @@ const fn error(number: u16, name: &'static str) -> ParameterRow {
 }
 
 const fn percent(number: u16, name: &'static str) -> ParameterRow {
-    read(number, name, U8, "%").written(Within(1, 100), Factory::Number(100))
+    read(number, name, U8, "%").written(Within(1, 100), FactoryValue::Number(100))
 }
 
 const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
-    read(number, name, U16, "").kept(Within(1, 65535), Factory::Number(factory))
+    read(number, name, U16, "").kept(Within(1, 65535), FactoryValue::Number(factory))
 }
 
 const fn within(range: RangeInclusive<u16>) -> Range {
@@ -129,11 +129,11 @@ pub const PARAMETERS: &[ParameterRow] = &[
     register(38, "free register 8"),
     register(40, "free register 9"),
     register(42, "free register 10"),
-    read(47, "save and reset", I16, "").written(OneOf(&[-4, -3, -2, -1, 1]), Factory::None).slow(SAVE_AND_RESET),
-    read(101, "control word", U16, "").written(Any, Factory::Number(0)),
+    read(47, "save and reset", I16, "").written(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None).slow(SAVE_AND_RESET),
+    read(101, "control word", U16, "").written(Any, FactoryValue::Number(0)),
     percent(102, "speed"),
     percent(103, "torque"),
-    read(104, "target position", I32, "steps").written(Any, Factory::Number(0)),
+    read(104, "target position", I32, "steps").written(Any, FactoryValue::Number(0)),
     read(105, "status word", U16, ""),
     read(106, "actual speed", I16, "0.1 rpm"),
     read(POSITION, "actual position", I32, "steps"),
@@ -160,31 +160,36 @@ pub const PARAMETERS: &[ParameterRow] = &[
     text(128, "nominal torque", "Nm"),
     text(129, "nominal speed", "rpm"),
     read(REQUESTED, "requested", U8, "")
-        .kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 })
+        .kept(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
         .in_device()
         .slow(REQUEST),
     scale(NUMERATOR, "position scale numerator", 256),
     scale(DENOMINATOR, "position scale denominator", 1),
-    read(LOWER, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(StepLimit::Position),
-    read(UPPER, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(StepLimit::Position),
+    read(LOWER, "lower limit", I32, "steps").kept(Any, FactoryValue::Turns(-1)).reaching(StepLimit::Position),
+    read(UPPER, "upper limit", I32, "steps").kept(Any, FactoryValue::Turns(1)).reaching(StepLimit::Position),
     scale(SPEED_NUMERATOR, "speed scale numerator", 10),
     scale(SPEED_DENOMINATOR, "speed scale denominator", 1),
-    read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), Factory::Number(350)),
-    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)).reaching(StepLimit::Step),
+    read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), FactoryValue::Number(350)),
+    read(170, "jog 1 step", I32, "steps").written(Any, FactoryValue::Number(4096)).reaching(StepLimit::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
-    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)).reaching(StepLimit::Step),
+    read(176, "jog 2 step", I32, "steps").written(Any, FactoryValue::Number(-4096)).reaching(StepLimit::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
-    read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
-    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, NO_TIMEOUT), Factory::Number(20)),
-    read(RS485_ADDRESS, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
+    read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), FactoryValue::Number(1000)),
+    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, NO_TIMEOUT), FactoryValue::Number(20)),
+    read(RS485_ADDRESS, "RS-485 address", U8, "").kept(Within(0, 253), FactoryValue::Number(1)),
     read(RS485_BAUD, "RS-485 baud rate", U32, "baud")
-        .kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400))
+        .kept(OneOf(&[9600, 19200, 38400]), FactoryValue::Number(38400))
         .in_device(),
-    read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
-    read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
-    read(REFERENCE, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(StepLimit::Position),
-    ParameterRow { access: Access::Write, ..read(RESET, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
-        .slow(RESET_DRIVE),
+    read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, FactoryValue::Automatic),
+    read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), FactoryValue::None),
+    read(REFERENCE, "set actual position", I32, "steps")
+        .kept(Any, FactoryValue::Number(0))
+        .reaching(StepLimit::Position),
+    ParameterRow {
+        access: Access::Write,
+        ..read(RESET, "reset drive", U8, "").written(Within(0, 1), FactoryValue::None)
+    }
+    .slow(RESET_DRIVE),
 ];

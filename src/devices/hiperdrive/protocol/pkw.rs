@@ -121,9 +121,9 @@ impl Pkw {
 
     /// Returns the bytes.
     pub const fn emit(self, order: ByteOrder) -> [u8; 8] {
-        let [k0, k1] = order.of_u16(self.pke);
-        let [i0, i1] = order.of_u16(self.ind);
-        let [a, b, c, d] = order.of_u32(self.pwe);
+        let [k0, k1] = order.encode_u16(self.pke);
+        let [i0, i1] = order.encode_u16(self.ind);
+        let [a, b, c, d] = order.encode_u32(self.pwe);
         [k0, k1, i0, i1, a, b, c, d]
     }
 

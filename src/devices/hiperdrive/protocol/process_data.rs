@@ -62,7 +62,7 @@ pub struct Setpoint {
 
 /// Output data of a drive: a setpoint or arbitrary bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OutData {
+pub struct OutputData {
     /// Control word (STW).
     pub control: u16,
     /// Speed in percent.
@@ -75,7 +75,7 @@ pub struct OutData {
 
 /// Input data of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Actual {
+pub struct ActualValues {
     /// Status word (ZSW).
     pub status: StatusWord,
     /// Speed as scaled by parameters 162 and 164, which is tenths of rpm with factory settings.
@@ -86,18 +86,18 @@ pub struct Actual {
 
 /// Output image for all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OutImage {
+pub struct OutputImage {
     /// Output data of each drive in the layout.
-    pub drives: Vec<OutData>,
+    pub drives: Vec<OutputData>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
 /// Input image of all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InImage {
+pub struct InputImage {
     /// Input data of each drive in the layout.
-    pub drives: Vec<Actual>,
+    pub drives: Vec<ActualValues>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
@@ -105,7 +105,7 @@ pub struct InImage {
 /// Error for an image whose length does not match the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{got} bytes of process data where {expected} were expected")]
-pub struct ImageError {
+pub struct ProcessImageError {
     /// Length required by the layout, in bytes.
     pub expected: usize,
     /// Actual length in bytes.
@@ -130,14 +130,14 @@ impl ByteOrder {
         }
     }
 
-    pub(super) const fn of_u16(self, number: u16) -> [u8; 2] {
+    pub(super) const fn encode_u16(self, number: u16) -> [u8; 2] {
         match self {
             ByteOrder::Little => number.to_le_bytes(),
             ByteOrder::Big => number.to_be_bytes(),
         }
     }
 
-    pub(super) const fn of_u32(self, number: u32) -> [u8; 4] {
+    pub(super) const fn encode_u32(self, number: u32) -> [u8; 4] {
         match self {
             ByteOrder::Little => number.to_le_bytes(),
             ByteOrder::Big => number.to_be_bytes(),
@@ -180,7 +180,7 @@ impl Layout {
     }
 
     /// Returns all layouts with the given length, most likely first.
-    pub fn of_length(length: usize) -> impl Iterator<Item = Layout> {
+    pub fn all_with_length(length: usize) -> impl Iterator<Item = Layout> {
         let all = Topology::ALL
             .into_iter()
             .flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order: ByteOrder::default() }));
@@ -188,10 +188,10 @@ impl Layout {
     }
 
     /// Splits bytes into the data of the drives and the parameter words.
-    fn places(self, bytes: &[u8]) -> Result<(Vec<[u8; PLACE]>, Option<Pkw>), ImageError> {
+    fn places(self, bytes: &[u8]) -> Result<(Vec<[u8; PLACE]>, Option<Pkw>), ProcessImageError> {
         let (places, rest) = bytes.as_chunks::<PLACE>();
         if !rest.is_empty() || bytes.len() != self.length() {
-            return Err(ImageError { expected: self.length(), got: bytes.len() });
+            return Err(ProcessImageError { expected: self.length(), got: bytes.len() });
         }
         match places.split_last() {
             Some((last, first)) if self.pkw => Ok((first.to_vec(), Some(Pkw::parse(*last, self.order)))),
@@ -227,44 +227,44 @@ impl Percent {
 impl Setpoint {
     /// Returns the setpoint that follows speed mode and starts every connection. It is ready, with zero speed and
     /// torque and the target at the actual position, so that no stale target remains.
-    pub const fn standing(actual: Actual) -> Self {
+    pub const fn standing(actual: ActualValues) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
     }
 }
 
-impl From<Setpoint> for OutData {
+impl From<Setpoint> for OutputData {
     fn from(setpoint: Setpoint) -> Self {
         let Setpoint { control, speed, torque, target } = setpoint;
-        OutData { control: control.word(), speed: speed.0, torque: torque.0, target }
+        OutputData { control: control.word(), speed: speed.0, torque: torque.0, target }
     }
 }
 
-impl OutData {
+impl OutputData {
     /// Returns the control word.
     ///
     /// # Errors
     /// Returns [`Refused`] if a reserved bit is set.
-    pub const fn control(&self) -> Result<ControlWord, Refused> {
+    pub const fn control_word(&self) -> Result<ControlWord, Refused> {
         ControlWord::parse(self.control)
     }
 
     fn parse(bytes: [u8; PLACE], order: ByteOrder) -> Self {
         let [c0, c1, speed, torque, target @ ..] = bytes;
-        OutData { control: order.u16([c0, c1]), speed, torque, target: order.u32(target).cast_signed() }
+        OutputData { control: order.u16([c0, c1]), speed, torque, target: order.u32(target).cast_signed() }
     }
 
     fn emit(&self, order: ByteOrder) -> [u8; PLACE] {
-        let [c0, c1] = order.of_u16(self.control);
-        let [a, b, c, d] = order.of_u32(self.target.cast_unsigned());
+        let [c0, c1] = order.encode_u16(self.control);
+        let [a, b, c, d] = order.encode_u32(self.target.cast_unsigned());
         [c0, c1, self.speed, self.torque, a, b, c, d]
     }
 }
 
-impl Actual {
+impl ActualValues {
     fn parse(bytes: [u8; PLACE], order: ByteOrder) -> Self {
         let [z0, z1, s0, s1, position @ ..] = bytes;
-        Actual {
+        ActualValues {
             status: StatusWord::new(order.u16([z0, z1])),
             speed: order.u16([s0, s1]).cast_signed(),
             position: order.u32(position).cast_signed(),
@@ -272,22 +272,22 @@ impl Actual {
     }
 
     fn emit(&self, order: ByteOrder) -> [u8; PLACE] {
-        let [z0, z1] = order.of_u16(self.status.word());
-        let [s0, s1] = order.of_u16(self.speed.cast_unsigned());
-        let [a, b, c, d] = order.of_u32(self.position.cast_unsigned());
+        let [z0, z1] = order.encode_u16(self.status.word());
+        let [s0, s1] = order.encode_u16(self.speed.cast_unsigned());
+        let [a, b, c, d] = order.encode_u32(self.position.cast_unsigned());
         [z0, z1, s0, s1, a, b, c, d]
     }
 }
 
-impl OutImage {
+impl OutputImage {
     /// Parses an image.
     ///
     /// # Errors
-    /// Returns [`ImageError`] if the length does not match the layout.
-    pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
+    /// Returns [`ProcessImageError`] if the length does not match the layout.
+    pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ProcessImageError> {
         let (places, pkw) = layout.places(bytes)?;
-        let drives = places.into_iter().map(|place| OutData::parse(place, layout.order)).collect();
-        Ok(OutImage { drives, pkw })
+        let drives = places.into_iter().map(|place| OutputData::parse(place, layout.order)).collect();
+        Ok(OutputImage { drives, pkw })
     }
 
     /// Returns the image as bytes. Missing drives are filled with zeros, which do not control a drive; surplus drives
@@ -297,15 +297,15 @@ impl OutImage {
     }
 }
 
-impl InImage {
+impl InputImage {
     /// Parses an image.
     ///
     /// # Errors
-    /// Returns [`ImageError`] if the length does not match the layout.
-    pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
+    /// Returns [`ProcessImageError`] if the length does not match the layout.
+    pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ProcessImageError> {
         let (places, pkw) = layout.places(bytes)?;
-        let drives = places.into_iter().map(|place| Actual::parse(place, layout.order)).collect();
-        Ok(InImage { drives, pkw })
+        let drives = places.into_iter().map(|place| ActualValues::parse(place, layout.order)).collect();
+        Ok(InputImage { drives, pkw })
     }
 
     /// Returns the image as bytes. Missing drives are filled with zeros; surplus drives are dropped.

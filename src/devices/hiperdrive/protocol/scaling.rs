@@ -118,11 +118,11 @@ impl PositionScale {
 
     /// Converts turns to steps, rounded towards 0, or returns `None` if the result exceeds 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
-        i32::try_from(self.whole_steps(turns)).ok()
+        i32::try_from(self.integer_steps(turns)).ok()
     }
 
     /// Converts turns to steps, rounded towards 0, without a 32-bit limit.
-    pub fn whole_steps(self, turns: i32) -> i64 {
+    pub fn integer_steps(self, turns: i32) -> i64 {
         i64::from(turns) * UNIT * i64::from(self.numerator) / i64::from(self.denominator)
     }
 

@@ -63,7 +63,7 @@ const fn row(from: &'static [State], trigger: Trigger, to: State, word: Option<C
     Transition { from, trigger, to, word, assumed: false }
 }
 
-const fn assumed(from: &'static [State], trigger: Trigger, to: State, word: ControlWord) -> Transition {
+const fn assumed_transition(from: &'static [State], trigger: Trigger, to: State, word: ControlWord) -> Transition {
     Transition { from, trigger, to, word: Some(word), assumed: true }
 }
 
@@ -74,8 +74,8 @@ pub const TRANSITIONS: [Transition; 14] = [
     row(&[Ready], Set(ControlBit::On), Operational, Some(ControlWord::OPERATIONAL)),
     row(&[Operational], Clear(ControlBit::On), Ready, Some(ControlWord::READY)),
     row(&[Operational], Set(ControlBit::Enable), Enabled, Some(ControlWord::ENABLED)),
-    assumed(&[Enabled, Moving], Clear(ControlBit::On), Ready, ControlWord::READY),
-    assumed(&[Enabled, Moving], Clear(ControlBit::Enable), Operational, ControlWord::OPERATIONAL),
+    assumed_transition(&[Enabled, Moving], Clear(ControlBit::On), Ready, ControlWord::READY),
+    assumed_transition(&[Enabled, Moving], Clear(ControlBit::Enable), Operational, ControlWord::OPERATIONAL),
     row(&[Enabled], Starts, Moving, None),
     row(&[Moving], Starts, Moving, None),
     row(&[Moving], Ends, Enabled, None),
@@ -128,7 +128,7 @@ impl State {
     }
 
     /// Returns whether the keys on the drive can move the drive in this state.
-    pub const fn obeys_keys(self) -> bool {
+    pub const fn can_move_by_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }
 }

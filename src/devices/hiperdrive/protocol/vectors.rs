@@ -197,7 +197,7 @@ fn the_state_machine_matches_the_reference() {
     ] {
         assert_eq!(from.by(trigger), to, "{from}");
     }
-    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.obeys_keys()).collect();
+    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_move_by_keys()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
     // The word of a row has the effect of the row, starting from the word that keeps its state.
     for (state, kept) in
@@ -211,7 +211,7 @@ fn the_state_machine_matches_the_reference() {
 }
 
 /// Returns the status word of a state in reference 3.
-fn status_in(state: State) -> StatusWord {
+fn status_word_for(state: State) -> StatusWord {
     let word = match state {
         State::NotReady => 0x2A30,
         State::Ready => 0x2A31,
@@ -231,12 +231,12 @@ fn recipes_reach_their_target_state() {
         let mut words = Vec::new();
         for step in steps {
             assert!(
-                step.until.is_empty() || !step.is_done(status_in(state)),
+                step.until.is_empty() || !step.is_done(status_word_for(state)),
                 "{state} before {:04X}",
                 step.word.word()
             );
             state = state.after(before, step.word);
-            assert!(step.is_done(status_in(state)), "{state} after {:04X}", step.word.word());
+            assert!(step.is_done(status_word_for(state)), "{state} after {:04X}", step.word.word());
             before = step.word;
             words.push(step.word.word());
         }
@@ -272,22 +272,25 @@ fn published_process_data_to_a_drive_match() {
         ("59 14 19 64 00 00 00 00", setpoint(0x1459, 25, 100, 0)),
     ];
     for (text, setpoint) in cases {
-        let bare = OutImage { drives: vec![setpoint.into()], pkw: None };
-        assert_eq!((hex(&bare.emit(BARE)), OutImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(bare.clone())));
-        let with = OutImage { pkw: Some(Pkw::default()), ..bare };
+        let bare = OutputImage { drives: vec![setpoint.into()], pkw: None };
+        assert_eq!(
+            (hex(&bare.emit(BARE)), OutputImage::parse(&bytes(text), BARE)),
+            (text.to_owned(), Ok(bare.clone()))
+        );
+        let with = OutputImage { pkw: Some(Pkw::default()), ..bare };
         assert_eq!(hex(&with.emit(SINGLE)), format!("{text} {zeros}"));
-        assert_eq!(with.drives[0].control(), Ok(setpoint.control));
+        assert_eq!(with.drives[0].control_word(), Ok(setpoint.control));
     }
     // 0400, 0 %, 100000 = 186A0h.
-    let actual = Actual { status: status(0x3E37), speed: 0, position: 100_000 };
-    let image = OutImage { drives: vec![Setpoint::standing(actual).into()], pkw: None };
+    let actual = ActualValues { status: status(0x3E37), speed: 0, position: 100_000 };
+    let image = OutputImage { drives: vec![Setpoint::standing(actual).into()], pkw: None };
     assert_eq!(hex(&image.emit(BARE)), "00 04 00 00 A0 86 01 00");
     let big = Layout { order: ByteOrder::Big, ..BARE };
-    let image = OutImage { drives: vec![setpoint(0x0479, 100, 100, 163_840).into()], pkw: None };
+    let image = OutputImage { drives: vec![setpoint(0x0479, 100, 100, 163_840).into()], pkw: None };
     assert_eq!(hex(&image.emit(big)), "04 79 64 64 00 02 80 00");
-    assert_eq!(OutImage::parse(&bytes("04 79 64 64 00 02 80 00"), big), Ok(image));
-    let odd = OutImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), BARE).unwrap().drives[0];
-    assert_eq!((odd.control(), odd.torque), (Err(Refused { word: 0x047F }), 255));
+    assert_eq!(OutputImage::parse(&bytes("04 79 64 64 00 02 80 00"), big), Ok(image));
+    let odd = OutputImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), BARE).unwrap().drives[0];
+    assert_eq!((odd.control_word(), odd.torque), (Err(Refused { word: 0x047F }), 255));
     assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
 }
 
@@ -301,10 +304,10 @@ fn published_process_data_from_a_drive_match() {
         ("37 1A F1 FF FF FF FF FF", 0x1A37, -15, -1),
     ];
     for (text, word, speed, position) in cases {
-        let image = InImage { drives: vec![Actual { status: status(word), speed, position }], pkw: None };
-        assert_eq!((hex(&image.emit(BARE)), InImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(image)));
+        let image = InputImage { drives: vec![ActualValues { status: status(word), speed, position }], pkw: None };
+        assert_eq!((hex(&image.emit(BARE)), InputImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(image)));
     }
-    let actual = InImage::parse(&bytes(cases[0].0), BARE).unwrap().drives[0];
+    let actual = InputImage::parse(&bytes(cases[0].0), BARE).unwrap().drives[0];
     assert_eq!((actual.status.state(), SpeedScale::FACTORY.rpm(actual.speed)), (State::Moving, 80.0));
     assert_eq!(turns(actual.position), (1, 34_464));
 }
@@ -319,25 +322,26 @@ fn published_lengths_match() {
         assert_eq!((layout(topology, true).length(), layout(topology, false).length()), (with, with - 8));
         for pkw in [true, false] {
             let layout = layout(topology, pkw);
-            assert_eq!(Layout::of_length(layout.length()).collect::<Vec<_>>(), [layout]);
+            assert_eq!(Layout::all_with_length(layout.length()).collect::<Vec<_>>(), [layout]);
         }
         assert_eq!(Topology::from_category(topology.category()), Some(topology));
     }
-    assert_eq!(Layout::of_length(24).count(), 0);
+    assert_eq!(Layout::all_with_length(24).count(), 0);
     // Drive 3 of a hub at 16, the parameter words after the drives; unset values are zero.
     for (topology, at) in [(four, 32), (eight, 64)] {
-        let drives = vec![OutData::default(), OutData::default(), OutData { target: -1, ..OutData::default() }];
+        let drives =
+            vec![OutputData::default(), OutputData::default(), OutputData { target: -1, ..OutputData::default() }];
         let request = Pkw::request(Task::Read, 166, 0, 0);
-        let image = OutImage { drives, pkw: Some(request) };
+        let image = OutputImage { drives, pkw: Some(request) };
         let bytes = image.emit(layout(topology, true));
         assert_eq!((hex(&bytes[20..24]), hex(&bytes[at..at + 2])), ("FF FF FF FF".to_owned(), "A6 10".to_owned()));
         assert_eq!(bytes.iter().filter(|byte| **byte != 0).count(), 6);
-        let parsed = OutImage::parse(&bytes, layout(topology, true)).unwrap();
+        let parsed = OutputImage::parse(&bytes, layout(topology, true)).unwrap();
         assert_eq!((parsed.drives.len(), parsed.pkw), (at / 8, Some(request)));
     }
-    let wrong = ImageError { expected: 40, got: 39 };
-    assert_eq!(InImage::parse(&[0; 39], layout(four, true)), Err(wrong));
-    assert_eq!(OutImage::parse(&[0; 41], layout(four, true)), Err(ImageError { got: 41, ..wrong }));
+    let wrong = ProcessImageError { expected: 40, got: 39 };
+    assert_eq!(InputImage::parse(&[0; 39], layout(four, true)), Err(wrong));
+    assert_eq!(OutputImage::parse(&[0; 41], layout(four, true)), Err(ProcessImageError { got: 41, ..wrong }));
 }
 
 proptest! {
@@ -367,15 +371,15 @@ proptest! {
         let order = if big { ByteOrder::Big } else { ByteOrder::Little };
         for layout in Topology::ALL.into_iter().flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order })) {
             let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.length()).collect();
-            prop_assert_eq!(OutImage::parse(&data, layout).unwrap().emit(layout), data.clone());
-            prop_assert_eq!(InImage::parse(&data, layout).unwrap().emit(layout), data);
+            prop_assert_eq!(OutputImage::parse(&data, layout).unwrap().emit(layout), data.clone());
+            prop_assert_eq!(InputImage::parse(&data, layout).unwrap().emit(layout), data);
         }
     }
 
     #[test]
-    fn no_bytes_panic(data: Vec<u8>) {
-        for layout in Layout::of_length(data.len()).chain([SINGLE, BARE]) {
-            let _ = (OutImage::parse(&data, layout), InImage::parse(&data, layout));
+    fn arbitrary_bytes_never_panic(data: Vec<u8>) {
+        for layout in Layout::all_with_length(data.len()).chain([SINGLE, BARE]) {
+            let _ = (OutputImage::parse(&data, layout), InputImage::parse(&data, layout));
         }
         for row in PARAMETERS {
             let _ = row.kind.parse(&data);

@@ -13,11 +13,11 @@ pub struct SpindleLoad {
     pub wall_above: Option<f64>,
     /// Ambient temperature of the drive, in degrees Celsius.
     pub ambient: f64,
-    pub defect: Option<Defect>,
+    pub defect: Option<DriveDefect>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Defect {
+pub enum DriveDefect {
     /// The drive does not stop at its target or limits.
     RunsOn,
     /// The drive turns in the wrong direction.
@@ -40,7 +40,7 @@ pub(super) struct Axis {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum AxisDemand {
+pub(super) enum AxisSetpoint {
     Rest,
     /// Move to a position at a maximum speed.
     Place {
@@ -51,14 +51,14 @@ pub(super) enum AxisDemand {
     Speed(f64),
 }
 
-impl AxisDemand {
+impl AxisSetpoint {
     /// Returns the effective demand on a drive at the given position, taking a defect into account.
-    pub(super) fn with(self, defect: Option<Defect>, place: f64) -> AxisDemand {
-        let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
+    pub(super) fn with(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
+        let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
-            (wanted, None | Some(Defect::SaysOutside)) | (wanted @ AxisDemand::Rest, _) => wanted,
-            (AxisDemand::Place { at, speed }, Some(_)) => AxisDemand::Speed(turned((at - place).signum() * speed)),
-            (AxisDemand::Speed(speed), Some(_)) => AxisDemand::Speed(turned(speed)),
+            (wanted, None | Some(DriveDefect::SaysOutside)) | (wanted @ AxisSetpoint::Rest, _) => wanted,
+            (AxisSetpoint::Place { at, speed }, Some(_)) => AxisSetpoint::Speed(turned((at - place).signum() * speed)),
+            (AxisSetpoint::Speed(speed), Some(_)) => AxisSetpoint::Speed(turned(speed)),
         }
     }
 }
@@ -102,13 +102,13 @@ impl Axis {
         self.speed = 0.0;
     }
 
-    pub(super) fn tick(&mut self, wanted: AxisDemand, load: &SpindleLoad) -> TickOutcome {
+    pub(super) fn tick(&mut self, wanted: AxisSetpoint, load: &SpindleLoad) -> TickOutcome {
         let gain = ACCELERATION * TICK_S;
         let aim = match wanted {
-            AxisDemand::Rest => 0.0,
-            AxisDemand::Speed(speed) => speed,
+            AxisSetpoint::Rest => 0.0,
+            AxisSetpoint::Speed(speed) => speed,
             // No faster than it can still brake, millisecond by millisecond.
-            AxisDemand::Place { at, speed } => {
+            AxisSetpoint::Place { at, speed } => {
                 let (way, half) = (at - self.place, gain / 2.0);
                 way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)
             }
@@ -118,16 +118,16 @@ impl Axis {
         if let Some(held) = blocking_wall(load, next) {
             (self.place, self.speed) = (held.0, 0.0);
             let arrived =
-                wanted == AxisDemand::Rest || matches!(wanted, AxisDemand::Place { at, .. } if at == self.place);
+                wanted == AxisSetpoint::Rest || matches!(wanted, AxisSetpoint::Place { at, .. } if at == self.place);
             return if arrived { TickOutcome::There } else { TickOutcome::Held { above: held.1 } };
         }
         self.place = next;
         match wanted {
-            AxisDemand::Place { at, .. } if self.speed.abs() <= 4.0 * gain && (at - self.place).abs() <= 2.0 => {
+            AxisSetpoint::Place { at, .. } if self.speed.abs() <= 4.0 * gain && (at - self.place).abs() <= 2.0 => {
                 (self.place, self.speed) = (at, 0.0);
                 TickOutcome::There
             }
-            AxisDemand::Rest if self.is_standing() => TickOutcome::There,
+            AxisSetpoint::Rest if self.is_standing() => TickOutcome::There,
             _ => TickOutcome::OnTheWay,
         }
     }
@@ -143,7 +143,7 @@ fn blocking_wall(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
 mod tests {
     use super::*;
 
-    fn ticks_until(axis: &mut Axis, wanted: AxisDemand, load: &SpindleLoad) -> (u32, TickOutcome) {
+    fn ticks_until(axis: &mut Axis, wanted: AxisSetpoint, load: &SpindleLoad) -> (u32, TickOutcome) {
         for tick in 1..100_000 {
             match axis.tick(wanted, load) {
                 TickOutcome::OnTheWay => {}
@@ -159,7 +159,7 @@ mod tests {
     fn a_turn_takes_the_expected_time() {
         let mut axis = Axis::default();
         let speed = 35.0 / 60.0 * TURN;
-        let (ticks, came) = ticks_until(&mut axis, AxisDemand::Place { at: TURN, speed }, &SpindleLoad::default());
+        let (ticks, came) = ticks_until(&mut axis, AxisSetpoint::Place { at: TURN, speed }, &SpindleLoad::default());
         assert_eq!((came, axis.place(), axis.is_standing()), (TickOutcome::There, TURN, true));
         assert!((1800..=1830).contains(&ticks), "{ticks} ms where 1814 were expected");
     }
@@ -169,10 +169,10 @@ mod tests {
         let mut axis = Axis::default();
         let load = SpindleLoad::default();
         for _ in 0..500 {
-            axis.tick(AxisDemand::Speed(-35.0 / 60.0 * TURN), &load);
+            axis.tick(AxisSetpoint::Speed(-35.0 / 60.0 * TURN), &load);
         }
         assert!((axis.rpm() + 35.0).abs() < 1e-9);
-        let (ticks, _) = ticks_until(&mut axis, AxisDemand::Rest, &load);
+        let (ticks, _) = ticks_until(&mut axis, AxisSetpoint::Rest, &load);
         assert!((99..=101).contains(&ticks), "{ticks} ms");
     }
 
@@ -180,13 +180,13 @@ mod tests {
     fn a_wall_blocks_the_axis_and_it_can_reverse() {
         let load = SpindleLoad { wall_above: Some(1000.0), ..SpindleLoad::default() };
         let mut axis = Axis::default();
-        let to = |at| AxisDemand::Place { at, speed: TURN };
+        let to = |at| AxisSetpoint::Place { at, speed: TURN };
         assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, TickOutcome::Held { above: true });
         assert_eq!(axis.place(), 1000.0);
         assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, TickOutcome::There);
         // Reversed at full speed, it overshoots and returns.
         for _ in 0..300 {
-            axis.tick(AxisDemand::Speed(-TURN), &load);
+            axis.tick(AxisSetpoint::Speed(-TURN), &load);
         }
         let turned = axis.place();
         assert_eq!(ticks_until(&mut axis, to(turned), &load).1, TickOutcome::There);

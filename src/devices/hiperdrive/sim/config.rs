@@ -3,53 +3,53 @@
 
 use std::time::Duration;
 
-use super::axis::{Defect, SpindleLoad};
+use super::axis::{DriveDefect, SpindleLoad};
 use super::station::RESETS;
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEEDS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
-use crate::expected::{Expected, Quantity};
-use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Whole, Words, number};
+use crate::expected::{AllowedValues, Quantity};
+use crate::parameter::{ANY, Checked, Decimal, Milliseconds, OptionalValue, Refused, SWITCH, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, SEED, VirtualDevice, setting};
+use crate::sim::{ConfigError, FAULTS, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
     /// Settings of a virtual adapter or hub and its drives, by default an adapter with a single drive HDA30A at rest,
     /// with factory settings and without faults. Drive settings apply to all drives.
     pub struct Config: ConfigError {
         /// Topology, by default an adapter with one drive.
-        pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
+        pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(AllowedValues::Hub, |text| HUBS.read(text));
         /// Ports that have a drive, by default all. Ports after the end of the list are empty.
-        drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
+        drives: Option<String> = None, "drives" => OptionalValue(ANY), "connect.plugged" like "1,0,1";
         /// Whether each port has a drive; `None` means a drive in every port.
         plugged: Option<Vec<bool>> = None;
         /// Variant of the drives, given as the value of parameter 120 or by name.
-        pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
+        pub(super) variant: Variant = Variant::new(7), "variant" => Checked(AllowedValues::Variant, variant);
         /// Value of parameter 152, by default the factory setting.
-        pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
+        pub(super) requested: Option<bool> = None, "requested" => OptionalValue(Words(&[("0", false), ("1", true)]));
         /// Position of the drives, in steps of 65536 per turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Maximum speed (parameter 166), in tenths of rpm.
-        pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
+        pub(super) speed: Option<u16> = None, "speed" => OptionalValue(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Spindle load in percent; no drive can move a load above 100.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
         /// Defect of the drives, which then do not stop at a target or limit, turn in the wrong direction, or always
         /// set status bit 15.
-        defect: Option<Defect> = None, "defect" => Maybe(Words(&[
-            ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
+        defect: Option<DriveDefect> = None, "defect" => OptionalValue(Words(&[
+            ("runs-on", DriveDefect::RunsOn), ("reversed", DriveDefect::Reversed), ("says-outside", DriveDefect::SaysOutside),
         ]));
         /// Ambient temperature of the drives in degrees Celsius. Drives fail from 80 degrees.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
         /// Position of switch S3. Nothing can be moved over the bus unless it is 0.
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
-        pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
+        pub(super) switch: u8 = 0, "switch" => Checked(AllowedValues::SwitchDigits, switch);
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
         /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
         /// Parameter 15.
-        pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(Expected::Ascii { most: 32 }, name);
+        pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(AllowedValues::Ascii { most: 32 }, name);
         /// Byte order of numbers in process data (`U`).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// Whether parameter strings are preceded by their length (`U`).
@@ -58,7 +58,7 @@ parameters! {
         /// Injected faults: `drop` is the fraction of replies and of packets in both directions that are lost; `flip`
         /// and `garbage` are the fractions of replies and returned packets with an inverted bit or replaced by random
         /// bytes. `silent-after` counts frames and packets.
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
@@ -129,13 +129,13 @@ fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
     };
     let places: Option<Vec<bool>> = text.split(',').map(place).collect();
     let places = places.filter(|places| places.len() <= usize::from(count));
-    places.ok_or_else(|| Refused::new("drives", text, Expected::Places { count }))
+    places.ok_or_else(|| Refused::new("drives", text, AllowedValues::Places { count }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::hiperdrive::protocol::{ErrorCode, OutData, OutImage, ParameterNumber, StatusBit, Value};
+    use crate::devices::hiperdrive::protocol::{ErrorCode, OutputData, OutputImage, ParameterNumber, StatusBit, Value};
     use crate::devices::hiperdrive::sim::{Station, Target};
     use crate::sim::setting::pairs;
     use crate::units::Moment;
@@ -162,7 +162,7 @@ mod tests {
             resets: Duration::from_secs(8),
             load: 60,
             blocked: true,
-            defect: Some(Defect::Reversed),
+            defect: Some(DriveDefect::Reversed),
             temperature: -12.5,
             s3: 2,
             switch: 17,
@@ -227,8 +227,8 @@ mod tests {
         let mut now = Moment::START;
         station.open(now, Duration::from_secs(60));
         for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
-            let out = OutData { control, speed: 100, torque: 100, target: 65536 };
-            station.cyclic(now, &OutImage { drives: vec![out], pkw: None }, true);
+            let out = OutputData { control, speed: 100, torque: 100, target: 65536 };
+            station.cyclic(now, &OutputImage { drives: vec![out], pkw: None }, true);
             now = now + Duration::from_secs(4);
         }
         let drive = station.drive(DriveNumber::FIRST).unwrap();

@@ -7,14 +7,14 @@
 
 use std::collections::VecDeque;
 
-use super::axis::{Axis, AxisDemand, Defect, SpindleLoad, TICK, TURN, TickOutcome};
+use super::axis::{Axis, AxisSetpoint, DriveDefect, SpindleLoad, TICK, TURN, TickOutcome};
 use super::memory::Memory;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REQUESTED, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
 };
 use crate::devices::hiperdrive::protocol::{
-    Actual, ControlBit, ControlWord, ErrorCode, Family, MotionStart, OutData, PositionScale, SpeedScale, State,
-    StatusBit, StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
+    ActualValues, ControlBit, ControlWord, ErrorCode, Family, MotionStart, OutputData, PositionScale, SpeedScale,
+    State, StatusBit, StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
 };
 use crate::units::Moment;
 
@@ -25,7 +25,7 @@ pub struct Drive {
     pub(super) axis: Axis,
     /// Offset from the axis to the position, in steps of the axis.
     pub(super) offset: f64,
-    pub(super) out: OutData,
+    pub(super) out: OutputData,
     pub(super) errors: VecDeque<ErrorCode>,
     /// Since the acknowledgement.
     pub(super) faults: u8,
@@ -88,7 +88,7 @@ impl Drive {
             memory: Memory::new(topology, family, |row| row.number >= REQUESTED),
             axis: Axis::default(),
             offset: 0.0,
-            out: OutData { speed: 100, torque: 100, ..OutData::default() },
+            out: OutputData { speed: 100, torque: 100, ..OutputData::default() },
             errors: VecDeque::new(),
             faults: 0,
             celsius: load.ambient,
@@ -105,9 +105,13 @@ impl Drive {
         }
     }
 
-    pub fn actual(&mut self, now: Moment) -> Actual {
+    pub fn actual(&mut self, now: Moment) -> ActualValues {
         self.advance(now);
-        Actual { status: self.status(), speed: self.speed_scale().speed(self.axis.rpm()), position: self.position() }
+        ActualValues {
+            status: self.status(),
+            speed: self.speed_scale().speed(self.axis.rpm()),
+            position: self.position(),
+        }
     }
 
     pub fn set_load(&mut self, now: Moment, load: SpindleLoad) {
@@ -127,9 +131,9 @@ impl Drive {
         self.enter_fault(code);
     }
 
-    pub fn command(&mut self, now: Moment, out: OutData) {
+    pub fn command(&mut self, now: Moment, out: OutputData) {
         self.advance(now);
-        let Ok(control) = out.control() else { return };
+        let Ok(control) = out.control_word() else { return };
         self.out = out;
         let before = std::mem::replace(&mut self.control, control);
         // A run and a jog step start on an edge; a job is a level, and starts with the next millisecond.
@@ -142,7 +146,7 @@ impl Drive {
     }
 
     /// Sets whether the drive may move over the bus (whether S3 is at 0).
-    pub(super) const fn allow(&mut self, allowed: bool) {
+    pub(super) const fn set_motion_allowed(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
 
@@ -150,7 +154,7 @@ impl Drive {
         self.advance(now);
         self.axis.halt();
         self.clear_faults();
-        self.out = OutData { speed: 100, torque: 100, ..OutData::default() };
+        self.out = OutputData { speed: 100, torque: 100, ..OutputData::default() };
         (self.control, self.state, self.motion) = (ControlWord::OFF, State::NotReady, Motion::Rest);
         (self.target_reached, self.acknowledged) = (false, false);
     }
@@ -164,7 +168,7 @@ impl Drive {
         };
         let (low, high) = self.limits();
         let position = self.position();
-        let says_outside = self.load.defect == Some(Defect::SaysOutside);
+        let says_outside = self.load.defect == Some(DriveDefect::SaysOutside);
         [
             (StatusBit::Ready, level >= 1),
             (StatusBit::Operational, level >= 2),
@@ -235,7 +239,7 @@ impl Drive {
         self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
     }
 
-    fn place_of(&self, position: i32) -> f64 {
+    fn location_of(&self, position: i32) -> f64 {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
@@ -276,7 +280,7 @@ impl Drive {
         let torque = effective_torque(self.percents().1);
         let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
         let weak = wants && torque < self.load.percent;
-        let wanted = if weak { AxisDemand::Rest } else { self.wanted() };
+        let wanted = if weak { AxisSetpoint::Rest } else { self.wanted() };
         let came = self.axis.tick(wanted, &self.load);
         self.heat_up(if self.is_standing() { 0 } else { torque }, ticks);
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
@@ -294,13 +298,13 @@ impl Drive {
         }
     }
 
-    fn wanted(&self) -> AxisDemand {
+    fn wanted(&self) -> AxisSetpoint {
         let rpm = f64::from(self.word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
         let speed = rpm / 60.0 * TURN;
         let wanted = match self.motion {
-            Motion::Rest | Motion::Paused { .. } => AxisDemand::Rest,
-            Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => AxisDemand::Place { at, speed },
-            Motion::Run { to: None, clockwise } => AxisDemand::Speed(if clockwise { speed } else { -speed }),
+            Motion::Rest | Motion::Paused { .. } => AxisSetpoint::Rest,
+            Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => AxisSetpoint::Place { at, speed },
+            Motion::Run { to: None, clockwise } => AxisSetpoint::Speed(if clockwise { speed } else { -speed }),
         };
         wanted.with(self.load.defect, self.axis.place())
     }
@@ -362,7 +366,7 @@ impl Drive {
                 let clockwise = self.control.has(ControlBit::NoStop);
                 // Beyond the end it runs no further, and not back either.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
-                let to = (!self.control.has(ControlBit::NoPause)).then(|| self.place_of(end));
+                let to = (!self.control.has(ControlBit::NoPause)).then(|| self.location_of(end));
                 return self.moves(Motion::Run { to, clockwise });
             }
             MotionStart::Job => (self.out.target, None),
@@ -370,7 +374,7 @@ impl Drive {
             MotionStart::JogTwo => jog(176, 178, 180),
         };
         if (low..=high).contains(&target) {
-            self.moves(Motion::Job { at: self.place_of(target), jog });
+            self.moves(Motion::Job { at: self.location_of(target), jog });
         } else if jog.is_some() || (self.out.speed > 0 && self.out.torque > 0) {
             self.enter_fault(ErrorCode::INVALID_TARGET);
         }

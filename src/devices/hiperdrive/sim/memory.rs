@@ -47,7 +47,7 @@ impl Memory {
     }
 
     /// Stores the first half of the values, as if the supply were lost during the save.
-    pub(super) fn save_half(&mut self) {
+    pub(super) fn save_partially(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;
         self.kept.extend(saved.into_iter().take(half));

@@ -26,10 +26,10 @@ mod tests;
 mod words;
 mod write_fault;
 
-pub use axis::{Defect, SpindleLoad};
+pub use axis::{DriveDefect, SpindleLoad};
 pub use config::Config;
 pub use drive::Drive;
 pub use parameters::Refused;
-pub use station::{Setup, Station};
+pub use station::{Station, StationConfig};
 pub use target::{Figures, Target};
 pub use write_fault::WriteFault;

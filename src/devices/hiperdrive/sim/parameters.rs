@@ -157,7 +157,7 @@ impl Drive {
 }
 
 /// Returns an element of a string, which contains four of its characters.
-pub(super) fn element(text: &str, element: u16) -> Option<u32> {
+pub(super) fn string_element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;
     let mut four = [0; 4];

@@ -15,13 +15,13 @@ use super::parameters::Refused;
 use super::write_fault::{ActiveWriteFault, WriteFault};
 use crate::devices::hiperdrive::protocol::drive_parameter::{MAXIMUM_SPEED, REQUESTED, SERVICE, VARIANT};
 use crate::devices::hiperdrive::protocol::{
-    Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
-    Travel, Value, Variant,
+    Access, ActualValues, DriveNumber, Family, InputImage, OutputData, OutputImage, ParameterNumber, ParameterRow, Pkw,
+    Topology, Travel, Value, Variant,
 };
 use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
+pub struct StationConfig {
     pub topology: Topology,
     /// Drives by port, with `None` for an empty port.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
@@ -31,7 +31,7 @@ pub struct Setup {
 
 #[derive(Clone, Debug)]
 pub struct Station {
-    setup: Setup,
+    setup: StationConfig,
     drives: Vec<Option<Drive>>,
     memory: Memory,
     master: Option<Master>,
@@ -48,7 +48,7 @@ pub struct Station {
     hindered: ActiveWriteFault,
 }
 
-/// Identity data that are not part of a [`Setup`].
+/// Identity data that are not part of a [`StationConfig`].
 #[derive(Clone, Debug)]
 struct NamePlate {
     name: String,
@@ -79,17 +79,17 @@ const SAVES: Duration = Duration::from_millis(150);
 pub(super) const RESETS: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
-impl Default for Setup {
+impl Default for StationConfig {
     /// Creates an adapter with a drive of type HDA30A.
     fn default() -> Self {
         let drives = vec![Some((Variant::new(7), SpindleLoad::default()))];
-        Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
+        StationConfig { topology: Topology::Adapter, drives, serial_number: 4711 }
     }
 }
 
 impl Station {
     /// Creates a station in its factory state, switched on at the start of the clock.
-    pub fn new(setup: Setup) -> Self {
+    pub fn new(setup: StationConfig) -> Self {
         let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
         let drives = places
             .take(setup.topology.drives().into())
@@ -115,7 +115,7 @@ impl Station {
 
     pub fn of(config: &Config) -> Self {
         let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
-        let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };
+        let setup = StationConfig { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
         station.plate =
             NamePlate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths() };
@@ -183,7 +183,7 @@ impl Station {
     }
 
     /// Handles process data, which are dropped without a connection and during a reset of drives.
-    pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
+    pub fn cyclic(&mut self, now: Moment, image: &OutputImage, runs: bool) {
         self.advance(now);
         let Some(master) = &mut self.master else { return };
         master.heard = now;
@@ -191,7 +191,7 @@ impl Station {
             return;
         }
         for (drive, out) in self.drives.iter_mut().zip(&image.drives) {
-            let out = if runs { *out } else { OutData { control: 0, ..*out } };
+            let out = if runs { *out } else { OutputData { control: 0, ..*out } };
             if let Some(drive) = drive {
                 drive.command(now, out);
             }
@@ -203,19 +203,20 @@ impl Station {
         }
     }
 
-    pub fn image(&mut self, now: Moment) -> InImage {
+    pub fn image(&mut self, now: Moment) -> InputImage {
         self.advance(now);
         if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {
             self.words.1 = answer;
         }
-        let actual = |drive: &mut Option<Drive>| drive.as_mut().map_or(Actual::default(), |drive| drive.actual(now));
-        InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
+        let actual =
+            |drive: &mut Option<Drive>| drive.as_mut().map_or(ActualValues::default(), |drive| drive.actual(now));
+        InputImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
     /// Sets switch S3. Nothing can be moved over the bus unless it is at 0.
     pub fn turn_s3(&mut self, now: Moment, position: u8) {
         self.advance(now);
-        self.present().for_each(|drive| drive.allow(position == 0));
+        self.present().for_each(|drive| drive.set_motion_allowed(position == 0));
     }
 
     pub fn power_cycle(&mut self, now: Moment) {
@@ -312,7 +313,7 @@ impl Station {
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
             if self.store.dies_in == Some(self.store.count) {
-                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::save_half);
+                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::save_partially);
             }
         }
         let each = |memory: &mut Memory| match value {

@@ -1,6 +1,6 @@
 //! Parameter words in the process data: the answers of a station (reference 6).
 
-use super::parameters::element;
+use super::parameters::string_element;
 use super::station::Station;
 use crate::devices::hiperdrive::protocol::{Kind, ParameterNumber, Pkw, PkwError, Task, Value};
 use crate::units::Moment;
@@ -49,7 +49,7 @@ impl Station {
                     // A text has a few dozen characters.
                     return reply(6, text.len().div_ceil(4) as u32);
                 }
-                element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))
+                string_element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))
             }
             (Some(Task::WriteElementWord | Task::WriteElementDouble), Kind::Text) => refused(PkwError::READ_ONLY),
             (Some(_), _) => refused(PkwError::NO_ARRAY),

@@ -8,11 +8,11 @@ use super::staged::Edit;
 use super::unit::Unit;
 use super::{explain, words};
 use crate::app::services::Services;
-use crate::app::session::{Saved, WithMemory};
+use crate::app::session::{HasMemory, HasProfile};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::procedures::Temperature;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, SpeedTorque};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
@@ -43,7 +43,7 @@ impl Unit {
                 };
                 let ruler = self.ruler(drive);
                 if ruler.of(0, self.measure).is_none() {
-                    self.measure = super::Measure::default();
+                    self.measure = super::PositionUnit::default();
                 }
             }
             HiperdriveAction::Edit(edit) => self.edit(&edit),
@@ -103,7 +103,7 @@ impl Unit {
             }
             Motor::SlowJogPress { direction, .. } => {
                 let outward = self.moves.is_freed(drive, direction);
-                MotionRequest::Jog { direction, effort: Effort::JOG, outward }
+                MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward }
             }
             Motor::Lead(goal) => MotionRequest::Lead(goal),
             Motor::Acknowledge => MotionRequest::Acknowledge,
@@ -153,9 +153,9 @@ impl Unit {
 
     /// Handles a profile that was read in order to be saved to a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
-        self.notice_scales(&profile.image);
+        self.handle_scale_change(&profile.image);
         self.staged.refresh_some(&profile.image);
         let edits = self.is_dirty().then(|| self.staged.count());
-        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
+        self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
     }
 }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use super::axis;
-use super::ruler::Measure;
+use super::ruler::PositionUnit;
 use super::staged::Edit;
 use crate::app::DeviceAction;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::procedures::Temperature;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
+use crate::devices::hiperdrive::procedures::dead_man::{SpeedTorque, TargetState};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};
 
 pub enum HiperdriveAction {
@@ -16,7 +16,7 @@ pub enum HiperdriveAction {
     Check,
     SelectDrive(DriveNumber),
     Watch(Temperature, bool),
-    SetMeasure(Measure),
+    SetMeasure(PositionUnit),
     /// Set the pitch of a drive's spindle, if it has one.
     SetPitch(DriveNumber, Option<Length>),
     Edit(Box<Edit>),
@@ -34,7 +34,7 @@ pub enum HiperdriveAction {
 /// A motion request of the user for the selected drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motor {
-    Lead(Goal),
+    Lead(TargetState),
     Acknowledge,
     JogPress {
         direction: Direction,
@@ -69,9 +69,9 @@ pub enum Motor {
     Pause,
     Resume,
     Stop,
-    JogEffort(Effort),
+    JogEffort(SpeedTorque),
     /// Set the effort for moves, steps and runs.
-    MoveEffort(Effort),
+    MoveEffort(SpeedTorque),
     /// Confirm or revoke the warning about endless runs.
     Expert(bool),
     /// Confirm the limits after checking them in the user's own unit.

@@ -25,14 +25,14 @@ pub mod words;
 #[cfg(test)]
 mod tests;
 
-pub use act::{AxisAction, Button, DriveRequest};
+pub use act::{AxisAction, AxisButton, DriveRequest};
 pub use drive_facts::DriveFacts;
-pub use entries::{Entries, Preview, Reference};
+pub use entries::{Entries, Preview, ReferencePosition};
 pub use report::{Device, end_lines, report};
-pub use supply::{Power, Restart};
+pub use supply::{Power, RestartEvidence};
 pub use test_targets::{Outcome, TestTarget, Travel};
 
-use standstill::Standstill;
+use standstill::StandstillMonitor;
 use step_outcomes::{Origin, Preconditions, StepOutcomes};
 
 use super::ruler::Ruler;
@@ -114,7 +114,7 @@ pub struct Axis {
     /// Position that was set, and the origin of positions since then.
     reference: Option<(i32, Origin)>,
     sets: Option<i32>,
-    standstill: Standstill,
+    standstill: StandstillMonitor,
     /// Number of times the position jumped at standstill.
     jumps: u32,
     /// Steps by which the position changed while it was not read, since the reference.
@@ -182,7 +182,7 @@ impl Axis {
             travel: Travel::default(),
             reference: None,
             sets: None,
-            standstill: Standstill::default(),
+            standstill: StandstillMonitor::default(),
             jumps: 0,
             unexplained: None,
             outcomes: [None; 3],
@@ -298,7 +298,7 @@ impl Axis {
             confirmed: self.is_confirmed(seen),
             origin: self.origin(seen),
             limits: seen.limits,
-            lower: self.entries.lower(seen.ruler()).ok(),
+            lower: self.entries.lower_limit(seen.ruler()).ok(),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Stops the drives of a session when the program ends.
 
-use crate::app::Brake;
+use crate::app::DriveStopHandle;
 use crate::devices::hiperdrive::jobs::Motion;
 
-impl Brake for Motion {
+impl DriveStopHandle for Motion {
     fn leave(&self) {
         Motion::leave(self);
     }

@@ -3,12 +3,12 @@
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, Typed, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
 use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
 use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
-use crate::link::{LinkUrl, Scheme};
+use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,9 +72,9 @@ impl FormModel for HiperdriveForm {
 
     fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
-            Scheme::Sim => HiperdriveLinkKind::Virtual,
-            Scheme::Replay => HiperdriveLinkKind::Replay,
-            Scheme::Enip | Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => {
+            LinkScheme::Sim => HiperdriveLinkKind::Virtual,
+            LinkScheme::Replay => HiperdriveLinkKind::Replay,
+            LinkScheme::Enip | LinkScheme::Modbus | LinkScheme::Bridge | LinkScheme::Serial | LinkScheme::Tcp => {
                 HiperdriveLinkKind::Network
             }
         };
@@ -84,7 +84,7 @@ impl FormModel for HiperdriveForm {
             HiperdriveLinkKind::Network => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             HiperdriveLinkKind::Virtual => {}
         }
-        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -109,7 +109,7 @@ impl HiperdriveForm {
     }
 
     /// Returns the entry for the setpoint interval, and the rarely used entries.
-    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+    pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
@@ -131,13 +131,13 @@ impl HiperdriveForm {
         is_big_endian || self.typed.take(&self.entries(), name, value)
     }
 
-    fn target(&self) -> Result<(Scheme, String), Text> {
+    fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
-            HiperdriveLinkKind::Virtual => (Scheme::Sim, String::new()),
+            HiperdriveLinkKind::Virtual => (LinkScheme::Sim, String::new()),
             HiperdriveLinkKind::Network => {
-                (Scheme::Enip, host_and_default_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
+                (LinkScheme::Enip, host_and_default_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
             }
-            HiperdriveLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            HiperdriveLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
@@ -151,7 +151,7 @@ impl HiperdriveForm {
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

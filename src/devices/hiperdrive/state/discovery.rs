@@ -14,7 +14,7 @@ use crate::app::{DeviceModel, Text};
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
+use crate::link::{CancelToken, Clock, RealClock, UdpBroadcast};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
@@ -63,15 +63,15 @@ impl Discovery {
 
 /// A substitute for the discovery broadcast, used by tests only.
 #[derive(Clone)]
-pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
+pub struct DiscoveryStub(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
-impl Discover {
+impl DiscoveryStub {
     pub fn new(ask: impl Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync + 'static) -> Self {
-        Discover(Arc::new(ask))
+        DiscoveryStub(Arc::new(ask))
     }
 }
 
-impl fmt::Debug for Discover {
+impl fmt::Debug for DiscoveryStub {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Discover")
     }
@@ -83,8 +83,8 @@ impl fmt::Debug for Discover {
 /// The request could not be sent.
 fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let mut shout = UdpBroadcast::to_all(EXPLICIT_PORT, clock.clone())?;
-    discover(&mut shout, &*clock, &Cancel::default())
+    let mut shout = UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone())?;
+    discover(&mut shout, &*clock, &CancelToken::default())
 }
 
 #[derive(Default)]
@@ -114,7 +114,7 @@ impl Finder for DiscoveryFinder {
                 let number = context.new_number();
                 self.discovery = Some(Discovery { number, found: None });
                 let services = context.services();
-                let given = services.world.given.get::<Discover>().cloned();
+                let given = services.world.given.get::<DiscoveryStub>().cloned();
                 services.tasks.run("discover", move || {
                     let found = given.map_or_else(ask_all, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::of).collect());

@@ -9,7 +9,7 @@ use super::unit::Unit;
 use crate::app::Explained;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::Services;
-use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory};
+use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
@@ -87,7 +87,7 @@ impl Kind for Hiperdrive {
 impl Unit {
     /// Requests missing data as soon as the line is free, namely the cause of a fault and the position of the selected
     /// drive.
-    fn request_next(&mut self, services: &mut Services) {
+    fn request_missing_data(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
         }
@@ -177,20 +177,20 @@ impl SessionEvents for Unit {
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.send_heartbeat();
-        self.notice_limits();
+        self.handle_limit_change();
         for (drive, before) in before {
-            self.notice_fault(drive, before);
+            self.request_fault_cause(drive, before);
             if before.is_some_and(has_failed) && self.state(drive).is_some_and(|state| !has_failed(state)) {
                 let failed = self.drives().into_iter().any(|drive| self.state(drive).is_some_and(has_failed));
                 self.update_fault_notice(failed, services);
             }
         }
-        if let Some((drive, ended)) = self.moves.take_end() {
+        if let Some((drive, ended)) = self.moves.take_motion_end() {
             self.report_motion_end(drive, ended, services);
         }
         self.poll_line(services);
         self.update_axes();
-        self.request_next(services);
+        self.request_missing_data(services);
     }
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
@@ -215,7 +215,7 @@ impl SessionEvents for Unit {
                 }
             }
             HiperdriveOutput::Surveyed(survey) => {
-                self.take_survey(*survey, services);
+                self.apply_survey(*survey, services);
                 self.submit(HiperdriveJob::Status, services);
             }
             HiperdriveOutput::Status(status) => {
@@ -243,7 +243,7 @@ impl SessionEvents for Unit {
             HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.send_heartbeat();
-                self.notice_limits();
+                self.handle_limit_change();
                 for lost in words::LOST.into_iter().chain([RULES]) {
                     services.log.settle(lost, Some(&self.session.name()));
                 }
@@ -288,7 +288,7 @@ impl SessionEvents for Unit {
         is_told
     }
 
-    fn polling_ends(&mut self) {
+    fn on_polling_end(&mut self) {
         self.moves.stop();
     }
 

@@ -14,7 +14,7 @@ mod write;
 
 pub use check::{check, source, switch};
 pub use entry::entry;
-pub use error::{damage, device, out_of_range, range, wrong_length};
+pub use error::{damage_text, device, out_of_range, range, wrong_length};
 pub use motion::{LOST, MOTION_ENDS, ended, goal, lock, lost, parameter_words, phase, refusal, weight};
 pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_bit, variant};
 pub use write::{change, item, op, other_type, plan, service, warning, written};
@@ -30,9 +30,9 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![crate::app::explain::not_begun(why)],
+        JobError::NotBegun(why) => vec![crate::app::explain::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
-            write::interruption(interrupted, backup, *planned, *kind)
+            write::interruption_text(interrupted, backup, *planned, *kind)
         }
     }
 }

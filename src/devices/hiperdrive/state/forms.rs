@@ -1,7 +1,7 @@
 //! Parsing of numbers entered for a drive into values or edits.
 
 use super::rows::Row;
-use super::ruler::{Measure, PositionRangeError};
+use super::ruler::{PositionRangeError, PositionUnit};
 use super::staged::Edit;
 use super::unit::Unit;
 use crate::app::{Text, number};
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::state::explain as words;
 ///
 /// # Errors
 /// Explains why the entry is invalid.
-pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32, Text> {
+pub fn step(unit: &Unit, text: &str, measure: PositionUnit, sign: i32) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     if steps == 0 {
         return Err(TEXTS.text("hd_entry.no_step"));
@@ -25,7 +25,7 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
 ///
 /// # Errors
 /// Explains why the entry is invalid.
-pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
+pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
     match unit.limits(unit.drive()) {
@@ -50,9 +50,9 @@ pub fn ensure_entered(text: &str) -> Result<(), Text> {
 ///
 /// # Errors
 /// Explains why the entry is invalid.
-pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
+pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
-    if measure == Measure::Steps && value.fract() != 0.0 {
+    if measure == PositionUnit::Steps && value.fract() != 0.0 {
         return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));
     }
     unit.ruler(unit.drive()).steps(value, measure).map_err(|beyond| match beyond {

@@ -36,7 +36,7 @@ impl DeviceType for Unit {
     fn begin(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
         let mut unit = Unit::with(session);
         if let Some((profile, ())) = profile {
-            unit.staged = Staged::of_profile(profile.image.clone());
+            unit.staged = Staged::for_profile(profile.image.clone());
             let drives = profile.identity.drives.iter();
             unit.staged.set_families(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
             unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);

@@ -1,7 +1,9 @@
 //! Meaning of the LEDs: the user selects the visible states and sees their meaning and remedy. Requires no device.
 
 use crate::app::{Severity, Text};
-use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
+use crate::devices::hiperdrive::protocol::{
+    DriveLedState, LedSubject, NetworkLed, NetworkLedState, PortLedState, Topology,
+};
 use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,11 +13,11 @@ pub struct Leds {
     /// Position of switch S3 of a hub: 0 for all drives, otherwise the number of the drive shown by the RS485 LED.
     pub s3: u8,
     /// RS485.
-    pub drives: DriveLight,
+    pub drives: DriveLedState,
     /// MS.
-    pub module: BusLight,
-    pub network: BusLight,
-    pub port: PortLight,
+    pub module: NetworkLedState,
+    pub network: NetworkLedState,
+    pub port: PortLedState,
 }
 
 /// An LED of the device, or the two LEDs of a port.
@@ -24,7 +26,7 @@ pub enum Led {
     /// RS485.
     Drives,
     /// MS or NS.
-    Bus(BusLamp),
+    Bus(NetworkLed),
     /// P1 or P2.
     Port,
 }
@@ -42,16 +44,16 @@ impl Default for Leds {
         Leds {
             hub: true,
             s3: 0,
-            drives: DriveLight::Green,
-            module: BusLight::Green,
-            network: BusLight::Green,
-            port: PortLight::Active,
+            drives: DriveLedState::Green,
+            module: NetworkLedState::Green,
+            network: NetworkLedState::Green,
+            port: PortLedState::Active,
         }
     }
 }
 
 impl Led {
-    pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(BusLamp::Module), Led::Bus(BusLamp::Network), Led::Port];
+    pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(NetworkLed::Module), Led::Bus(NetworkLed::Network), Led::Port];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -79,26 +81,26 @@ impl Leds {
     pub fn look_at(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.subject().row(self.drives).is_none() {
-            self.drives = DriveLight::Off;
+            self.drives = DriveLedState::Off;
         }
     }
 
     pub fn click(&mut self, lamp: Led) {
         match lamp {
             Led::Drives => {
-                let lights: Vec<DriveLight> = self.subject().rows().iter().map(|row| row.light).collect();
+                let lights: Vec<DriveLedState> = self.subject().rows().iter().map(|row| row.light).collect();
                 self.drives = next(&lights, self.drives);
             }
-            Led::Bus(BusLamp::Module) => self.module = next(&BUS, self.module),
-            Led::Bus(BusLamp::Network) => self.network = next(&BUS, self.network),
-            Led::Port => self.port = next(&[PortLight::Off, PortLight::Link, PortLight::Active], self.port),
+            Led::Bus(NetworkLed::Module) => self.module = next(&BUS, self.module),
+            Led::Bus(NetworkLed::Network) => self.network = next(&BUS, self.network),
+            Led::Port => self.port = next(&[PortLedState::Off, PortLedState::Link, PortLedState::Active], self.port),
         }
     }
 
     pub fn meaning_of(&self, lamp: Led) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Led::Drives => drives(self.subject(), self.drives),
-            Led::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
+            Led::Bus(lamp) => bus(lamp, if lamp == NetworkLed::Module { self.module } else { self.network }),
             Led::Port => port(self.port),
         };
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
@@ -107,38 +109,38 @@ impl Leds {
     pub fn state_text(&self, lamp: Led) -> Text {
         TEXTS.text(match lamp {
             Led::Drives => match self.drives {
-                DriveLight::Off => "hd_led.off",
-                DriveLight::Green => "hd_led.green",
-                DriveLight::Red => "hd_led.red",
-                DriveLight::RedGreen => "hd_led.red_green",
-                DriveLight::GreenFlashing => "hd_led.green_flashing",
-                DriveLight::RedGreenFlashing => "hd_led.red_green_flashing",
-                DriveLight::Alternating => "hd_led.alternating",
+                DriveLedState::Off => "hd_led.off",
+                DriveLedState::Green => "hd_led.green",
+                DriveLedState::Red => "hd_led.red",
+                DriveLedState::RedGreen => "hd_led.red_green",
+                DriveLedState::GreenFlashing => "hd_led.green_flashing",
+                DriveLedState::RedGreenFlashing => "hd_led.red_green_flashing",
+                DriveLedState::Alternating => "hd_led.alternating",
             },
-            Led::Bus(lamp) => match if lamp == BusLamp::Module { self.module } else { self.network } {
-                BusLight::Off => "hd_led.off",
-                BusLight::Green => "hd_led.green",
-                BusLight::GreenFlashing => "hd_led.green_flashing",
-                BusLight::Red => "hd_led.red",
-                BusLight::RedFlashing => "hd_led.red_flashing",
-                BusLight::Alternating => "hd_led.alternating",
+            Led::Bus(lamp) => match if lamp == NetworkLed::Module { self.module } else { self.network } {
+                NetworkLedState::Off => "hd_led.off",
+                NetworkLedState::Green => "hd_led.green",
+                NetworkLedState::GreenFlashing => "hd_led.green_flashing",
+                NetworkLedState::Red => "hd_led.red",
+                NetworkLedState::RedFlashing => "hd_led.red_flashing",
+                NetworkLedState::Alternating => "hd_led.alternating",
             },
             Led::Port => match self.port {
-                PortLight::Off => "hd_led.off",
-                PortLight::Link => "hd_led.green",
-                PortLight::Active => "hd_led.green_yellow",
+                PortLedState::Off => "hd_led.off",
+                PortLedState::Link => "hd_led.green",
+                PortLedState::Active => "hd_led.green_yellow",
             },
         })
     }
 }
 
-const BUS: [BusLight; 6] = [
-    BusLight::Off,
-    BusLight::Green,
-    BusLight::GreenFlashing,
-    BusLight::RedFlashing,
-    BusLight::Red,
-    BusLight::Alternating,
+const BUS: [NetworkLedState; 6] = [
+    NetworkLedState::Off,
+    NetworkLedState::Green,
+    NetworkLedState::GreenFlashing,
+    NetworkLedState::RedFlashing,
+    NetworkLedState::Red,
+    NetworkLedState::Alternating,
 ];
 
 /// Returns the element after `now`, or the first element after the last.
@@ -150,8 +152,8 @@ fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
 /// Severity, and text IDs of meaning and remedy. The English texts are those of the protocol tables.
 type Row = (Severity, &'static str, &'static str);
 
-fn drives(subject: LedSubject, light: DriveLight) -> Row {
-    use DriveLight::{Alternating, Green, GreenFlashing, Off, Red, RedGreen, RedGreenFlashing};
+fn drives(subject: LedSubject, light: DriveLedState) -> Row {
+    use DriveLedState::{Alternating, Green, GreenFlashing, Off, Red, RedGreen, RedGreenFlashing};
     use LedSubject::{Adapter, Drive, Drives};
     use Severity::{Error, Good, Note, Warning};
     match (subject, light) {
@@ -173,29 +175,29 @@ fn drives(subject: LedSubject, light: DriveLight) -> Row {
     }
 }
 
-fn bus(lamp: BusLamp, light: BusLight) -> Row {
-    use BusLamp::{Module, Network};
+fn bus(lamp: NetworkLed, light: NetworkLedState) -> Row {
+    use NetworkLed::{Module, Network};
     use Severity::{Error, Good, Note, Warning};
     match (lamp, light) {
-        (Module, BusLight::Off) => (Error, "hd_led.no_supply", "hd_led.check_supply"),
-        (Module, BusLight::Green) => (Good, "hd_led.works", "hd_led.nothing"),
-        (Module, BusLight::GreenFlashing) => (Note, "hd_led.not_configured", "hd_led.not_configured_do"),
-        (Module, BusLight::RedFlashing) => (Warning, "hd_led.minor", "hd_led.minor_do"),
-        (Module, BusLight::Red) => (Error, "hd_led.major", "hd_led.major_do"),
-        (_, BusLight::Alternating) => (Note, "hd_led.self_test", "hd_led.wait"),
-        (Network, BusLight::Off) => (Error, "hd_led.no_address", "hd_led.no_address_do"),
-        (Network, BusLight::Green) => (Good, "hd_led.open", "hd_led.nothing"),
-        (Network, BusLight::GreenFlashing) => (Note, "hd_led.no_connection", "hd_led.no_connection_do"),
-        (Network, BusLight::RedFlashing) => (Warning, "hd_led.timed_out", "hd_led.timed_out_do"),
-        (Network, BusLight::Red) => (Error, "hd_led.same_address", "hd_led.same_address_do"),
+        (Module, NetworkLedState::Off) => (Error, "hd_led.no_supply", "hd_led.check_supply"),
+        (Module, NetworkLedState::Green) => (Good, "hd_led.works", "hd_led.nothing"),
+        (Module, NetworkLedState::GreenFlashing) => (Note, "hd_led.not_configured", "hd_led.not_configured_do"),
+        (Module, NetworkLedState::RedFlashing) => (Warning, "hd_led.minor", "hd_led.minor_do"),
+        (Module, NetworkLedState::Red) => (Error, "hd_led.major", "hd_led.major_do"),
+        (_, NetworkLedState::Alternating) => (Note, "hd_led.self_test", "hd_led.wait"),
+        (Network, NetworkLedState::Off) => (Error, "hd_led.no_address", "hd_led.no_address_do"),
+        (Network, NetworkLedState::Green) => (Good, "hd_led.open", "hd_led.nothing"),
+        (Network, NetworkLedState::GreenFlashing) => (Note, "hd_led.no_connection", "hd_led.no_connection_do"),
+        (Network, NetworkLedState::RedFlashing) => (Warning, "hd_led.timed_out", "hd_led.timed_out_do"),
+        (Network, NetworkLedState::Red) => (Error, "hd_led.same_address", "hd_led.same_address_do"),
     }
 }
 
-fn port(light: PortLight) -> Row {
+fn port(light: PortLedState) -> Row {
     match light {
-        PortLight::Off => (Severity::Error, "hd_led.no_link", "hd_led.no_link_do"),
-        PortLight::Link => (Severity::Note, "hd_led.quiet", "hd_led.nothing"),
-        PortLight::Active => (Severity::Good, "hd_led.data", "hd_led.nothing"),
+        PortLedState::Off => (Severity::Error, "hd_led.no_link", "hd_led.no_link_do"),
+        PortLedState::Link => (Severity::Note, "hd_led.quiet", "hd_led.nothing"),
+        PortLedState::Active => (Severity::Good, "hd_led.data", "hd_led.nothing"),
     }
 }
 
@@ -251,7 +253,7 @@ mod tests {
             leds.click(Led::Drives);
             assert_eq!(seen.first(), Some(&leds.drives));
         }
-        for (lamp, lights) in [(Led::Bus(BusLamp::Module), 6), (Led::Bus(BusLamp::Network), 6), (Led::Port, 3)] {
+        for (lamp, lights) in [(Led::Bus(NetworkLed::Module), 6), (Led::Bus(NetworkLed::Network), 6), (Led::Port, 3)] {
             let mut leds = Leds::default();
             let mut said = Vec::new();
             (0..lights).for_each(|_| {
@@ -265,12 +267,12 @@ mod tests {
 
     #[test]
     fn a_state_missing_on_another_led_becomes_off() {
-        let mut leds = Leds { drives: DriveLight::Alternating, ..Leds::of(Topology::Hub8) };
+        let mut leds = Leds { drives: DriveLedState::Alternating, ..Leds::of(Topology::Hub8) };
         leds.look_at(true, 9);
-        assert_eq!((leds.s3, leds.subject(), leds.drives), (8, LedSubject::Drive, DriveLight::Off));
-        leds.drives = DriveLight::Red;
+        assert_eq!((leds.s3, leds.subject(), leds.drives), (8, LedSubject::Drive, DriveLedState::Off));
+        leds.drives = DriveLedState::Red;
         leds.look_at(false, 8);
-        assert_eq!((leds.subject(), leds.drives), (LedSubject::Adapter, DriveLight::Red));
+        assert_eq!((leds.subject(), leds.drives), (LedSubject::Adapter, DriveLedState::Red));
         assert!(!Leds::of(Topology::Adapter).hub);
     }
 }

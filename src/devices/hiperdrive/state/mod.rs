@@ -40,12 +40,12 @@ pub use texts::TEXTS;
 
 pub use action::{HiperdriveAction, Motor};
 pub use connect_form::{HiperdriveForm, HiperdriveLinkKind, VirtualHub};
-pub use discovery::{Discover, Discovery, DiscoveryAction, DiscoveryFinder, FoundDevice};
-pub use moves::Moves;
+pub use discovery::{Discovery, DiscoveryAction, DiscoveryFinder, DiscoveryStub, FoundDevice};
+pub use moves::DriveMotion;
 pub use record::Record;
 pub use request_state::RequestState;
 pub use review::{Review, ReviewState};
 pub use rows::Row;
-pub use ruler::{Measure, PositionRangeError, Ruler};
+pub use ruler::{PositionRangeError, PositionUnit, Ruler};
 pub use staged::{Differs, Edit, EditError, LimitsPolicy, Mark, SavedEdit, Staged, is_editable};
 pub use unit::Unit;

@@ -6,9 +6,11 @@ use super::{HiperdriveAction, Unit};
 use crate::app::action::Opened;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::{JobState, Services};
 use crate::app::session::{Phase, SessionEvents};
-use crate::app::{ActContext, DeviceMemory, DeviceModel, DriveMemory, EditStep, MotionControl, Recording, Tab, Text};
+use crate::app::{
+    ActionContext, DeviceMemory, DeviceModel, DriveMemory, EditStep, MotionControl, Recording, Tab, Text,
+};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 
@@ -18,7 +20,7 @@ impl DeviceModel for Unit {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
-        SessionEvents::let_go(self, JobEnd::Cancelled, services);
+        SessionEvents::let_go(self, JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));
         self.began = Some(opened.began.clone());
@@ -36,7 +38,7 @@ impl DeviceModel for Unit {
         self.submit(HiperdriveJob::Hello, services);
     }
 
-    fn act(&mut self, action: HiperdriveAction, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: HiperdriveAction, context: &mut ActionContext<'_>) {
         Unit::act(self, action, context.services);
     }
 
@@ -99,7 +101,7 @@ impl DeviceModel for Unit {
         Some(self)
     }
 
-    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
+    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
         Some(self)
     }
 }

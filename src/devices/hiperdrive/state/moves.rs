@@ -7,23 +7,23 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::devices::hiperdrive::jobs::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
+use crate::devices::hiperdrive::jobs::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    ARRIVAL_TIME, Effort, Ended, Lock, MotionKind, MotionRequest, Permit, Phase,
+    ARRIVAL_TIME, Ended, Lock, MotionKind, MotionRequest, Permit, Phase, SpeedTorque,
 };
-use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
-use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
+use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
 
 /// Motion of the drives of a session, as requested by the user.
-pub struct Moves {
+pub struct DriveMotion {
     /// Motion handle, present while the session is open.
     motion: Option<Motion>,
     view: MotionSnapshot,
     act: Option<Act>,
     /// Effort of jogs, for drives on which it differs from the default.
-    jogs: BTreeMap<DriveNumber, Effort>,
-    jobs: BTreeMap<DriveNumber, Effort>,
+    jogs: BTreeMap<DriveNumber, SpeedTorque>,
+    jobs: BTreeMap<DriveNumber, SpeedTorque>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
     /// Direction enabled to lead further outside the limits, for the next press and the press in progress.
@@ -57,9 +57,9 @@ enum Kind {
     Other,
 }
 
-impl Default for Moves {
+impl Default for DriveMotion {
     fn default() -> Self {
-        Moves {
+        DriveMotion {
             motion: None,
             view: MotionSnapshot::default(),
             act: None,
@@ -76,9 +76,9 @@ impl Default for Moves {
     }
 }
 
-impl Moves {
+impl DriveMotion {
     /// Begins a session. Unconfirmed limits remain unconfirmed, endless runs are not allowed yet, and jogs are slow
-    /// ([`Effort::JOG`]).
+    /// ([`SpeedTorque::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
@@ -145,7 +145,7 @@ impl Moves {
         std::mem::take(&mut self.taken)
     }
 
-    pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
+    pub(super) fn take_motion_end(&mut self) -> Option<(DriveNumber, Ended)> {
         let act = self.act.filter(|act| !act.is_reported)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
         if number < act.number {
@@ -196,16 +196,16 @@ impl Moves {
     /// Ends the jog when its button is released or no longer visible. The drive stops immediately, not at the next
     /// update.
     pub(crate) fn release(&mut self) {
-        self.stop_if(|kind| kind == Kind::Held);
+        self.stop_matching(|kind| kind == Kind::Held);
     }
 
     /// Ends any act that lasts until it is stopped, that is, a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
-        self.stop_if(|kind| matches!(kind, Kind::Held | Kind::Run));
+        self.stop_matching(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
 
-    fn stop_if(&mut self, which: impl FnOnce(Kind) -> bool) {
+    fn stop_matching(&mut self, which: impl FnOnce(Kind) -> bool) {
         let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
             motion.intend(act.drive, MotionRequest::Stop);
@@ -250,7 +250,7 @@ impl Moves {
     }
 
     /// Confirms the limits as shown to the user. Returns whether the confirmation took effect.
-    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
         self.look();
         counts
@@ -260,11 +260,11 @@ impl Moves {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
 
-    pub(super) fn set_jog_effort(&mut self, drive: DriveNumber, effort: Effort) {
+    pub(super) fn set_jog_effort(&mut self, drive: DriveNumber, effort: SpeedTorque) {
         self.jogs.insert(drive, effort);
     }
 
-    pub(super) fn set_move_effort(&mut self, drive: DriveNumber, effort: Effort) {
+    pub(super) fn set_move_effort(&mut self, drive: DriveNumber, effort: SpeedTorque) {
         self.jobs.insert(drive, effort);
     }
 
@@ -293,11 +293,11 @@ impl Moves {
     }
 
     /// Returns the state of a drive at the last update, or `None` without a cyclic connection.
-    pub fn drive(&self, drive: DriveNumber) -> Option<&DriveView> {
+    pub fn drive(&self, drive: DriveNumber) -> Option<&DriveSnapshot> {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
 
-    pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+    pub fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
         self.drive(drive).map(|own| own.actual)
     }
 
@@ -392,37 +392,37 @@ impl Moves {
     pub fn moving_drive(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
         let has_job =
-            |own: &&DriveView| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
+            |own: &&DriveSnapshot| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
         let busy = self.view.drives.iter().find(has_job).filter(|_| self.view.open);
         asked.or_else(|| busy.map(|own| own.number))
     }
 
-    pub fn jog_effort(&self, drive: DriveNumber) -> Effort {
-        self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
+    pub fn jog_effort(&self, drive: DriveNumber) -> SpeedTorque {
+        self.jogs.get(&drive).copied().unwrap_or(SpeedTorque::JOG)
     }
 
     /// Returns the speed and torque for moves, steps and runs.
-    pub fn move_effort(&self, drive: DriveNumber) -> Effort {
-        self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
+    pub fn move_effort(&self, drive: DriveNumber) -> SpeedTorque {
+        self.jobs.get(&drive).copied().unwrap_or(SpeedTorque::MOVE)
     }
 
     /// Returns the effort of a running jog, if any.
-    pub fn jogs_with(&self, drive: DriveNumber) -> Option<Effort> {
-        self.sent_effort(drive).filter(|_| self.is_jog(drive))
+    pub fn jogs_with(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+        self.active_effort(drive).filter(|_| self.is_jog(drive))
     }
 
     /// Returns the effort of a running move, step or run, if any.
-    pub fn moves_with(&self, drive: DriveNumber) -> Option<Effort> {
-        self.sent_effort(drive).filter(|_| !self.is_jog(drive))
+    pub fn moves_with(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+        self.active_effort(drive).filter(|_| !self.is_jog(drive))
     }
 
     fn is_jog(&self, drive: DriveNumber) -> bool {
         self.act.is_some_and(|act| act.drive == drive && act.kind == Kind::Held)
     }
 
-    fn sent_effort(&self, drive: DriveNumber) -> Option<Effort> {
+    fn active_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         let own = self.drive(drive).filter(|own| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_)))?;
-        Some(Effort { speed: own.sent.speed, torque: own.sent.torque })
+        Some(SpeedTorque { speed: own.sent.speed, torque: own.sent.torque })
     }
 
     pub fn is_expert(&self, drive: DriveNumber) -> bool {
@@ -430,7 +430,7 @@ impl Moves {
     }
 }
 
-fn moves(own: &DriveView) -> bool {
+fn moves(own: &DriveSnapshot) -> bool {
     own.actual.status.state() == State::Moving
         || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
 }

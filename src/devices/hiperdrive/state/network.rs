@@ -163,7 +163,7 @@ impl PowerUpAddress {
 
 /// Describes the effect of the settings after the next power-up and the consequences for the link. `host` is the
 /// present address of the device, if it is numeric.
-pub fn consequences(
+pub fn consequence_texts(
     switch: Option<AddressSwitch>,
     now: &NetworkSettings,
     wanted: &NetworkSettings,
@@ -293,7 +293,7 @@ mod tests {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let host = Some(Ipv4Addr::new(10, 0, 0, 7));
         let ids = |digits: u8, wanted: &NetworkSettings| {
-            let texts = consequences(AddressSwitch::parse(digits), &now, wanted, host);
+            let texts = consequence_texts(AddressSwitch::parse(digits), &now, wanted, host);
             for (_, text) in &texts {
                 for language in [Language::English, Language::German] {
                     let words = text.words(language);

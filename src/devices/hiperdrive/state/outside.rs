@@ -5,7 +5,7 @@ use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest, Outside, Permit};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, Outside, Permit, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -26,7 +26,7 @@ impl Unit {
     /// or position or limits are unknown.
     pub fn outside(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
-        let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
+        let degree = self.drive_limits(drive).map_or(1, |own| own.steps_per_degree());
         let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
         let outside = permit.outside(actual)?;
         let is_far = match outside {
@@ -37,7 +37,7 @@ impl Unit {
     }
 
     /// Returns the message for a drive outside its limits, or `None` if it is inside or at the end of its range.
-    pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
+    pub fn outside_limits_text(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
         let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
         let text = TEXTS.text(id).with_text("position", self.place(drive, own.position));
@@ -50,7 +50,7 @@ impl Unit {
     /// Explains why the drive may not be jogged.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
-        self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
+        self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward })
     }
 
     /// Returns whether this direction may lead further outside the limits and has not been enabled.
@@ -76,7 +76,7 @@ impl Unit {
     ///
     /// # Errors
     /// Explains why the drive would not accept a position outside the limits.
-    pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
+    pub fn reference_change(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));
         let position = becomes.ok_or_else(|| {

@@ -4,10 +4,10 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 use jiff::Zoned;
 
-use super::ruler::{Measure, Ruler};
+use super::ruler::{PositionUnit, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
 use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
@@ -22,7 +22,7 @@ pub(super) enum RecordedValue {
 
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: Track<RecordedValue>,
+    pub(super) track: DeviceRecorder<RecordedValue>,
     last: Option<DriveReading>,
     temperatures: Vec<Temperature>,
 }
@@ -34,7 +34,7 @@ impl Record {
     }
 
     pub(super) fn lose(&mut self, dropped: u64) {
-        self.track.note_dropped(dropped);
+        self.track.record_dropped(dropped);
     }
 
     /// Records a reading together with the target of the drive at that time.
@@ -97,9 +97,9 @@ impl Record {
 
 /// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
 fn meaning(ruler: Ruler) -> Meaning {
-    let mut meaning = Meaning::of_turns(None, ruler.scale.steps_per_turn());
-    if let Some(millimetres) = ruler.of(1, Measure::Millimetres) {
-        let linear = Meaning::of_millimetres(millimetres).scales;
+    let mut meaning = Meaning::for_turns(None, ruler.scale.steps_per_turn());
+    if let Some(millimetres) = ruler.of(1, PositionUnit::Millimetres) {
+        let linear = Meaning::for_millimetres(millimetres).scales;
         for (own, linear) in meaning.scales.iter_mut().zip(linear) {
             let in_millimetres = linear.into_iter().filter(|scale| !scale.unit.id().starts_with("unit.steps"));
             own.splice(0..0, in_millimetres);
@@ -115,7 +115,7 @@ impl Watchable for RecordedValue {
 
     /// Returns whether the recording can continue under another meaning. The pitch changes only how steps are
     /// displayed, whereas a step is a different distance under another scale.
-    fn continues(&self, other: &Self) -> bool {
+    fn can_continue_as(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,
             _ => self == other,

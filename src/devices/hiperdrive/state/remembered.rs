@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::ruler::Measure;
+use super::ruler::PositionUnit;
 use super::unit::Unit;
 use crate::app::{DriveMemory, RememberedDrives, SettingsReadState};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 pub(super) struct ExchangedValues {
     kept: RememberedDrives,
     pitches: BTreeMap<u8, u64>,
-    measure: Measure,
+    measure: PositionUnit,
     unsaved: BTreeMap<u16, i64>,
     unconfirmed: BTreeSet<DriveNumber>,
     /// Scales under which limits are unconfirmed, as last read.
@@ -20,7 +20,7 @@ pub(super) struct ExchangedValues {
 }
 
 impl DriveMemory for Unit {
-    fn remembered_as(&self) -> Option<String> {
+    fn storage_name(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
         Some(format!("{kind}{} {}", own.category, own.serial_number))
@@ -29,7 +29,7 @@ impl DriveMemory for Unit {
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
         let before = match self.exchanged.take() {
             Some(before) => before,
-            None => self.take_remembered(kept),
+            None => self.apply_remembered(kept),
         };
         let mut next = kept.clone();
         let now = self.remembered_values();
@@ -68,13 +68,13 @@ impl DriveMemory for Unit {
         self.marks
     }
 
-    fn set_marks(&mut self, marks: SettingsReadState) {
+    fn set_read_state(&mut self, marks: SettingsReadState) {
         self.marks = marks;
     }
 }
 
 impl Unit {
-    fn take_remembered(&mut self, kept: &RememberedDrives) -> ExchangedValues {
+    fn apply_remembered(&mut self, kept: &RememberedDrives) -> ExchangedValues {
         for (drive, nanometres) in &kept.pitches {
             if let Some(drive) = DriveNumber::new(*drive) {
                 self.pitches.entry(drive).or_insert(Length { nanometres: *nanometres });

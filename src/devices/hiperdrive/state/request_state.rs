@@ -1,14 +1,14 @@
 //! Requests that a drive accepts at present, the reasons against others, and the state of the last one.
 
 use super::action::Motor;
-use super::ruler::Measure;
+use super::ruler::PositionUnit;
 use super::unit::Unit;
 use crate::app::number::decimals_of;
 use crate::app::services::Services;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::DriveLimits;
-use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, MotionRequest, Phase as Doing};
+use crate::devices::hiperdrive::procedures::dead_man::{Lock, MotionRequest, Phase as Doing, TargetState};
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEED;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -27,7 +27,7 @@ impl Unit {
     /// # Errors
     /// Explains why the connection cannot be opened.
     pub fn check_can_take_control(&self) -> Result<(), Text> {
-        match self.session.why_not_ready() {
+        match self.session.not_ready_reason() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
@@ -154,8 +154,9 @@ impl Unit {
     }
 
     pub fn moving_drives(&self) -> Vec<DriveNumber> {
-        let moves =
-            |drive: &DriveNumber| self.moves.is_drive_moving(*drive) || self.state_now(*drive) == Some(State::Moving);
+        let moves = |drive: &DriveNumber| {
+            self.moves.is_drive_moving(*drive) || self.polled_state(*drive) == Some(State::Moving)
+        };
         self.drives().into_iter().filter(moves).collect()
     }
 
@@ -168,8 +169,8 @@ impl Unit {
     /// Degrees are included only if selected.
     pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
-        let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
-        let place = |own: Measure| {
+        let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
+        let place = |own: PositionUnit| {
             let value = ruler.of(i64::from(steps), own)?;
             let decimals = decimals_of(value, ruler.decimals(own).min(4));
             let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
@@ -189,7 +190,7 @@ impl Unit {
     fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
-        let (value, measure) = value.map_or((f64::from(steps), Measure::Steps), |value| (value, self.measure));
+        let (value, measure) = value.map_or((f64::from(steps), PositionUnit::Steps), |value| (value, self.measure));
         (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
@@ -216,10 +217,10 @@ impl Unit {
     /// A fault is left by acknowledging it, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
-            State::NotReady => Some(Motor::Lead(Goal::Off)),
-            State::Ready => Some(Motor::Lead(Goal::Ready)),
-            State::Operational => Some(Motor::Lead(Goal::Operational)),
-            State::Enabled => Some(Motor::Lead(Goal::Enabled)),
+            State::NotReady => Some(Motor::Lead(TargetState::Off)),
+            State::Ready => Some(Motor::Lead(TargetState::Ready)),
+            State::Operational => Some(Motor::Lead(TargetState::Operational)),
+            State::Enabled => Some(Motor::Lead(TargetState::Enabled)),
             State::Locked => Some(Motor::Acknowledge),
             State::Moving | State::Fault => None,
         }
@@ -245,7 +246,7 @@ impl Unit {
     }
 
     /// Returns the speed for a percentage, based on parameter 166.
-    pub fn speed_of(&self, percent: Percent) -> Option<Text> {
+    pub fn speed_text(&self, percent: Percent) -> Option<Text> {
         let most = self.number(self.drive(), MAXIMUM_SPEED)?;
         // Tenths of rpm, and percent.
         let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
@@ -253,7 +254,7 @@ impl Unit {
     }
 
     /// Returns the torque that the drive applies for a percentage, rounded up to the next 25 %.
-    pub fn torque_of(&self, percent: Percent) -> Option<Text> {
+    pub fn torque_text(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))
     }

@@ -2,11 +2,11 @@
 
 use super::axis::words::millimetres;
 use super::network::PowerUpAddress;
-use super::ruler::{Measure, Ruler};
+use super::ruler::{PositionUnit, Ruler};
 use super::words;
 use crate::app::explain::plain;
 use crate::app::number::decimals_of;
-use crate::app::review::{self, OperationTexts, Permit, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::Written;
@@ -20,7 +20,7 @@ use crate::profile::Plan;
 pub type Review = review::Review<Hiperdrive>;
 pub type ReviewState = review::ReviewState<Hiperdrive>;
 
-impl Reviewed for Hiperdrive {
+impl Reviewable for Hiperdrive {
     type Change = Change;
     type Prepared = Prepared;
     type Written = Written;
@@ -35,7 +35,7 @@ impl Reviewed for Hiperdrive {
     }
 
     fn op(prepared: &Prepared, op: &Op) -> OperationTexts {
-        op_words(prepared, op, |_| None)
+        operation_texts(prepared, op, |_| None)
     }
 
     fn leaves_mounting(prepared: &Prepared) -> bool {
@@ -96,7 +96,11 @@ impl Reviewed for Hiperdrive {
 }
 
 /// Describes an operation. Positions are in millimetres if the spindle pitch of the drive is known.
-pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OperationTexts {
+pub(super) fn operation_texts(
+    prepared: &Prepared,
+    op: &Op,
+    pitch: impl Fn(DriveNumber) -> Option<Length>,
+) -> OperationTexts {
     let mut words = explained::op(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
         let now = prepared.plan.base.image();
@@ -125,7 +129,7 @@ fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Len
             }
             let turns = value as f64 / scale.steps_per_turn();
             let text = TEXTS.text("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
-            Some(text.with_text("unit", TEXTS.text(Measure::Turns.unit())))
+            Some(text.with_text("unit", TEXTS.text(PositionUnit::Turns.unit())))
         }
         _ => words::meaning(number, value),
     }

@@ -1,6 +1,6 @@
 //! Parameters as table rows: value, allowed range, factory setting and edit of each.
 
-use super::ruler::Measure;
+use super::ruler::PositionUnit;
 use super::staged::is_editable;
 use super::unit::Unit;
 use super::words;
@@ -48,7 +48,7 @@ pub struct Row {
 
 impl Row {
     /// Explains why the parameter cannot be edited as a value, or returns `None` if it can.
-    pub fn why_not_editable(&self) -> Option<Text> {
+    pub fn not_editable_reason(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
             Access::Read => "hd_entry.only_read",
@@ -63,7 +63,7 @@ impl Unit {
     /// contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
         let number = |row: &ParameterRow| match of {
-            Some(drive) => ParameterNumber::of_drive(row.number, drive),
+            Some(drive) => ParameterNumber::for_drive(row.number, drive),
             None => ParameterNumber::new(row.number).filter(|number| number.drive().is_none()),
         };
         let rows = PARAMETERS.iter().filter_map(|row| Some((number(row)?, row)));
@@ -158,7 +158,7 @@ impl Unit {
             // Positions in the edited scale.
             (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
                 let ruler = self.requested_ruler(drive);
-                let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };
+                let measure = if ruler.pitch.is_some() { PositionUnit::Millimetres } else { PositionUnit::Turns };
                 let place = ruler.of(*value, measure)?;
                 let text = TEXTS.text("hd_entry.place").with_number(
                     "value",

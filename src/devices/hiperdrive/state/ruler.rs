@@ -1,6 +1,6 @@
 //! Conversion between the steps of a drive and the user's units: turns, degrees, millimetres of a spindle.
 
-pub use crate::app::Measure;
+pub use crate::app::PositionUnit;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,33 +27,33 @@ impl Ruler {
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
     /// Returns the number of steps per unit, or `None` for millimetres without a pitch.
-    fn steps_in(self, measure: Measure) -> Option<f64> {
+    fn steps_per_measure(self, measure: PositionUnit) -> Option<f64> {
         let turn = self.scale.steps_per_turn();
         match measure {
-            Measure::Steps => Some(1.0),
-            Measure::Turns => Some(turn),
-            Measure::Degrees => Some(turn / 360.0),
-            Measure::Millimetres => {
+            PositionUnit::Steps => Some(1.0),
+            PositionUnit::Turns => Some(turn),
+            PositionUnit::Degrees => Some(turn / 360.0),
+            PositionUnit::Millimetres => {
                 self.pitch.filter(|own| own.nanometres > 0).map(|own| turn * 1e6 / own.nanometres as f64)
             }
         }
     }
 
-    pub fn measures(self) -> impl Iterator<Item = Measure> {
-        Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
+    pub fn measures(self) -> impl Iterator<Item = PositionUnit> {
+        PositionUnit::ALL.into_iter().filter(move |measure| self.steps_per_measure(*measure).is_some())
     }
 
     /// Converts steps to a unit. Returns `None` for millimetres without a pitch.
-    pub fn of(self, steps: i64, measure: Measure) -> Option<f64> {
-        Some(steps as f64 / self.steps_in(measure)?)
+    pub fn of(self, steps: i64, measure: PositionUnit) -> Option<f64> {
+        Some(steps as f64 / self.steps_per_measure(measure)?)
     }
 
     /// Returns the step nearest to a position.
     ///
     /// # Errors
     /// Returns [`PositionRangeError`] if there is none.
-    pub fn steps(self, value: f64, measure: Measure) -> Result<i32, PositionRangeError> {
-        let unit = self.steps_in(measure).ok_or(PositionRangeError::NoPitch)?;
+    pub fn steps(self, value: f64, measure: PositionUnit) -> Result<i32, PositionRangeError> {
+        let unit = self.steps_per_measure(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
         // Within the range the cast is exact.
@@ -65,8 +65,8 @@ impl Ruler {
     }
 
     /// Returns the number of decimals that distinguishes all steps.
-    pub fn decimals(self, measure: Measure) -> usize {
-        let unit = self.steps_in(measure).unwrap_or(1.0);
+    pub fn decimals(self, measure: PositionUnit) -> usize {
+        let unit = self.steps_per_measure(measure).unwrap_or(1.0);
         // At most 9: steps per turn have five digits in addition to those of 256.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
@@ -95,23 +95,23 @@ mod tests {
     #[test]
     fn steps_convert_to_every_unit() {
         let of = |ruler: Ruler, steps, measure| ruler.of(steps, measure).unwrap();
-        assert_eq!(of(SPINDLE, 163_840, Measure::Turns), 2.5);
-        assert_eq!(of(SPINDLE, -16_384, Measure::Degrees), -90.0);
-        assert_eq!(of(SPINDLE, 163_840, Measure::Millimetres), 10.0);
-        assert_eq!(of(hundredths(), 1234, Measure::Millimetres), 12.34);
-        assert_eq!(Ruler::FACTORY.of(1, Measure::Millimetres), None);
+        assert_eq!(of(SPINDLE, 163_840, PositionUnit::Turns), 2.5);
+        assert_eq!(of(SPINDLE, -16_384, PositionUnit::Degrees), -90.0);
+        assert_eq!(of(SPINDLE, 163_840, PositionUnit::Millimetres), 10.0);
+        assert_eq!(of(hundredths(), 1234, PositionUnit::Millimetres), 12.34);
+        assert_eq!(Ruler::FACTORY.of(1, PositionUnit::Millimetres), None);
         assert_eq!(Ruler::FACTORY.measures().count(), 3);
         assert_eq!(SPINDLE.measures().count(), 4);
     }
 
     #[test]
     fn typed_values_become_the_nearest_step() {
-        assert_eq!(hundredths().steps(12.344, Measure::Millimetres), Ok(1234));
-        assert_eq!(hundredths().steps(-0.005, Measure::Millimetres), Ok(-1));
-        assert_eq!(SPINDLE.steps(90.0, Measure::Degrees), Ok(16_384));
-        assert_eq!(Ruler::FACTORY.steps(1.0, Measure::Millimetres), Err(PositionRangeError::NoPitch));
+        assert_eq!(hundredths().steps(12.344, PositionUnit::Millimetres), Ok(1234));
+        assert_eq!(hundredths().steps(-0.005, PositionUnit::Millimetres), Ok(-1));
+        assert_eq!(SPINDLE.steps(90.0, PositionUnit::Degrees), Ok(16_384));
+        assert_eq!(Ruler::FACTORY.steps(1.0, PositionUnit::Millimetres), Err(PositionRangeError::NoPitch));
         // 32768 turns do not fit: 2³¹ / 65536.
-        let beyond = SPINDLE.steps(32_768.0, Measure::Turns).unwrap_err();
+        let beyond = SPINDLE.steps(32_768.0, PositionUnit::Turns).unwrap_err();
         assert!(
             matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
         );
@@ -119,12 +119,12 @@ mod tests {
 
     #[test]
     fn decimals_distinguish_adjacent_steps() {
-        assert_eq!(hundredths().decimals(Measure::Millimetres), 2);
-        assert_eq!(SPINDLE.decimals(Measure::Steps), 0);
+        assert_eq!(hundredths().decimals(PositionUnit::Millimetres), 2);
+        assert_eq!(SPINDLE.decimals(PositionUnit::Steps), 0);
         // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
-        assert_eq!(SPINDLE.decimals(Measure::Turns), 5);
-        assert_eq!(SPINDLE.decimals(Measure::Degrees), 3);
-        assert_eq!(SPINDLE.decimals(Measure::Millimetres), 5);
+        assert_eq!(SPINDLE.decimals(PositionUnit::Turns), 5);
+        assert_eq!(SPINDLE.decimals(PositionUnit::Degrees), 3);
+        assert_eq!(SPINDLE.decimals(PositionUnit::Millimetres), 5);
     }
 
     #[test]

@@ -3,15 +3,15 @@
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
 
-use super::axis::{Axis, AxisAction, AxisStep, Button, Device, DriveFacts, DriveRequest, report};
+use super::axis::{Axis, AxisAction, AxisButton, AxisStep, Device, DriveFacts, DriveRequest, report};
 use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::action::{Action as StudioAction, Done};
 use crate::app::services::Services;
-use crate::app::session::{Phase, Source, WithMemory};
+use crate::app::session::{HasMemory, Phase, Source};
 use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, SpeedTorque};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
@@ -33,7 +33,7 @@ impl Unit {
     /// # Errors
     /// Explains why the drive cannot be set up.
     pub fn check_can_set_up(&self) -> Result<(), Text> {
-        match self.session.why_not_ready() {
+        match self.session.not_ready_reason() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.survey.is_none() || self.number(self.drive(), NUMERATOR).is_none() => {
@@ -48,7 +48,7 @@ impl Unit {
     /// # Errors
     /// Explains why no change can be planned.
     pub fn check_can_plan(&self) -> Result<(), Text> {
-        self.session.why_not_ready().map_or(Ok(()), Err)
+        self.session.not_ready_reason().map_or(Ok(()), Err)
     }
 
     pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
@@ -70,8 +70,8 @@ impl Unit {
             actual_at: self.actual_at(drive),
             position,
             values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
-            unsaved: self.unsaved_of(drive),
-            times_set: self.times_set(drive),
+            unsaved: self.unsaved_values(drive),
+            times_set: self.position_set_count(drive),
             requested: self.number(drive, REQUESTED).map(|value| value == 1),
             scale: self.scale(drive),
             pitch: self.pitch(drive),
@@ -116,7 +116,7 @@ impl Unit {
                 Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
                 Err(why) => self.report_drive_message(drive, Severity::Warning, vec![why], services),
             },
-            AxisAction::TakePlace => axis.take_limit(&seen),
+            AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
                 // Until now the entries served only for a preview. From now on positions are measured on this spindle
                 // everywhere.
@@ -175,7 +175,7 @@ impl Unit {
     fn carry_out(
         &mut self,
         drive: DriveNumber,
-        button: Button,
+        button: AxisButton,
         ask: DriveRequest,
         seen: &DriveFacts,
         services: &mut Services,
@@ -183,7 +183,7 @@ impl Unit {
         match &ask {
             DriveRequest::Try(values) | DriveRequest::Restore(values) => {
                 let numbered =
-                    |(number, value): &(u16, i64)| Some((ParameterNumber::of_drive(*number, drive)?, *value));
+                    |(number, value): &(u16, i64)| Some((ParameterNumber::for_drive(*number, drive)?, *value));
                 let image = Image { values: values.iter().filter_map(numbered).collect() };
                 self.plan(Change::Try(Box::new(image)), services);
             }
@@ -206,12 +206,12 @@ impl Unit {
             DriveRequest::Take => self.act(super::HiperdriveAction::Take, services),
             DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
             DriveRequest::Move(target) => {
-                let request = MotionRequest::Move { target: *target, effort: Effort::JOG };
+                let request = MotionRequest::Move { target: *target, effort: SpeedTorque::JOG };
                 if let Err(why) = self.check_motion_allowed(drive, request) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
                 let act = self.moves.want(drive, request);
-                if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
+                if let (Some(act), AxisButton::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
                     axis.note_test_move(place, *target, act);
                 }
                 return;

@@ -71,7 +71,7 @@ pub fn is_editable(row: &ParameterRow) -> bool {
 
 impl Staged {
     /// Creates the edits of a profile, to which missing values can be added.
-    pub fn of_profile(image: Image) -> Self {
+    pub fn for_profile(image: Image) -> Self {
         Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 

@@ -4,10 +4,10 @@
 use super::staged::is_editable;
 use super::unit::Unit;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, WithMemory};
+use crate::app::session::{HasDraft, HasMemory, HasProfile};
 use crate::app::{SettingsReadState, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
-use crate::devices::hiperdrive::procedures::{DriveLimits, DriveReading, Identity, LimitsSeen, Survey};
+use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits, DriveReading, Identity, Survey};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR, REFERENCE};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
@@ -16,13 +16,13 @@ use crate::devices::hiperdrive::state::explain as words;
 
 impl Unit {
     /// Adopts a reading of the device. Edits are kept unless they belong to another device.
-    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+    pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
-            self.replaced_by(&survey.identity.serial_number, services);
+            self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         let image = image(&survey);
-        self.notice_scales(&image);
+        self.handle_scale_change(&image);
         self.session.title = Some(title(&survey.identity));
         self.unsaved.read(&survey.values);
         let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
@@ -52,7 +52,7 @@ impl Unit {
     }
 
     /// Marks limits as unconfirmed after a change of scale.
-    pub(super) fn notice_scales(&mut self, now: &Image) {
+    pub(super) fn handle_scale_change(&mut self, now: &Image) {
         let Some(before) = self.staged.base() else { return };
         let is_other = |drive: &DriveNumber| {
             let scales = before.scale(*drive).zip(now.scale(*drive));
@@ -65,7 +65,7 @@ impl Unit {
 
     /// Reads everything again if the limits that the worker reads under control differ from the table of parameters;
     /// also when control is taken.
-    pub(super) fn notice_limits(&mut self) {
+    pub(super) fn handle_limit_change(&mut self) {
         if self.moves.take_control_taken() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
         }
@@ -82,7 +82,7 @@ impl Unit {
         held.and_then(DriveLimits::seen).is_some_and(|own| {
             let shown = self.staged.base();
             let scale =
-                shown.and_then(|image| image.of_drive(drive, NUMERATOR).zip(image.of_drive(drive, DENOMINATOR)));
+                shown.and_then(|image| image.for_drive(drive, NUMERATOR).zip(image.for_drive(drive, DENOMINATOR)));
             Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
         }) || held
             .and_then(|own| own.rules().reference)
@@ -113,7 +113,7 @@ impl Unit {
     }
 
     /// Returns the displayed limits of a drive, as they would be confirmed.
-    fn limits_to_confirm_now(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
+    fn limits_to_confirm_now(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
@@ -124,7 +124,7 @@ impl Unit {
         // As shown, before another update: later changes were not seen.
         let shown = self.limits_to_confirm_now(drive);
         self.moves.look();
-        self.notice_limits();
+        self.handle_limit_change();
         let counts = self.limits_to_confirm_now(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
             counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
@@ -138,11 +138,11 @@ impl Unit {
     pub(super) fn take_reading(&mut self, reading: DriveReading) {
         let before = self.actual(reading.drive).map(|own| own.status.state());
         self.readings.insert(reading.drive, reading);
-        self.notice_fault(reading.drive, before);
+        self.request_fault_cause(reading.drive, before);
     }
 
     /// Requests the cause of a fault if the drive has failed since the state `before`.
-    pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
+    pub(super) fn request_fault_cause(&mut self, drive: DriveNumber, before: Option<State>) {
         if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
             self.looks_at_errors = true;
         }

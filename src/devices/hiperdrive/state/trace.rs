@@ -13,7 +13,7 @@ use crate::link::{Direction, TraceEntry};
 
 pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
-    let broken = |error| Explained::broken(explained::damage(&Damage::Packet(error)));
+    let broken = |error| Explained::broken(explained::damage_text(&Damage::Packet(error)));
     let frame = match Frame::parse(&bytes) {
         Ok(frame) => frame,
         Err(error) => return broken(error),
@@ -32,7 +32,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
         Err(_) => return name.into(),
     };
     let Some(message) = body.message() else {
-        return if is_reply { Explained::broken(explained::damage(&Damage::Empty)) } else { name.into() };
+        return if is_reply { Explained::broken(explained::damage_text(&Damage::Empty)) } else { name.into() };
     };
     if !is_reply {
         return Request::parse(message).map_or(name, |request| vec![item_text(&request)]).into();

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use jiff::Zoned;
 
 use super::axis::Axis;
-use super::moves::Moves;
+use super::moves::DriveMotion;
 use super::record::Record;
 use super::remembered::ExchangedValues;
-use super::ruler::{Measure, Ruler};
+use super::ruler::{PositionUnit, Ruler};
 use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
@@ -25,7 +25,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     POSITION, SPEED, SPEED_DENOMINATOR, SPEED_NUMERATOR, STATUS,
 };
 use crate::devices::hiperdrive::protocol::{
-    Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
+    ActualValues, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
 use crate::devices::hiperdrive::sim::Target;
 use crate::units::Moment;
@@ -40,8 +40,8 @@ pub struct Unit {
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// Start of the session, to which the times of recordings refer.
     pub(super) began: Option<Zoned>,
-    pub moves: Moves,
-    pub measure: Measure,
+    pub moves: DriveMotion,
+    pub measure: PositionUnit,
     pub refusal: Option<Text>,
     pub target: Option<Target>,
     /// Whether the temperature of the device is recorded with the position.
@@ -81,8 +81,8 @@ impl Unit {
             record: Record::default(),
             records: BTreeMap::new(),
             began: None,
-            moves: Moves::default(),
-            measure: Measure::default(),
+            moves: DriveMotion::default(),
+            measure: PositionUnit::default(),
             refusal: None,
             target: None,
             watches_device: false,
@@ -175,7 +175,7 @@ impl Unit {
 
     /// Returns the value of a numeric parameter of a drive as last read, given the parameter number for drive 1.
     pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
-        match self.value(ParameterNumber::of_drive(number, drive)?)? {
+        match self.value(ParameterNumber::for_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
             Value::Text(_) => None,
         }
@@ -186,7 +186,7 @@ impl Unit {
     }
 
     /// Returns the last data received from a drive over the cyclic connection or by polling.
-    pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+    pub fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are void once the connection is lost.
         let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
@@ -202,8 +202,8 @@ impl Unit {
         }
     }
 
-    fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {
-        Some(Actual {
+    fn surveyed(&self, drive: DriveNumber) -> Option<ActualValues> {
+        Some(ActualValues {
             status: StatusWord::new(u16::try_from(self.number(drive, STATUS)?).ok()?),
             speed: i16::try_from(self.number(drive, SPEED)?).ok()?,
             position: i32::try_from(self.number(drive, POSITION)?).ok()?,
@@ -216,11 +216,11 @@ impl Unit {
 
     /// Returns whether a drive is known to be moving or about to move.
     pub fn is_moving(&self) -> bool {
-        self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
+        self.moves.is_moving() || self.drives().into_iter().any(|drive| self.polled_state(drive) == Some(State::Moving))
     }
 
     /// Returns the polled state of a drive, or `None` if the drive is not being polled.
-    pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
+    pub fn polled_state(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
         let read = self.readings.get(&drive).filter(|_| is_polled).map(|reading| reading.actual);

@@ -71,7 +71,7 @@ impl Unsaved {
     }
 
     /// Returns the saved values of a drive, by their numbers for drive 1.
-    fn of_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
+    fn for_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         let own = |(number, before): (&u16, &i64)| {
             let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
             Some((number.base(), *before))
@@ -82,12 +82,12 @@ impl Unsaved {
 
 impl Unit {
     /// Returns the saved values of a drive that have been overwritten since, by their numbers for drive 1.
-    pub(super) fn unsaved_of(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
-        self.unsaved.of_drive(drive)
+    pub(super) fn unsaved_values(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
+        self.unsaved.for_drive(drive)
     }
 
     /// Returns how often this program has set the position of a drive.
-    pub(super) fn times_set(&self, drive: DriveNumber) -> u32 {
+    pub(super) fn position_set_count(&self, drive: DriveNumber) -> u32 {
         self.unsaved.set.get(&drive).copied().unwrap_or_default()
     }
 }
@@ -124,17 +124,17 @@ mod tests {
             now = now.with(&image(&[(366, speed)]));
             own.read(&values(&now));
         }
-        assert_eq!(own.of_drive(three), BTreeMap::from([(166, 350)]));
-        assert!(own.of_drive(DriveNumber::FIRST).is_empty());
+        assert_eq!(own.for_drive(three), BTreeMap::from([(166, 350)]));
+        assert!(own.for_drive(DriveNumber::FIRST).is_empty());
         let mut later = Unsaved::default();
         later.extend(own.saved());
-        assert_eq!(later.of_drive(three), BTreeMap::from([(166, 350)]));
+        assert_eq!(later.for_drive(three), BTreeMap::from([(166, 350)]));
         // It has lost its supply, or the values were written back.
         later.read(&values(&factory));
-        assert!(later.of_drive(three).is_empty());
+        assert!(later.for_drive(three).is_empty());
         let plan = plan_service(&now, Service::Save);
         own.begin(&plan);
         own.done(&plan);
-        assert!(own.of_drive(three).is_empty());
+        assert!(own.for_drive(three).is_empty());
     }
 }

@@ -1,18 +1,18 @@
 //! Writing to a device: edits or a profile as a request, and its jobs.
 
 use super::record::Record;
-use super::review::{Review, op_words};
-use super::ruler::Measure;
+use super::review::{Review, operation_texts};
+use super::ruler::PositionUnit;
 use super::unit::Unit;
 use super::unsaved::Unsaved;
 use super::words;
 use crate::app::review::OperationTexts;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, some, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared};
 use crate::devices::hiperdrive::profile::{
-    HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
+    HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, type_differences,
 };
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::{Body, ProfileError};
@@ -24,9 +24,9 @@ impl Unit {
     }
 }
 
-impl WithMemory for Unit {
+impl HasMemory for Unit {
     fn op(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
-        op_words(prepared, op, |drive| self.pitch(drive))
+        operation_texts(prepared, op, |drive| self.pitch(drive))
     }
 
     fn edited_change(&self) -> Option<Change> {
@@ -41,7 +41,7 @@ impl WithMemory for Unit {
 
     fn is_for_another_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
-        !other_types(&profile.identity, &own.profile()).is_empty()
+        !type_differences(&profile.identity, &own.profile()).is_empty()
     }
 
     fn prepare(change: Change) -> HiperdriveJob {
@@ -76,11 +76,11 @@ impl WithMemory for Unit {
         self.pitches.clear();
         self.axes.clear();
         self.unsaved = Unsaved::default();
-        (self.exchanged, self.measure) = (None, Measure::default());
+        (self.exchanged, self.measure) = (None, PositionUnit::default());
     }
 }
 
-impl Saved for Unit {
+impl HasProfile for Unit {
     fn read_all() -> HiperdriveJob {
         HiperdriveJob::Save
     }
@@ -103,7 +103,7 @@ impl Saved for Unit {
         let kept = survey.identity.stored_parameters().filter_map(|number| Some((number, base.get(number)?)));
         let image = Image { values: kept.collect() };
         let profile = HiperdriveProfile::of(survey.identity.profile(), image);
-        let remarks = without_edits(self.staged.count()).into_iter().collect();
+        let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

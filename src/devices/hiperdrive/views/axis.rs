@@ -13,7 +13,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisStep, Button, DriveFacts, End, Entries, Reached, end_lines, words,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, Reached, end_lines, words,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
@@ -38,7 +38,7 @@ impl AxisUiState {
     }
 }
 
-pub(crate) struct AxisPicture<'a> {
+pub(crate) struct AxisPanel<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a DriveFacts,
@@ -46,12 +46,19 @@ pub(crate) struct AxisPicture<'a> {
     looked_at: Duration,
 }
 
-impl AxisPicture<'_> {
+impl AxisPanel<'_> {
     fn push(&self, actions: &mut Vec<Action>, action: Run) {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
+    fn button(
+        &self,
+        ui: &mut Ui,
+        theme: &Theme,
+        own: AxisButton,
+        (icon, word): (&str, &str),
+        actions: &mut Vec<Action>,
+    ) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
         if allowed_button(ui, theme, &allowed, icon, word).clicked() {
             self.push(actions, Run::Press(own));
@@ -73,7 +80,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     };
     let seen = unit.seen(unit.drive());
     let looked_at = view.age(axis.step(), ui.input(|input| input.time));
-    let shown = AxisPicture { unit, axis, seen: &seen, looked_at };
+    let shown = AxisPanel { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.end() {
         end_ui(ui, theme, &shown, end, actions);
         theme.gap(ui);
@@ -134,7 +141,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
         let state = match reached {
@@ -161,7 +168,7 @@ fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
-fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
     if shown.looked_at.is_zero() {
@@ -196,7 +203,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
 }
 
 /// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
-fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
+fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.invalidated_text().map(words::invalidated_text);
     if let Some(why) = words::fault(seen) {
@@ -222,7 +229,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     }
 }
 
-fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
         let position = shown.seen.position.map_or_else(
@@ -245,7 +252,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
 }
 
 /// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled, which stops the motion.
-fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();
@@ -268,7 +275,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
     });
 }
 
-fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
@@ -294,7 +301,7 @@ fn at_the_right_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 }
 
 /// Draws the end of the procedure: possible next steps, what was written, and whether it is saved.
-fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
     card(ui, theme, TEXTS.text(title), |ui| {
@@ -325,9 +332,9 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions
     });
 }
 
-fn recall_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn recall_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let word = say(theme, "hd_axis.recall");
-    shown.button(ui, theme, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
+    shown.button(ui, theme, AxisButton::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
 fn notes_ui(ui: &mut Ui, theme: &Theme) {

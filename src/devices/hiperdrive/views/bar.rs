@@ -7,8 +7,8 @@ use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, name, paragraph, two_lines};
-use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
+use crate::ui::controls::{allowed_button, message_label, name, paragraph};
+use crate::ui::stop_debounce::{goes_down, means_motion, press_time};
 use crate::ui::{Theme, icons};
 
 /// Size of the STOP button, wide enough for a flat hand.
@@ -55,7 +55,7 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         (None, None) if unit.moves.is_open() => (say(theme, "hd_bar.in_control"), palette.good),
         (None, None) => (say(theme, "hd_bar.watching"), palette.muted),
     };
-    two_lines(ui, theme, words, ink.into());
+    message_label(ui, theme, words, ink.into());
 }
 
 /// Draws the STOP button, which can be pressed only if it has an effect.
@@ -73,7 +73,7 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let pressed = goes_down(ui, &response);
     if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
-        means_motion(ui.ctx(), studio.is_turned_by_hand(), pressed_at(ui, pressed));
+        means_motion(ui.ctx(), studio.is_turned_by_hand(), press_time(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }
@@ -99,7 +99,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
 
 fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
-    let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };
+    let state = if moves { Some(State::Moving) } else { unit.polled_state(drive) };
     // All signs have the same width: no button moves when a drive changes its state.
     let (sign, colour) = match state {
         Some(State::Moving) => (icons::PLAY, palette.accent),

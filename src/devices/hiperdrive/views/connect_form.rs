@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
     Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveLinkKind, TEXTS, VirtualHub,
@@ -60,7 +60,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
                 choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(theme, id))));
             });
-            let (_, rest) = HiperdriveForm::of_the_link();
+            let (_, rest) = HiperdriveForm::link_entries();
             typed(ui, theme, say, rest, &mut form.typed);
         }
     }
@@ -81,7 +81,7 @@ fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
 }
 
 fn interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
-    let (interval, _) = HiperdriveForm::of_the_link();
+    let (interval, _) = HiperdriveForm::link_entries();
     typed(ui, theme, say, interval, &mut form.typed);
 }
 

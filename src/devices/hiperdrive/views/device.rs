@@ -8,7 +8,9 @@ use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, empty, enabled_button, folding_card, paragraph, row, two_columns};
+use crate::ui::controls::{
+    card, card_with, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
+};
 use crate::ui::{Theme, icons};
 
 const SERVICES: [(Service, &str); 5] = [
@@ -55,7 +57,7 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action
     };
     card_with(ui, theme, TEXTS.text("hd_device.title"), read, |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, theme, &say(theme, "hd_device.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_device.nothing"), None);
             return;
         };
         ui.label(theme.value(&identity.category));
@@ -75,11 +77,11 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action
 fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, theme, &say(theme, "hd_device.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_device.nothing"), None);
             return;
         };
         if identity.drives.is_empty() {
-            empty(ui, theme, &say(theme, "hd_drives.none"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_drives.none"), None);
         }
         for drive in &identity.drives {
             ui.horizontal_wrapped(|ui| {

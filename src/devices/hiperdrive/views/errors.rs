@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card, card_with, empty_placeholder, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
@@ -42,7 +42,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
     };
     card_with(ui, theme, TEXTS.text("hd_errors.title"), read, |ui| {
         let Some(status) = unit.drive_status(drive) else {
-            empty(ui, theme, &say(theme, "hd_errors.unread"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_errors.unread"), None);
             return;
         };
         let codes = status.buffer.iter().filter(|code| **code != ErrorCode::NONE);
@@ -73,7 +73,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
 fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_health.title"), |ui| {
         let Some(status) = unit.drive_status(unit.drive()) else {
-            empty(ui, theme, &say(theme, "hd_errors.unread"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_errors.unread"), None);
             return;
         };
         let names = ["hd_health.error_word", "hd_health.motion_status", "hd_health.communication"];

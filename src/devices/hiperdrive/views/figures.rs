@@ -8,13 +8,13 @@ use crate::devices::hiperdrive::protocol::{ControlBit, DriveNumber, StatusBit};
 use crate::devices::hiperdrive::state::{TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, empty, folding_card, paragraph, row};
+use crate::ui::controls::{card, empty_placeholder, folding_card, paragraph, row};
 use crate::ui::widgets::series;
 
 pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
     folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
-            empty(ui, theme, &say(theme, "hd_words.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_words.nothing"), None);
             return;
         };
         let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
@@ -38,7 +38,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         let view = unit.moves.view();
         let link = &view.link;
         if link.sent == 0 {
-            empty(ui, theme, &say(theme, "hd_link.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_link.nothing"), None);
             return;
         }
         let milliseconds = theme.number(link.interval.as_secs_f64() * 1e3, 1);

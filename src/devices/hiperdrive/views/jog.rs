@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{allowed_button, card, folding_card, paragraph, problem_below};
+use crate::ui::controls::{allowed_button, card, folding_card, paragraph, show_error_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 const PAD: f32 = 56.0;
@@ -59,7 +59,7 @@ pub(super) fn step_card_ui(
                 }
             }
         });
-        problem_below(ui, theme, view.step_problem.as_ref());
+        show_error_below(ui, theme, view.step_problem.as_ref());
         paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_step.words")));
     });
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, PortLight};
+use crate::devices::hiperdrive::protocol::{DriveLedState, NetworkLed, NetworkLedState, PortLedState};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::leds::{Led, Leds};
 use crate::devices::hiperdrive::views::say;
@@ -74,15 +74,15 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);
-    paint_paint(painter, theme, middle, look(theme, leds, lamp));
+    paint_led(painter, theme, middle, look(theme, leds, lamp));
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
         Led::Drives if leds.hub && leds.s3 != 0 => {
             theme.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
         }
         Led::Drives => say(theme, "hd_led.what_drives"),
-        Led::Bus(BusLamp::Module) => say(theme, "hd_led.what_module"),
-        Led::Bus(BusLamp::Network) => say(theme, "hd_led.what_network"),
+        Led::Bus(NetworkLed::Module) => say(theme, "hd_led.what_module"),
+        Led::Bus(NetworkLed::Network) => say(theme, "hd_led.what_network"),
         Led::Port => say(theme, "hd_led.what_port"),
     };
     let strong = theme.strong(theme.sizes.body);
@@ -110,31 +110,31 @@ fn look(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     let look = |left, right, blinks| LedStyle { left, right, blinks };
     match lamp {
         Led::Drives => match leds.drives {
-            DriveLight::Off => look(None, None, false),
-            DriveLight::Green => look(green, green, false),
-            DriveLight::Red => look(red, red, false),
-            DriveLight::RedGreen => look(red, green, false),
-            DriveLight::GreenFlashing => look(green, green, true),
-            DriveLight::RedGreenFlashing | DriveLight::Alternating => look(red, green, true),
+            DriveLedState::Off => look(None, None, false),
+            DriveLedState::Green => look(green, green, false),
+            DriveLedState::Red => look(red, red, false),
+            DriveLedState::RedGreen => look(red, green, false),
+            DriveLedState::GreenFlashing => look(green, green, true),
+            DriveLedState::RedGreenFlashing | DriveLedState::Alternating => look(red, green, true),
         },
-        Led::Bus(own) => match if own == BusLamp::Module { leds.module } else { leds.network } {
-            BusLight::Off => look(None, None, false),
-            BusLight::Green => look(green, green, false),
-            BusLight::GreenFlashing => look(green, green, true),
-            BusLight::Red => look(red, red, false),
-            BusLight::RedFlashing => look(red, red, true),
-            BusLight::Alternating => look(red, green, true),
+        Led::Bus(own) => match if own == NetworkLed::Module { leds.module } else { leds.network } {
+            NetworkLedState::Off => look(None, None, false),
+            NetworkLedState::Green => look(green, green, false),
+            NetworkLedState::GreenFlashing => look(green, green, true),
+            NetworkLedState::Red => look(red, red, false),
+            NetworkLedState::RedFlashing => look(red, red, true),
+            NetworkLedState::Alternating => look(red, green, true),
         },
         Led::Port => match leds.port {
-            PortLight::Off => look(None, None, false),
-            PortLight::Link => look(green, None, false),
-            PortLight::Active => look(green, yellow, true),
+            PortLedState::Off => look(None, None, false),
+            PortLedState::Link => look(green, None, false),
+            PortLedState::Active => look(green, yellow, true),
         },
     }
 }
 
 /// Draws a disc in two halves. Rays denote blinking.
-fn paint_paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
+fn paint_led(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {
             let angle = from + std::f32::consts::PI * f32::from(step) / 16.0;

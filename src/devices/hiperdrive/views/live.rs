@@ -6,7 +6,7 @@ use super::outside::badge;
 use crate::app::{Action, Rgb};
 use crate::devices::hiperdrive::procedures::Temperature;
 use crate::devices::hiperdrive::protocol::{PositionScale, State, turns};
-use crate::devices::hiperdrive::state::{HiperdriveAction, Measure, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction, PositionUnit, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::panels::live::{LOW, raw_row};
@@ -16,7 +16,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let drive = unit.drive();
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);
-    let in_measure = |steps: i32, measure: Measure| {
+    let in_measure = |steps: i32, measure: PositionUnit| {
         // Measuring beyond a thousandth is useless.
         let decimals = ruler.decimals(measure).min(3);
         ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
@@ -26,7 +26,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let mut warning = badge(theme, unit);
     ui.horizontal(|ui| {
         let shown = main.unwrap_or_else(|| "–".to_owned());
-        let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
+        let ink = if unit.outside_limits_text(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         // On the same line: nothing below it moves when it appears.
         let measure = theme.label(say(theme, unit.measure.unit()));

@@ -5,15 +5,15 @@ use egui::{Id, RichText, Ui, UiBuilder, vec2};
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, MotionKind, Phase};
+use crate::devices::hiperdrive::procedures::dead_man::{Lock, MotionKind, Phase, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, empty, enabled_button, entry, folding_card, options, paragraph,
-    problem_below, row, text_entry, two_columns, two_lines,
+    allowed_button, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
+    options, paragraph, row, show_error_below, text_entry, two_columns,
 };
-use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
+use crate::ui::stop_debounce::{goes_down, means_motion, press_time};
 
 use crate::ui::{Theme, icons};
 
@@ -44,7 +44,7 @@ const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
-        empty(ui, theme, &say(theme, "hd_motion.offline"), None);
+        empty_placeholder(ui, theme, &say(theme, "hd_motion.offline"), None);
         return;
     }
     // In a low window the pads come before the state diagram, except if that shows a failure. The height of the
@@ -168,13 +168,13 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
             let words = explain::error(code);
             let text = format!("{:04X}  {}", code.code(), theme.words(&words.name));
-            two_lines(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.words(&words.remedy));
+            message_label(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.words(&words.remedy));
             return;
         }
     }
     if let Some(status) = unit.current_or_last_request(drive) {
         let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
-        two_lines(ui, theme, theme.words(&status.words), ink.into());
+        message_label(ui, theme, theme.words(&status.words), ink.into());
     }
 }
 
@@ -216,7 +216,7 @@ fn to_position_ui(
                 let response = allowed_button(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // It replaces the pause button: a hasty second click was meant for that.
-                if response.clicked() && !means_motion(ui.ctx(), false, pressed_at(ui, pressed)) {
+                if response.clicked() && !means_motion(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
             }
@@ -230,7 +230,7 @@ fn to_position_ui(
         }
     });
     // What keeps the drive from moving at all stands once, below the pads.
-    problem_below(ui, theme, view.target_problem.as_ref().or(entered.as_ref().err()));
+    show_error_below(ui, theme, view.target_problem.as_ref().or(entered.as_ref().err()));
     allowed
 }
 
@@ -271,9 +271,9 @@ pub(super) fn effort_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,
-    (effort, under_way, [speed, torque]): (Effort, Option<Effort>, &mut [Draft; 2]),
+    (effort, under_way, [speed, torque]): (SpeedTorque, Option<SpeedTorque>, &mut [Draft; 2]),
     presets: &[Percent],
-    set: impl Fn(Effort) -> Motor,
+    set: impl Fn(SpeedTorque) -> Motor,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
     let words = ["hd_effort.speed", "hd_effort.torque"].map(|word| say(theme, word));
@@ -282,13 +282,13 @@ pub(super) fn effort_ui(
     let mut speed_ui = |ui: &mut Ui| {
         let sent = under_way.map(|own| own.speed);
         let typed = percent_ui(ui, theme, (speed_word, effort.speed), speed, presets, &mut chosen.speed);
-        (typed, sent, unit.speed_of(effort.speed))
+        (typed, sent, unit.speed_text(effort.speed))
     };
     let mut torque_to = effort.torque;
     let mut torque_ui = |ui: &mut Ui| {
         let sent = under_way.map(|own| own.torque);
         let typed = percent_ui(ui, theme, (torque_word, effort.torque), torque, &[], &mut torque_to);
-        (typed, sent, unit.torque_of(effort.torque))
+        (typed, sent, unit.torque_text(effort.torque))
     };
     let note = |ui: &mut Ui, own: Percent, (typed, sent, beside): (Result<(), Text>, Option<Percent>, Option<Text>)| {
         note_ui(ui, theme, &typed, sent.filter(|sent| *sent != own), beside);
@@ -385,7 +385,7 @@ fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Pe
 
 /// Returns a text with the speed and torque of moves, steps and runs.
 pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
-    let Effort { speed, torque } = unit.moves.move_effort(unit.drive());
+    let SpeedTorque { speed, torque } = unit.moves.move_effort(unit.drive());
     theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 

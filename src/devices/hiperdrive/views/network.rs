@@ -11,8 +11,8 @@ use crate::devices::hiperdrive::state::network::{self, Form};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, empty, enabled_button, entry, folding_card, folding_card_with, mono_entry, options, paragraph,
-    problem, row, severity, split,
+    allowed_button, empty_placeholder, enabled_button, entry, folding_card, folding_card_with, mono_entry, options,
+    paragraph, problem, row, severity, split,
 };
 use crate::ui::{Theme, icons};
 
@@ -51,7 +51,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
     };
     folding_card_with(ui, theme, TEXTS.text("hd_net.title"), read, |ui| {
         let Some(now) = unit.network_settings() else {
-            empty(ui, theme, &say(theme, "hd_net.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "hd_net.nothing"), None);
             return;
         };
         // Text entered for other settings does not apply to these.
@@ -142,7 +142,7 @@ fn change_preview_ui(
     match wanted {
         Err(why) => problem(ui, theme, Some(why)),
         Ok(wanted) => {
-            for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host_address()) {
+            for (own, text) in network::consequence_texts(unit.address_switch(), now, wanted, unit.host_address()) {
                 line_ui(ui, theme, own, &text);
             }
         }

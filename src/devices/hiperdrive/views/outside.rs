@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
+use crate::ui::controls::{allowed_button, card, paragraph, show_error_below};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -21,7 +21,7 @@ pub(super) struct Draft {
 
 /// Returns a one-line warning if a drive is outside its limits.
 pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
-    unit.outside_words(unit.drive())?;
+    unit.outside_limits_text(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
     Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
@@ -30,7 +30,7 @@ pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
 /// the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
-    let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
+    let (Some(words), Some(outside)) = (unit.outside_limits_text(drive), unit.outside(drive)) else {
         *draft = Draft::default();
         return;
     };
@@ -68,10 +68,10 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
         if allowed_button(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
             let change = forms::steps(unit, &draft.place, unit.measure)
-                .and_then(|position| unit.reference_here(drive, position));
+                .and_then(|position| unit.reference_change(drive, position));
             draft.problem =
                 change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
         }
-        problem_below(ui, theme, draft.problem.as_ref());
+        show_error_below(ui, theme, draft.problem.as_ref());
     });
 }

@@ -11,7 +11,7 @@ use super::scale;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Row, Unit, forms};
-use crate::ui::controls::{empty, options, paragraph, text_entry};
+use crate::ui::controls::{empty_placeholder, options, paragraph, text_entry};
 use crate::ui::widgets::{
     RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable, RegisterView,
     register_table,
@@ -57,7 +57,7 @@ pub(super) fn page_ui(
         paragraph(ui, RichText::new(theme.words(refusal)).color(theme.palette.bad));
     }
     ui.add_space(theme.space.inside);
-    if view.shows_scale() {
+    if view.is_scale_shown() {
         ScrollArea::vertical().id_salt("scale").auto_shrink(false).show(ui, |ui| {
             let drive = unit.drive();
             let own = view.scales.entry(drive).or_default();
@@ -84,7 +84,7 @@ pub(super) fn page_ui(
         paragraph(ui, theme.caption(say(theme, "hd_params.not_kept")));
     });
     if rows.iter().all(Vec::is_empty) {
-        empty(ui, theme, &say(theme, "hd_params.none"), None);
+        empty_placeholder(ui, theme, &say(theme, "hd_params.none"), None);
     } else {
         table(ui, theme, unit, &rows, view, actions);
     }
@@ -109,7 +109,7 @@ fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
             ui.memory_mut(|memory| memory.stop_text_input());
         }
     });
-    if let Some(problem) = view.table.problem(theme).filter(|_| !view.shows_scale()) {
+    if let Some(problem) = view.table.problem(theme).filter(|_| !view.is_scale_shown()) {
         let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
         paragraph(ui, RichText::new(words).color(theme.palette.bad));
     }
@@ -117,7 +117,7 @@ fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 
 impl DriveParametersUiState {
     /// Returns whether the scaling page is shown. The table must have closed its editor before.
-    fn shows_scale(&self) -> bool {
+    fn is_scale_shown(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
 
@@ -171,7 +171,7 @@ fn table(
         .map(|(title, rows)| RegisterGroup { title: say(theme, title), note: String::new(), rows: rows.len() })
         .collect();
     let at = |place: RegisterLocation| rows.get(place.group)?.get(place.row);
-    let row = |place: RegisterLocation| at(place).map(|row| row_of(theme, row)).unwrap_or_default();
+    let row = |place: RegisterLocation| at(place).map(|row| register_row(theme, row)).unwrap_or_default();
     let label = theme.say("page.parameters");
     let table = RegisterTable { label: &label, groups: &groups, row: &row, kind: RegisterKind::Numbers };
     let mut edits = Vec::new();
@@ -203,7 +203,7 @@ fn parameter_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
-fn row_of(theme: &Theme, row: &Row) -> RegisterRow {
+fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
     let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
     let value = parameter_text(row);
     // A unit that is part of another one is multiplied.
@@ -223,7 +223,7 @@ fn row_of(theme: &Theme, row: &Row) -> RegisterRow {
         before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
         kept: row.kind.saved.then(|| say(theme, "hd_params.is_kept")),
-        read_only: row.why_not_editable().map(|why| theme.words(&why)),
+        read_only: row.not_editable_reason().map(|why| theme.words(&why)),
         value,
         ..RegisterRow::default()
     }

@@ -4,11 +4,11 @@ use egui::Ui;
 
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
-    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Measure, TEXTS, Unit, forms,
+    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, PositionUnit, TEXTS, Unit, forms,
 };
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    card, committed_entry, enabled_button, entry, options, paragraph, problem_below, row, text_entry,
+    card, committed_entry, enabled_button, entry, options, paragraph, row, show_error_below, text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -36,11 +36,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
             });
             ui.label(theme.label(say(theme, "hd_scale.a_turn")));
         });
-        problem_below(ui, theme, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
+        show_error_below(ui, theme, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
         let word = say(theme, "hd_scale.step");
         entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.step, NUMBER, &word, "0.01");
-            ui.label(theme.label(say(theme, Measure::Millimetres.unit())));
+            ui.label(theme.label(say(theme, PositionUnit::Millimetres.unit())));
         });
         let word = say(theme, "hd_scale.limits");
         entry(ui, theme, &word, |ui| {
@@ -62,7 +62,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
                     .err();
             }
         });
-        problem_below(ui, theme, view.refused.as_ref());
+        show_error_below(ui, theme, view.refused.as_ref());
         becomes_ui(ui, theme, unit);
         paragraph(ui, theme.caption(say(theme, "hd_scale.words")));
     });
@@ -72,10 +72,10 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
 fn becomes_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.requested_ruler(drive);
-    let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, Measure::Steps.unit()));
+    let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, PositionUnit::Steps.unit()));
     row(ui, theme, &say(theme, "hd_scale.turn"), theme.mono(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };
-    for measure in [Measure::Turns, Measure::Millimetres] {
+    for measure in [PositionUnit::Turns, PositionUnit::Millimetres] {
         if let Some((low, high)) = ruler.of(low, measure).zip(ruler.of(high, measure)) {
             let words = format!("{} … {} {}", theme.number(low, 2), theme.number(high, 2), say(theme, measure.unit()));
             row(ui, theme, &say(theme, "hd_move.range"), theme.mono(words));

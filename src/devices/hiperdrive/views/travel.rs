@@ -137,13 +137,13 @@ fn line_ui(
 ) {
     let palette = theme.palette;
     let font = FontId::monospace(theme.sizes.body);
-    let ink = position_ink(theme, shown);
+    let ink = position_colour(theme, shown);
     let Some(warning) = warning else {
         let at = paint_marker(painter, line.left_center() + vec2(3.0, 0.0), ink);
         painter.text(at, Align2::LEFT_CENTER, position, font.clone(), palette.text.into());
         let ink = if shown.target.is_some() { palette.text } else { palette.muted };
         let words = painter.text(line.right_center(), Align2::RIGHT_CENTER, target, font, ink.into());
-        paint_diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_ink(theme));
+        paint_diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_colour(theme));
         return;
     };
     let words = format!("{}  {warning}", icons::WARNING);
@@ -177,11 +177,11 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
             paint_arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
         }
         if let Some(target) = shown.target {
-            paint_diamond(painter, pos2(scale.x(target), bar.center().y), target_ink(theme));
+            paint_diamond(painter, pos2(scale.x(target), bar.center().y), target_colour(theme));
         }
         if let Some(position) = shown.position {
             let at = Rect::from_center_size(pos2(scale.x(position), bar.center().y), vec2(4.0, BAR + 8.0));
-            painter.rect_filled(at, 2.0, position_ink(theme, shown));
+            painter.rect_filled(at, 2.0, position_colour(theme, shown));
         }
     }
     painter.rect_stroke(bar, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
@@ -200,7 +200,7 @@ fn limits_ui(painter: &Painter, theme: &Theme, below: Rect, [low, high]: [f32; 2
     }
 }
 
-fn position_ink(theme: &Theme, shown: &Shown) -> Color32 {
+fn position_colour(theme: &Theme, shown: &Shown) -> Color32 {
     match shown {
         Shown { outside: Some(_), .. } => theme.palette.bad.into(),
         Shown { is_moving: true, .. } => theme.palette.good.into(),
@@ -208,7 +208,7 @@ fn position_ink(theme: &Theme, shown: &Shown) -> Color32 {
     }
 }
 
-fn target_ink(theme: &Theme) -> Color32 {
+fn target_colour(theme: &Theme) -> Color32 {
     series(theme, 0)
 }
 

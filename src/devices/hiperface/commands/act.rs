@@ -6,7 +6,7 @@ use super::args::{DoOptions, HiperfaceAction};
 use super::codes::parse_code;
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
-use crate::cli::args::{Common, Do};
+use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::runner::unexpected;
@@ -14,14 +14,14 @@ use crate::cli::{Done, Failure, Result, check};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult, Verdict};
-use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, KIND};
+use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, KIND};
 use crate::devices::hiperface::state::explain as words;
 use crate::result_of;
 
 const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
                        delete-field, change-code, increment-counter, clear-counter and configure-for-now";
 
-pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action_of::<HiperfaceAction>(KIND, ACTIONS)?, words.as_slice()) {
@@ -63,7 +63,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     change_and_show(common, output, change, &act.consent, &act.action)
 }
 
-fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {
+fn set_position(act: &ActionArgs, text: &str, synchronise: bool) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let wanted = u32::try_from(number).map_err(|_| out_of_range("position", text, 0, u32::MAX.into()))?;
     let DoOptions { exact, kit } = act.own.read()?;
@@ -73,7 +73,10 @@ fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {
 fn change_code(number: &str, new: &str) -> Result<Change> {
     let number =
         parse_number(number).ok_or_else(|| Failure::Usage(format!("{number:?} is not a number"))).and_then(|n| {
-            u8::try_from(n).ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("access code", number, 0, 3))
+            u8::try_from(n)
+                .ok()
+                .and_then(AccessCodeNumber::new)
+                .ok_or_else(|| out_of_range("access code", number, 0, 3))
         })?;
     // The message does not repeat the text, which may be a code.
     let new =
@@ -102,13 +105,17 @@ fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
         parse_number(first).ok_or_else(|| Failure::Usage(format!("{first:?} is not a size or a status byte")))?;
     let mut status = match u8::try_from(number) {
         Ok(byte) if is_hex && DataFieldStatus::from_byte(byte).exists() => DataFieldStatus::from_byte(byte),
-        _ => DataFieldStatus::new(size(first)?, CodeNumber::ZERO, true),
+        _ => DataFieldStatus::new(size(first)?, AccessCodeNumber::ZERO, true),
     };
     let (mut code, mut required, mut writable) = (status.code(), status.code_required(), status.is_writable());
     for option in options {
         match option.split_once('=') {
             Some(("code", value)) => {
-                code = value.parse().ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("code", value, 0, 3))?;
+                code = value
+                    .parse()
+                    .ok()
+                    .and_then(AccessCodeNumber::new)
+                    .ok_or_else(|| out_of_range("code", value, 0, 3))?;
             }
             Some(("ce", value)) => required = flag("ce", value)?,
             Some(("we", value)) => writable = flag("we", value)?,
@@ -127,7 +134,7 @@ fn flag(name: &str, value: &str) -> Result<bool> {
     }
 }
 
-fn reset(common: &Common, output: &Output) -> Result {
+fn reset(common: &CommonArgs, output: &Output) -> Result {
     match Runner::open(common)?.run(HiperfaceJob::Reset)? {
         HiperfaceOutput::Reset(codes) => {
             let list: Vec<u8> = codes.iter().map(|code| code.byte()).collect();
@@ -138,7 +145,7 @@ fn reset(common: &Common, output: &Output) -> Result {
     }
 }
 
-fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
+fn configure_for_now(common: &CommonArgs, output: &Output, value: &str) -> Result {
     let settings = settings(value)?;
     match Runner::open(common)?.run(HiperfaceJob::ConfigureForNow(settings))? {
         HiperfaceOutput::Configured => {
@@ -150,7 +157,7 @@ fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
     }
 }
 
-fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
+fn check_device(common: &CommonArgs, output: &Output, restart: bool) -> Result {
     let lines =
         result_of!(Runner::open(common)?.run(HiperfaceJob::Check { restart })?, HiperfaceOutput::Check(lines) => lines);
     let quality = lines.iter().flat_map(|line| &line.findings).find_map(|finding| match finding {
@@ -160,5 +167,5 @@ fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
     // A line without repetitions is not a step: scripts have its figures in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
-    check::show_with(output, &words::check(&shown), quality)
+    check::show_check(output, &words::check(&shown), quality)
 }

@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::procedures::AccessCodes;
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
+use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
 
 /// Access code option of every command.
 #[derive(Args)]
@@ -21,7 +21,7 @@ pub(super) struct CodeOption {
 /// Access code with its number.
 #[derive(Clone, Copy)]
 struct Code {
-    number: CodeNumber,
+    number: AccessCodeNumber,
     code: AccessCode,
 }
 
@@ -32,7 +32,7 @@ impl FromStr for Code {
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;
-        let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
+        let number = number.trim().parse().ok().and_then(AccessCodeNumber::new).ok_or_else(form)?;
         Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
     }
 }

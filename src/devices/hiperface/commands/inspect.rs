@@ -6,13 +6,13 @@ use serde_json::{Value as Json, json};
 
 use super::args;
 use crate::bits::{hex, hex_compact};
-use crate::cli::args::{Common, Find, Position};
+use crate::cli::args::{CommonArgs, FindArgs, Position};
 use crate::cli::consent::can_ask;
 use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperface::commands::run::{Runner, seen_codes};
+use crate::devices::hiperface::commands::run::{Runner, reported_codes};
 use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
@@ -24,7 +24,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, Stat
 use crate::devices::hiperface::state::explain as explained;
 use crate::result_of;
 
-pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Result {
     if let Some(url) = &common.link
         && may_have_other_master(url)
         && !common.only_master
@@ -107,7 +107,7 @@ fn link_parameters(found: &FoundEncoder) -> String {
     format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
 }
 
-pub(super) fn identify(common: &Common, output: &Output) -> Result {
+pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     let free = identity.memory.map(|memory| memory.bytes());
@@ -168,7 +168,7 @@ fn identity(runner: &mut Runner) -> Result<Identity> {
     Ok(result_of!(runner.run(HiperfaceJob::Identify)?, HiperfaceOutput::Identity(identity) => identity))
 }
 
-pub(super) fn status(common: &Common, output: &Output) -> Result {
+pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let codes = result_of!(runner.run(HiperfaceJob::Status)?, HiperfaceOutput::Status(codes) => codes);
     let (warnings, errors): (Vec<StatusCode>, Vec<StatusCode>) = codes.iter().partition(|code| code.is_warning());
@@ -192,7 +192,7 @@ pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     codes.iter().map(|code| format!("{:7}  {code}\n", kind(code))).collect()
 }
 
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     if identity.geometry.is_none() {
@@ -206,7 +206,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         output.print(table.header())?;
     }
     // A code that the encoder announced during identification applies to this position too.
-    let mut codes_before = seen_codes(&runner);
+    let mut codes_before = reported_codes(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {
         show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
@@ -232,8 +232,8 @@ fn show(
         Ok(other) => Err(unexpected(&other)),
         Err(error) if error.means_no_position() => match table {
             Some(table) => {
-                output.remark(&no_position(&error));
-                output.print(&table.row_without_position(&seen_codes(runner)))
+                output.remark(&position_error_text(&error));
+                output.print(&table.row_without_position(&reported_codes(runner)))
             }
             None => show_no_position(output, &error),
         },
@@ -260,17 +260,17 @@ fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  {:08X}h  {words}{flag}\n", reading.raw))
 }
 
-fn no_position(error: &JobError) -> String {
+fn position_error_text(error: &JobError) -> String {
     explained::job(error).iter().map(|text| text.terminal()).collect()
 }
 
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
-    output.remark(&no_position(error));
+    output.remark(&position_error_text(error));
     let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
     output.show(&json, "no position\n")
 }
 
-pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let item = &super::item(item)?;
     let mut runner = Runner::open(common)?;
     let value = result_of!(runner.run(HiperfaceJob::Read(*item))?, HiperfaceOutput::Value(value) => value);

@@ -16,8 +16,8 @@ use clap::builder::PossibleValue;
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use self::codes::CodeOption;
 use crate::app::Given;
-use crate::cli::args::{Command, Common, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, OwnOptions, options_of, values_of};
+use crate::cli::args::{Command, CommonArgs, SimulateArgs};
+use crate::cli::commands::{CommandId, DeviceCommands, KindOptions, enum_values, options_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -67,7 +67,7 @@ impl DeviceCommands for HiperfaceCommands {
         options_of::<CodeOption>()
     }
 
-    fn given(&self, options: &OwnOptions, given: Given) -> Result<Given> {
+    fn given(&self, options: &KindOptions, given: Given) -> Result<Given> {
         Ok(given.with(codes::given(&options.read()?)?))
     }
 
@@ -81,14 +81,14 @@ impl DeviceCommands for HiperfaceCommands {
     }
 
     fn actions(&self) -> Vec<PossibleValue> {
-        values_of::<HiperfaceAction>()
+        enum_values::<HiperfaceAction>()
     }
 
     fn is_searchable(&self) -> bool {
         true
     }
 
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Find(find) => inspect::find(common, output, find),
             Command::Identify(_) => inspect::identify(common, output),
@@ -103,12 +103,12 @@ impl DeviceCommands for HiperfaceCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
     }
 }
 
-fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperface uses a serial port".to_owned()));
     }

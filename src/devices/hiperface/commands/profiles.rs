@@ -6,11 +6,11 @@ use serde_json::json;
 
 use super::HiperfaceCommands;
 use super::write::{commit, operations, plan_text};
-use crate::cli::args::{Common, Restore, Save};
+use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
-use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, save_profile, to_restore, write_restore};
+use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, profile_to_restore, save_profile, write_restore};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -20,7 +20,7 @@ use crate::devices::hiperface::state::explain as words;
 use crate::profile::Body;
 use crate::result_of;
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let mut runner = Runner::open(common)?;
     let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
     name_locked(output, &saved, "saved without its bytes");
@@ -33,8 +33,8 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 impl ProfileCommands for HiperfaceCommands {
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-        let profile = to_restore::<HiperfaceProfile>(restore, profile)?;
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let profile = profile_to_restore::<HiperfaceProfile>(restore, profile)?;
         let options = RestoreOptions {
             allow_other_device: restore.allow_other_device,
             allow_other_type: restore.allow_other_type,
@@ -66,13 +66,13 @@ impl ProfileCommands for HiperfaceCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    fn present(&self, common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    fn present(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
         let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
         name_locked(output, &saved, "compared without its bytes");
         Ok(Body::new(saved.profile))
     }
 
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+    fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let (profile, device) =
             (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
         let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);

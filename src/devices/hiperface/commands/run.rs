@@ -49,7 +49,7 @@ impl Runs for Hiperface {
     }
 }
 
-pub(super) fn seen_codes(runner: &Runner) -> Vec<StatusCode> {
+pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }
 

@@ -3,7 +3,7 @@
 use serde_json::{Value as Json, json};
 
 use crate::bits::{hex_compact, parse_hex};
-use crate::cli::args::{Common, Consenting, Write};
+use crate::cli::args::{CommonArgs, ConsentArgs, Write};
 use crate::cli::consent::{check_wear, confirm_plan, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
@@ -17,7 +17,7 @@ use crate::devices::hiperface::protocol::{DataFieldStatus, DeviceAddress, LineSe
 use crate::devices::hiperface::state::explain as words;
 use crate::result_of;
 
-pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
     let change = change_of(item, &write.value)?;
     change_and_show(common, output, change, &write.consent, &item.to_string())
@@ -25,10 +25,10 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
 
 /// Prepares a change, asks for consent, executes it and prints the result.
 pub(super) fn change_and_show(
-    common: &Common,
+    common: &CommonArgs,
     output: &Output,
     change: Change,
-    consent: &Consenting,
+    consent: &ConsentArgs,
     item: &str,
 ) -> Result {
     require_consent(consent)?;
@@ -107,7 +107,7 @@ pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
-    consent: &Consenting,
+    consent: &ConsentArgs,
 ) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
         return Ok(WriteSummary::default());

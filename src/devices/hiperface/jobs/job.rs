@@ -5,12 +5,14 @@ use std::fmt;
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
 use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, FoundEncoder, SearchFindings};
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
-use crate::devices::hiperface::procedures::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
+use crate::devices::hiperface::procedures::{
+    Error, Identity, LineQuality, PositionReading, RestPosition, SaveOptions, Survey,
+};
 use crate::devices::hiperface::profile::{
-    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, Redo, RestoreOptions, UnknownField,
+    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RequiredSetup, RestoreOptions, UnknownField,
 };
 use crate::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
+    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
 
 /// Number of persistent writes at which an encoder has reached its limit. According to the manual, the counter, which
@@ -42,7 +44,7 @@ pub enum HiperfaceJob {
     ConfigureForNow(LineSettings),
     /// Uses an access code from now on, without sending anything.
     UseCode {
-        number: CodeNumber,
+        number: AccessCodeNumber,
         /// Access code, which is never displayed.
         code: AccessCode,
     },
@@ -78,7 +80,7 @@ pub enum Change {
         number: u8,
     },
     ChangeCode {
-        number: CodeNumber,
+        number: AccessCodeNumber,
         new: AccessCode,
     },
     SetPosition {
@@ -157,10 +159,10 @@ pub struct OtherType {
 impl Prepared {
     /// Returns the values that must be set up again afterwards. Any mounting value of another encoder, and any byte of
     /// unknown meaning, may be an offset between encoder and motor.
-    pub fn redo(&self) -> Vec<Redo> {
-        let values = self.mounting_written.iter().copied().map(Redo::Value);
+    pub fn redo(&self) -> Vec<RequiredSetup> {
+        let values = self.mounting_written.iter().copied().map(RequiredSetup::Value);
         let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
-        let commutation = (copies || !self.mounting_written.is_empty()).then_some(Redo::Commutation);
+        let commutation = (copies || !self.mounting_written.is_empty()).then_some(RequiredSetup::Commutation);
         commutation.into_iter().chain(values).collect()
     }
 }
@@ -185,7 +187,7 @@ pub enum Value {
 pub struct SavedProfile {
     pub profile: HiperfaceProfile,
     /// Fields that could not be read, with the number of the access code that protects them.
-    pub locked: Vec<(u8, CodeNumber)>,
+    pub locked: Vec<(u8, AccessCodeNumber)>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -223,7 +225,7 @@ pub enum HiperfaceOutput {
     Identity(Identity),
     Status(Vec<StatusCode>),
     Position(PositionReading),
-    Rest(Rest),
+    Rest(RestPosition),
     Value(Value),
     Saved(Box<SavedProfile>),
     Check(Vec<HiperfaceStepResult>),

@@ -16,14 +16,14 @@ pub use job::{
     Prepared, SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::{check, may_have_other_master, open};
-pub use types::{BrokenTypeTable, encoder_types};
+pub use types::{TypeTableFileError, encoder_types};
 
-use status::StatusKeeper;
+use status::RecentStatusCodes;
 
 use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
     self, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
-    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
+    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched_value,
 };
 use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
@@ -39,7 +39,7 @@ pub struct Hiperface {
     geometry: Option<Geometry>,
     /// Logbook key of the last identified encoder.
     identified: Option<DeviceKey>,
-    status: StatusKeeper,
+    status: RecentStatusCodes,
     /// Line error counts that have already been reported.
     told_troubles: [u64; 4],
 }
@@ -55,7 +55,7 @@ impl Hiperface {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
-    fn identified(&mut self, context: &SessionContext, identity: &Identity) {
+    fn set_identity(&mut self, context: &SessionContext, identity: &Identity) {
         self.geometry = identity.geometry;
         self.identified = Some(device_key(identity, context.is_virtual));
     }
@@ -69,7 +69,7 @@ impl Hiperface {
         if self.identified.is_none() {
             let types = self.types.clone();
             if let Ok(identity) = identify(&mut self.master(context), &types) {
-                self.identified(context, &identity);
+                self.set_identity(context, &identity);
             }
         }
         let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(context.is_virtual));
@@ -97,7 +97,7 @@ impl Session<Hiperface> {
         is_virtual: bool,
     ) -> Self {
         let geometry = station.geometry;
-        let (types, status) = (Arc::new(types), StatusKeeper::default());
+        let (types, status) = (Arc::new(types), RecentStatusCodes::default());
         let device = Hiperface { wire, station, types, geometry, identified: None, status, told_troubles: [0; 4] };
         Session::with(device, clock, store, is_virtual)
     }
@@ -145,7 +145,7 @@ impl Device for Hiperface {
 
     fn watch(&mut self, context: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
         let met_before = self.station.codes_met.len();
-        let reading = read_watched(&mut self.master(context), *what);
+        let reading = read_watched_value(&mut self.master(context), *what);
         self.record_sampled_codes(context);
         let reading = reading?;
         // It contains the codes collected.
@@ -202,7 +202,7 @@ impl Hiperface {
             HiperfaceJob::Survey => {
                 let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
                 let survey = procedures::survey(&mut self.master(context), &types, progress)?;
-                self.identified(context, &survey.identity);
+                self.set_identity(context, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
             }
             HiperfaceJob::UseCode { number, code } => {
@@ -211,7 +211,7 @@ impl Hiperface {
             }
             HiperfaceJob::Identify => {
                 let identity = identify(&mut self.master(context), &types)?;
-                self.identified(context, &identity);
+                self.set_identity(context, &identity);
                 HiperfaceOutput::Identity(identity)
             }
             HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(context))?),

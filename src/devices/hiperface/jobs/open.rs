@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::{Hiperface, encoder_types};
 use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
-use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, margin, open_bytes, simulated, wrong_target_error};
+use crate::worker::open::{check_parameters, inside, open_bytes, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to a HIPERFACE encoder without opening it.
@@ -21,7 +21,7 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
 /// Returns whether a drive may be a second master on the line. A drive reads the encoder at power-up and then uses only
 /// sine and cosine, so a silent line does not rule out a drive.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
-    matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
+    matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp)
 }
 
 /// Opens a link to a HIPERFACE encoder.
@@ -37,17 +37,17 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
         link.set_format(station.format)?;
         Ok(link)
     })?;
-    Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
+    Ok(Session::new(wire, clock, station, store, types, url.scheme == LinkScheme::Sim))
 }
 
 /// Parses the line settings and the configuration of the virtual encoder, which only matters for a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
+    if matches!(url.scheme, LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip) {
         return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));
     }
-    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
+    let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
     let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;
-    if url.scheme == Scheme::Sim {
+    if url.scheme == LinkScheme::Sim {
         // The virtual encoder's converter may echo; this is detected as with a real one.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));

@@ -8,11 +8,11 @@ use crate::devices::hiperface::procedures::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
 use crate::devices::hiperface::profile::{
-    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, Restore, RestoreOptions, Scalar,
-    check_allowed, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
+    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, Restore, RestoreOptions,
+    ScalarValue, check_allowed, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
 use crate::devices::hiperface::protocol::{
-    BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase,
+    AccessCodeNumber, BROADCAST, FreeMemory, Geometry, LineSettings, nearest_in_phase,
 };
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Progress, SessionContext};
@@ -52,7 +52,7 @@ pub(super) fn prepare(
             let to = u32::try_from(to).unwrap_or(now);
             let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
             let op = (to != now).then_some(Op::SetPosition { from: now, to, synchronise: false });
-            plan_scalar(fields, Scalar::Position(now), op)
+            plan_scalar(fields, ScalarValue::Position(now), op)
         }
         Change::Store(edits) => {
             let memory = read_memory(&mut master)?;
@@ -93,22 +93,22 @@ pub(super) fn prepare(
                 ensure_address_free(&mut master, to)?;
             }
             let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
-            plan_scalar(memory.fields, Scalar::Address(from), op)
+            plan_scalar(memory.fields, ScalarValue::Address(from), op)
         }
         Change::Configure(to) => {
             let memory = read_memory(&mut master)?;
             let from: LineSettings = read_settings(&mut master)?;
-            plan_scalar(memory.fields, Scalar::Settings(from), (from != to).then_some(Op::Configure { from, to }))
+            plan_scalar(memory.fields, ScalarValue::Settings(from), (from != to).then_some(Op::Configure { from, to }))
         }
         Change::ClearCounter => {
             let memory = read_memory(&mut master)?;
             let from = read_counter(&mut master)?;
-            plan_scalar(memory.fields, Scalar::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
+            plan_scalar(memory.fields, ScalarValue::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
         }
         Change::IncrementCounter => {
             let memory = read_memory(&mut master)?;
             let from = read_counter(&mut master)?;
-            plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
+            plan_scalar(memory.fields, ScalarValue::Counter(from), Some(Op::IncrementCounter { from }))
         }
     };
     prepared.cycles_seen = cycles_seen(&context.store, &device_key(&prepared.identity, context.is_virtual));
@@ -164,12 +164,12 @@ fn set_position(
     let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
     // Synchronising aligns the tracks even if the position does not change.
     let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
-    Ok(plan_scalar(fields, Scalar::Position(now), op))
+    Ok(plan_scalar(fields, ScalarValue::Position(now), op))
 }
 
 fn change_code(
     master: &mut Master<'_>,
-    number: CodeNumber,
+    number: AccessCodeNumber,
     new: crate::devices::hiperface::protocol::AccessCode,
 ) -> Result<HiperfacePlan, JobError> {
     let old = master.station().codes.get(number);

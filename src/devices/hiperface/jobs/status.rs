@@ -14,9 +14,9 @@ const AGAIN: Duration = Duration::from_secs(60);
 
 /// Status codes recorded recently while polling the position.
 #[derive(Debug, Default)]
-pub(super) struct StatusKeeper(Vec<(StatusCode, Moment)>);
+pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
-impl StatusKeeper {
+impl RecentStatusCodes {
     /// Returns whether any of these codes was not recorded within the last minute, and marks all of them as recorded.
     pub(super) fn record_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn a_repeated_status_code_is_kept_once_a_minute() {
-        let mut keeper = StatusKeeper::default();
+        let mut keeper = RecentStatusCodes::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);
         assert!(keeper.record_new(&[hot], at(0)));

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, TypeTableError};
 use crate::profile::Cause;
-use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
+use crate::store::{FileError, FileErrorKind, Store, StoreError, read_text};
 
 /// The user's own table of encoder types is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}, {cause}", path.display())]
-pub struct BrokenTypeTable {
+pub struct TypeTableFileError {
     pub path: PathBuf,
     pub cause: TypeTableError,
 }
@@ -17,19 +17,19 @@ pub struct BrokenTypeTable {
 /// Returns the table of encoder types, in which user-defined rows precede the built-in ones.
 ///
 /// # Errors
-/// Returns [`BrokenTypeTable`] if the user's file exists but cannot be read or parsed. [`EncoderTypes::built_in`] can
+/// Returns [`TypeTableFileError`] if the user's file exists but cannot be read or parsed. [`EncoderTypes::built_in`] can
 /// be used instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();
     let path = store.device_file(KIND);
     let text = match read_text(&path) {
         Ok(text) => text,
-        Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(built_in),
+        Err(FileError { problem: FileErrorKind::NotFound, .. }) => return Ok(built_in),
         Err(error) => return Err(error.into()),
     };
     match EncoderTypes::parse(&text) {
-        Ok(own) => Ok(built_in.overlaid_with(own)),
-        Err(cause) => Err(StoreError::Refused(Cause::new(BrokenTypeTable { path, cause }))),
+        Ok(own) => Ok(built_in.merged_with(own)),
+        Err(cause) => Err(StoreError::Refused(Cause::new(TypeTableFileError { path, cause }))),
     }
 }
 
@@ -67,7 +67,7 @@ mod tests {
         let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = encoder_types(&store).unwrap_err();
         let StoreError::Refused(cause) = &error else { panic!("{error:?}") };
-        let broken = cause.get::<BrokenTypeTable>().unwrap();
+        let broken = cause.get::<TypeTableFileError>().unwrap();
         assert!(matches!(broken.cause, TypeTableError::Syntax { line: 2, .. }));
         let text = error.to_string();
         assert!(text.contains("hiperface.ron, line 2, column "), "{text}");
@@ -75,7 +75,7 @@ mod tests {
         let (_root, store) = store_with(b"(types: \xFF)");
         let error = encoder_types(&store).unwrap_err();
         assert!(
-            matches!(&error, StoreError::File(FileError { problem: FileProblem::NotUtf8 { offset: 8 }, .. })),
+            matches!(&error, StoreError::File(FileError { problem: FileErrorKind::NotUtf8 { offset: 8 }, .. })),
             "{error}"
         );
     }

@@ -1,7 +1,7 @@
 //! Errors of an encoder, with the facts that a message requires.
 
 use crate::devices::hiperface::profile::PlanItem;
-use crate::devices::hiperface::protocol::{CodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
+use crate::devices::hiperface::protocol::{AccessCodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
@@ -58,12 +58,12 @@ pub enum Error {
     },
     /// A field cannot be read because its access code is unknown.
     #[error("the access code {number} is not known")]
-    CodeUnknown { field: u8, number: CodeNumber },
+    CodeUnknown { field: u8, number: AccessCodeNumber },
     #[error("{item} has changed since the plan was made")]
     Changed { item: PlanItem },
     /// A value read back differs from the written value.
     #[error("{item} reads {got} after writing {expected}")]
-    NotVerified { item: PlanItem, expected: String, got: ReadBack },
+    NotVerified { item: PlanItem, expected: String, got: ReadBackValue },
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
     /// The position already had the written value, so reading it back proves nothing.
@@ -71,7 +71,7 @@ pub enum Error {
     PositionUnchanged,
     /// No data field requires this access code, so it cannot be tested.
     #[error("no data field requires access code {number}, so it cannot be tested")]
-    CodeGuardsNothing { number: CodeNumber },
+    CodeGuardsNothing { number: AccessCodeNumber },
     /// The settings byte contains a character format that the specification reserves.
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
@@ -81,13 +81,13 @@ pub enum Error {
 }
 
 impl Error {
-    pub(super) fn other_reply(command: Command, reply: &Reply) -> Self {
+    pub(super) fn unexpected_reply(command: Command, reply: &Reply) -> Self {
         Error::OtherReply { command, reply: format!("{reply:?}") }
     }
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReadBack {
+pub enum ReadBackValue {
     #[error("{0}")]
     Value(String),
     /// A data field does not behave according to the written status.

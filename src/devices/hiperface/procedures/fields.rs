@@ -19,7 +19,7 @@ const LEAST_TRANSFER: usize = 4;
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.request_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
-        other => Err(Error::other_reply(Command::FieldStatus, &other)),
+        other => Err(Error::unexpected_reply(Command::FieldStatus, &other)),
     }
 }
 
@@ -127,7 +127,7 @@ pub fn read_range(
                 first = Some(again);
                 ExchangeFailure::Damage(Damage::Inconsistent)
             }
-            (Ok(once), None) if master.station().reads_twice() => {
+            (Ok(once), None) if master.station().needs_double_read() => {
                 first = Some(once);
                 failures = 0;
                 continue;
@@ -182,6 +182,6 @@ fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8
     };
     match master.settle(request, answered)?.reply {
         Reply::Data(bytes) => Ok(Ok(bytes)),
-        other => Err(Error::other_reply(Command::ReadData, &other)),
+        other => Err(Error::unexpected_reply(Command::ReadData, &other)),
     }
 }

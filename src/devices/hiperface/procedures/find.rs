@@ -109,7 +109,7 @@ impl Search<'_> {
     /// Runs the search, and returns the number of foreign bytes if they prevented it.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // Through a device server all formats would be the same, and the encoder would be found in each.
-        let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
+        let formats = if master.can_set_format() { formats() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
         self.report(0, total, &Attempt::Listening);

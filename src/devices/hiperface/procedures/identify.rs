@@ -3,8 +3,8 @@
 use super::{Error, Master, read_range};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::{
-    CodeNumber, Command, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply,
-    Request, SerialLabel, StatusCode, TypeLabel,
+    AccessCodeNumber, Command, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings,
+    Reply, Request, SerialLabel, StatusCode, TypeLabel,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +96,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
 pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
     match master.request_confirmed(&Request::ReadTypeLabel)? {
         Reply::TypeLabel(label) => Ok(label),
-        other => Err(Error::other_reply(Command::ReadTypeLabel, &other)),
+        other => Err(Error::unexpected_reply(Command::ReadTypeLabel, &other)),
     }
 }
 
@@ -135,7 +135,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
 /// Errors of the exchange, or a refusal if the encoder has no extended label.
 pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
-    let code = master.station().codes.get(CodeNumber::ZERO);
+    let code = master.station().codes.get(AccessCodeNumber::ZERO);
     read_range(master, EXTENDED_LABEL_FIELD, 0, status.size().bytes(), code)
 }
 

@@ -79,8 +79,8 @@ impl<'a> Master<'a> {
     }
 
     /// Returns whether baud rate and parity can be set on this side; otherwise they are set at the far end of the link.
-    pub fn sets_format(&self) -> bool {
-        self.line.ctx.wire.sets_format()
+    pub fn can_set_format(&self) -> bool {
+        self.line.ctx.wire.can_set_format()
     }
 
     /// Sends a request that changes nothing in the encoder, and repeats it after line errors.
@@ -107,7 +107,7 @@ impl<'a> Master<'a> {
     pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
-            if !self.station.reads_twice() {
+            if !self.station.needs_double_read() {
                 return Ok(reply);
             }
             let again = self.ask(request)?;
@@ -137,7 +137,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// The encoder refused, `is_done` could not determine the result ([`Error::Unclear`]), or the request was not
     /// executed in five attempts.
-    pub(super) fn send_until_done(
+    pub(super) fn send_verified(
         &mut self,
         request: &Request,
         mut is_done: impl FnMut(&mut Self) -> Result<bool, Error>,

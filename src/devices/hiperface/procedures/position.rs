@@ -30,7 +30,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     let met_before = master.station().codes_met.len();
     let timed = master.request_timed(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
-        return Err(Error::other_reply(Command::ReadPosition, &timed.reply));
+        return Err(Error::unexpected_reply(Command::ReadPosition, &timed.reply));
     };
     let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
     let position = geometry.map(|geometry| geometry.position(raw));
@@ -92,7 +92,7 @@ impl WatchedReading {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
+pub fn read_watched_value(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
     let met_before = master.station().codes_met.len();
     let answer = match what {
         Watch::Analogue(channel) => request_analogue(master, channel).map(|(at, value)| (at, value.into())),
@@ -143,7 +143,7 @@ fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16
     let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
         Reply::Analogue(value) => Ok((timed.at, value)),
-        other => Err(Error::other_reply(Command::ReadAnalogue, &other)),
+        other => Err(Error::unexpected_reply(Command::ReadAnalogue, &other)),
     }
 }
 
@@ -172,7 +172,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     match master.request_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),
-        other => Err(Error::other_reply(Command::ReadCounter, &other)),
+        other => Err(Error::unexpected_reply(Command::ReadCounter, &other)),
     }
 }
 
@@ -189,7 +189,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
         last = read_position(master, geometry)?.raw;
         readings.push(last);
     }
-    let range = range_of(geometry);
+    let range = position_range(geometry);
     if readings.iter().all(|reading| distance(first, *reading, range) <= 1) {
         Ok(last)
     } else {
@@ -198,7 +198,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
 }
 
 /// Returns the number of distinct positions, or that of the full position word if the geometry is unknown.
-pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
+pub(super) fn position_range(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }
 

@@ -5,7 +5,7 @@ use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct RestPosition {
     pub raw: u32,
     /// Whether the position is within the measuring range and not invalidated by a status code.
     pub valid: bool,
@@ -46,14 +46,14 @@ impl Signals {
 ///
 /// # Errors
 /// [`Error::Moving`], errors of the exchange, or no position.
-pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Rest, Error> {
+pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<RestPosition, Error> {
     let before = ensure_standstill(master, geometry)?;
     let signals = read_signals(master)?;
     let after = read_position(master, geometry)?;
-    if super::position::distance(before, after.raw, super::position::range_of(geometry)) > 1 {
+    if super::position::distance(before, after.raw, super::position::position_range(geometry)) > 1 {
         return Err(Error::Moving { readings: vec![before, after.raw] });
     }
-    Ok(Rest { raw: after.raw, valid: after.valid, signals })
+    Ok(RestPosition { raw: after.raw, valid: after.valid, signals })
 }
 
 fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {

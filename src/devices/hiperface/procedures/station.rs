@@ -4,31 +4,31 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::devices::hiperface::protocol::{
-    AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
+    AccessCode, AccessCodeNumber, BAUDS, BROADCAST, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::link::line::{Echo, LineState, MARGIN};
-use crate::link::{Query, UrlError};
-use crate::parameter::{Checked, Maybe, Parameters, Refused, Values, number};
+use crate::link::{UrlError, UrlQuery};
+use crate::parameter::{Checked, OptionalValue, Parameters, Refused, Values, number};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 parameters! {
     /// Line and encoder parameters of a link. The default is the factory setting.
     pub struct LinkParameters: UrlError {
-        pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
+        pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => BaudValues;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
         /// Address used in requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
-            "address" => Checked(Expected::AddressOrOnlyOne, read_address);
+            "address" => Checked(AllowedValues::AddressOrOnlyOne, read_address);
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// Whether the encoder's time-out is 44 bits rather than 11 bits.
-        pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
+        pub long_timeout: bool = true, "timeout" => Checked(AllowedValues::TimeoutBits, read_timeout);
         /// Additional time allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
         /// link.
-        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
-        pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
-        pub turns: Option<u32> = None, "turns" => Maybe(Checked(Expected::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
+        pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
+        pub periods: Option<u32> = None, "periods" => OptionalValue(Checked(AllowedValues::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
+        pub turns: Option<u32> = None, "turns" => OptionalValue(Checked(AllowedValues::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }
 
@@ -43,11 +43,11 @@ impl Default for Codes {
 }
 
 impl Codes {
-    pub fn get(self, number: CodeNumber) -> AccessCode {
+    pub fn get(self, number: AccessCodeNumber) -> AccessCode {
         self.0.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    pub fn set(&mut self, number: CodeNumber, code: AccessCode) {
+    pub fn set(&mut self, number: AccessCodeNumber, code: AccessCode) {
         if let Some(own) = self.0.get_mut(usize::from(number.get())) {
             *own = code;
         }
@@ -56,7 +56,7 @@ impl Codes {
 
 /// Access codes, with their numbers, with which each session begins. If a number occurs twice, its last code counts.
 #[derive(Clone, Debug, Default)]
-pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
+pub struct AccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
 impl AccessCodes {
     pub fn set_in(&self, codes: &mut Codes) {
@@ -66,8 +66,8 @@ impl AccessCodes {
     }
 }
 
-impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
-    fn from_iter<I: IntoIterator<Item = (CodeNumber, AccessCode)>>(codes: I) -> Self {
+impl FromIterator<(AccessCodeNumber, AccessCode)> for AccessCodes {
+    fn from_iter<I: IntoIterator<Item = (AccessCodeNumber, AccessCode)>>(codes: I) -> Self {
         AccessCodes(codes.into_iter().collect())
     }
 }
@@ -118,7 +118,7 @@ impl Station {
     ///
     /// # Errors
     /// A value is invalid; the error lists the allowed values.
-    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
         station.format = CharacterFormat { baud: link.baud, parity: link.parity };
@@ -134,7 +134,7 @@ impl Station {
     }
 
     /// Returns whether values must be read twice, because an XOR misses some pairs of flipped bits.
-    pub(super) fn reads_twice(&self) -> bool {
+    pub(super) fn needs_double_read(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
 
@@ -166,17 +166,17 @@ impl fmt::Display for Station {
     }
 }
 
-struct Bauds;
+struct BaudValues;
 
-impl Values for Bauds {
+impl Values for BaudValues {
     type Value = Baud;
 
     fn read(&self, text: &str) -> Option<Baud> {
         text.parse().ok().and_then(Baud::new).filter(|baud| BAUDS.contains(baud))
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec())
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec())
     }
 }
 
@@ -210,10 +210,10 @@ fn read_periods(text: &str) -> Option<u32> {
 fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {
-        None if link.turns.is_some() => Err(Refused::new("turns", turns, Expected::OnlyWith("periods="))),
+        None if link.turns.is_some() => Err(Refused::new("turns", turns, AllowedValues::OnlyWith("periods="))),
         None => Ok(None),
         Some(periods) if turns > MOST_PERIODS / periods => {
-            Err(Refused::new("turns", turns, Expected::MostTurns { most: MOST_PERIODS / periods }))
+            Err(Refused::new("turns", turns, AllowedValues::MostTurns { most: MOST_PERIODS / periods }))
         }
         Some(periods) => Ok(Some(Geometry::Rotary { periods, turns })),
     }
@@ -233,12 +233,12 @@ mod tests {
         assert_eq!(station.to_string(), "address 40h at 9600 8E1");
         assert_eq!(station.line.echo, Echo::Unknown);
         assert_eq!(station.line.margin, Duration::from_millis(50));
-        assert_eq!(station.codes.get(CodeNumber::ZERO), AccessCode::FACTORY);
+        assert_eq!(station.codes.get(AccessCodeNumber::ZERO), AccessCode::FACTORY);
     }
 
     #[test]
     fn given_access_codes_are_never_printed() {
-        let number = |number| CodeNumber::new(number).unwrap();
+        let number = |number| AccessCodeNumber::new(number).unwrap();
         let given: AccessCodes =
             [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
         let mut codes = Codes::default();

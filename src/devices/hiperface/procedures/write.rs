@@ -3,16 +3,19 @@
 pub use crate::profile::Written;
 
 use super::{
-    Error, Identity, Master, ReadBack, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
-    read_range,
+    Error, Identity, Master, ReadBackValue, ensure_standstill, read_all_fields, read_counter, read_field,
+    read_field_status, read_range,
 };
 use crate::bits::hex_compact;
 use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
 use crate::devices::hiperface::procedures::master::ExchangeFailure;
-use crate::devices::hiperface::procedures::position::{distance, range_of};
-use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, Scalar};
+use crate::devices::hiperface::procedures::position::{distance, position_range};
+use crate::devices::hiperface::profile::{
+    Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, ScalarValue,
+};
 use crate::devices::hiperface::protocol::{
-    BROADCAST, CodeNumber, Command, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
+    AccessCodeNumber, BROADCAST, Command, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request,
+    StatusCode,
 };
 use crate::profile::Write;
 
@@ -67,7 +70,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
-        let sent = perform(&mut self.master, op, confirmed, range_of(self.identity.geometry));
+        let sent = perform(&mut self.master, op, confirmed, position_range(self.identity.geometry));
         // A change that was not sent, or was refused, was not carried out; any other may have been.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
@@ -79,7 +82,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 
     fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
-        let range = range_of(self.identity.geometry);
+        let range = position_range(self.identity.geometry);
         done.verified = self.master.shielded(|master| verify(master, confirmed.plan(), range))?;
         Ok(())
     }
@@ -96,7 +99,7 @@ impl Write for EncoderWrite<'_, '_> {
         let (before, after) = ops.split_at(done.ops.min(ops.len()));
         let begun = before.iter().chain(after.first().filter(|_| may_have_been_executed(cause)));
         let unlocked: Vec<u8> = begun.filter(|op| op.is_unlock()).filter_map(Op::field).collect();
-        let range = range_of(self.identity.geometry);
+        let range = position_range(self.identity.geometry);
         for field in unlocked {
             let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
             let lock_again = |master: &mut Master<'_>| restore_lock(master, lock, confirmed, range, done);
@@ -116,18 +119,18 @@ fn may_have_been_executed(cause: &Error) -> bool {
     !matches!(cause, Error::Cancelled | Error::Rejected { .. })
 }
 
-fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geometry>) -> Result<(), Error> {
+fn confirm_scalar(master: &mut Master<'_>, scalar: ScalarValue, geometry: Option<Geometry>) -> Result<(), Error> {
     let (same, item) = match scalar {
-        Scalar::Position(then) => {
+        ScalarValue::Position(then) => {
             let now = ensure_standstill(master, geometry)?;
-            if distance(now, then, range_of(geometry)) > 1 {
+            if distance(now, then, position_range(geometry)) > 1 {
                 return Err(Error::Moving { readings: vec![then, now] });
             }
             (true, PlanItem::Position)
         }
-        Scalar::Counter(then) => (read_counter(master)? == then, PlanItem::Item(Item::Counter)),
-        Scalar::Settings(then) => (read_type_label(master)?.settings == then, PlanItem::Item(Item::Settings)),
-        Scalar::Address(then) => (master.station().address == then, PlanItem::Item(Item::Address)),
+        ScalarValue::Counter(then) => (read_counter(master)? == then, PlanItem::Item(Item::Counter)),
+        ScalarValue::Settings(then) => (read_type_label(master)?.settings == then, PlanItem::Item(Item::Settings)),
+        ScalarValue::Address(then) => (master.station().address == then, PlanItem::Item(Item::Address)),
     };
     if same { Ok(()) } else { Err(Error::Changed { item }) }
 }
@@ -156,24 +159,23 @@ fn restore_lock(
 
 /// Executes one operation on an encoder with `range` positions, and returns how often the operation was sent.
 fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
-    let code0 = master.station().codes.get(CodeNumber::ZERO);
+    let code0 = master.station().codes.get(AccessCodeNumber::ZERO);
     match op {
         Op::Define { field, from, to } => {
             let guarded_by = from.unwrap_or(*to).code();
             let code = master.station().codes.get(guarded_by);
             let request = Request::DefineField { field: *field, status: *to, code };
-            master.send_until_done(&request, |master| has_status(master, *field, *to))
+            master.send_verified(&request, |master| has_status(master, *field, *to))
         }
         Op::Store { field, address, status, new, .. } => {
             let code = master.station().codes.get(status.code());
             let request = Request::StoreData { field: *field, address: *address, code, data: new.clone() };
             let start = usize::from(*address);
-            master.send_until_done(&request, |master| Ok(read_range(master, *field, start, new.len(), code)? == *new))
+            master.send_verified(&request, |master| Ok(read_range(master, *field, start, new.len(), code)? == *new))
         }
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
-            let sent =
-                master.send_until_done(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
+            let sent = master.send_verified(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
@@ -184,7 +186,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
                 Request::SetPosition { position: *to, code0 }
             };
             let telling = distance(*from, *to, range) > 1;
-            master.send_until_done(&request, |master| {
+            master.send_verified(&request, |master| {
                 if !telling {
                     return Err(Error::PositionUnchanged);
                 }
@@ -194,14 +196,14 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         Op::SetAddress { to, .. } => set_address(master, *to),
         Op::Configure { to, .. } => {
             let request = Request::ConfigureLine { settings: *to, code0 };
-            master.send_until_done(&request, |master| Ok(read_type_label(master)?.settings == *to))
+            master.send_verified(&request, |master| Ok(read_type_label(master)?.settings == *to))
         }
         Op::ClearCounter { .. } => {
-            master.send_until_done(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
+            master.send_verified(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
         }
         Op::IncrementCounter { from } => {
             let next = next_count(*from);
-            match master.send_until_done(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
+            match master.send_verified(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
                 // Some types report the overflow this way (manual, "Zähler erhöhen"): it was carried out.
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
                     master.station().add_codes(codes);
@@ -219,10 +221,10 @@ fn next_count(counter: u32) -> u32 {
 }
 
 fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error> {
-    let code0 = master.station().codes.get(CodeNumber::ZERO);
+    let code0 = master.station().codes.get(AccessCodeNumber::ZERO);
     let before = master.station().address;
     let request = Request::SetAddress { new: to, code0 };
-    let sent = master.send_until_done(&request, |master| {
+    let sent = master.send_verified(&request, |master| {
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
@@ -247,7 +249,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
 fn opens(
     master: &mut Master<'_>,
     base: &Base,
-    number: CodeNumber,
+    number: AccessCodeNumber,
     code: crate::devices::hiperface::protocol::AccessCode,
 ) -> Result<bool, Error> {
     let guarded = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
@@ -271,7 +273,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
                 if !later.iter().any(redefined) && !has_status(master, *field, *to)? {
                     let (item, expected) = (op.item(), format!("{:02X}", to.byte()));
-                    return Err(Error::NotVerified { item, expected, got: ReadBack::AnotherStatus });
+                    return Err(Error::NotVerified { item, expected, got: ReadBackValue::AnotherStatus });
                 }
                 verified += 1;
             }
@@ -324,7 +326,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
 }
 
 fn mismatch(op: &Op, expected: String, got: String) -> Error {
-    Error::NotVerified { item: op.item(), expected, got: ReadBack::Value(got) }
+    Error::NotVerified { item: op.item(), expected, got: ReadBackValue::Value(got) }
 }
 
 /// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
@@ -344,7 +346,7 @@ pub fn ensure_address_free(master: &mut Master<'_>, address: DeviceAddress) -> R
 pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     match master.request_confirmed(&Request::FreeMemory)? {
         Reply::FreeMemory(memory) => Ok(memory),
-        other => Err(Error::other_reply(Command::FreeMemory, &other)),
+        other => Err(Error::unexpected_reply(Command::FreeMemory, &other)),
     }
 }
 
@@ -354,7 +356,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
 /// Errors of the exchange.
 pub fn read_guarded_fields(
     master: &mut Master<'_>,
-    number: CodeNumber,
+    number: AccessCodeNumber,
 ) -> Result<(FreeMemory, Vec<FieldImage>), Error> {
     let memory = read_memory(master)?;
     let mut fields = read_all_fields(master, memory.fields, &mut |_, _| {})?;

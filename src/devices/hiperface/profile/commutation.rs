@@ -30,7 +30,7 @@ pub struct CommutationRecord {
 
 /// Error for bytes that begin like a commutation record but are not a valid one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Damaged;
+pub struct CommutationRecordError;
 
 impl CommutationRecord {
     /// Length in bytes.
@@ -49,11 +49,11 @@ impl CommutationRecord {
     }
 
     /// Parses the record at the beginning of `bytes`, or returns `None` if there is no record.
-    pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
+    pub fn parse(bytes: &[u8]) -> Option<Result<Self, CommutationRecordError>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;
         }
-        Some(Self::checked(bytes).ok_or(Damaged))
+        Some(Self::checked(bytes).ok_or(CommutationRecordError))
     }
 
     fn checked(bytes: &[u8]) -> Option<Self> {
@@ -102,11 +102,11 @@ mod tests {
         for bit in 0..RECORD.len() * 8 {
             let mut bytes = RECORD;
             bytes[bit / 8] ^= 1 << (bit % 8);
-            let expected = if bit < 24 { None } else { Some(Err(Damaged)) };
+            let expected = if bit < 24 { None } else { Some(Err(CommutationRecordError)) };
             assert_eq!(CommutationRecord::parse(&bytes), expected, "bit {bit}");
         }
         for length in 0..RECORD.len() {
-            let expected = if length < 3 { None } else { Some(Err(Damaged)) };
+            let expected = if length < 3 { None } else { Some(Err(CommutationRecordError)) };
             assert_eq!(CommutationRecord::parse(&RECORD[..length]), expected, "{length} bytes");
         }
     }

@@ -1,6 +1,6 @@
 //! Planning of single changes. Each is checked against the rules of the encoder before anything is sent.
 
-use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, Scalar};
+use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, ScalarValue};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
 /// Plans to write exactly these bytes. Adjacent or overlapping edits become one operation, the last edit of a byte
@@ -110,7 +110,7 @@ pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePl
 }
 
 /// Plans to change a single value.
-pub fn plan_scalar(fields: u8, now: Scalar, op: Option<Op>) -> HiperfacePlan {
+pub fn plan_scalar(fields: u8, now: ScalarValue, op: Option<Op>) -> HiperfacePlan {
     let mut plan = plan(fields, Vec::new(), op.into_iter().collect());
     plan.base.scalars.push(now);
     plan

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::protocol::AccessCodeNumber;
 
 /// Readable item of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -50,7 +50,7 @@ pub enum PlanItem {
     Position,
     /// Access code.
     #[error("code {0}")]
-    Code(CodeNumber),
+    Code(AccessCodeNumber),
 }
 
 /// The string does not name an item.

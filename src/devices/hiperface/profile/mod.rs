@@ -11,13 +11,13 @@ mod plan;
 mod record;
 mod restore;
 
-pub use commutation::{CommutationRecord, Damaged};
+pub use commutation::{CommutationRecord, CommutationRecordError};
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
 pub use entry_error::EntryError;
 pub use item::{FieldRange, Item, ItemError, PlanItem};
-pub use plan::{Base, HiperfacePlan, Op, Scalar};
+pub use plan::{Base, HiperfacePlan, Op, ScalarValue};
 pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
 pub use restore::{
-    DeviceState, PlanError, Redo, Restore, RestoreOptions, UnknownField, check_allowed, check_device, created_by,
-    plan_restore,
+    DeviceState, PlanError, RequiredSetup, Restore, RestoreOptions, UnknownField, check_allowed, check_device,
+    created_by, plan_restore,
 };

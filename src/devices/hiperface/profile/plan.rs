@@ -2,7 +2,7 @@
 
 use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
+use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
 use crate::profile::{Operation, Plan};
 
 /// Planned write to a HIPERFACE encoder.
@@ -16,12 +16,12 @@ pub struct Base {
     /// The affected fields.
     pub fields: Vec<FieldImage>,
     /// The affected single values.
-    pub scalars: Vec<Scalar>,
+    pub scalars: Vec<ScalarValue>,
 }
 
 /// A single value stored in an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Scalar {
+pub enum ScalarValue {
     /// Position in steps, with the shaft at rest.
     Position(u32),
     /// Counter.
@@ -60,7 +60,7 @@ pub enum Op {
     /// Changes an access code with command 4Fh.
     ChangeCode {
         /// Number of the access code.
-        number: CodeNumber,
+        number: AccessCodeNumber,
         /// Present code.
         old: AccessCode,
         /// New code.

@@ -2,7 +2,7 @@
 
 use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer};
 use crate::profile::{Comparison, Profile, ProfileError};
@@ -141,7 +141,7 @@ impl Profile for HiperfaceProfile {
         let identity = read_identity(entries.structure("identity")?)?;
         let interface = read_interface(entries.structure("interface")?)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("field:0@0+16"), read_marked)?;
+        let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("field:0@0+16"), parse_mounting_item)?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
         for entries in entries.required_structures("fields")? {
@@ -220,13 +220,13 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", Expected::Text)?,
-        encoder_type: entries.required("encoder_type", Expected::Byte)?,
-        encoder_name: entries.optional("encoder_name", Expected::Text)?.unwrap_or_default(),
-        firmware_version: entries.optional("firmware_version", Expected::Text)?.unwrap_or_default(),
-        firmware_date: entries.optional("firmware_date", Expected::Text)?.unwrap_or_default(),
-        eeprom_bytes: entries.optional("eeprom_bytes", Expected::Whole)?.unwrap_or_default(),
-        options: entries.optional("options", Expected::Byte)?.unwrap_or_default(),
+        serial_number: entries.required("serial_number", AllowedValues::Text)?,
+        encoder_type: entries.required("encoder_type", AllowedValues::Byte)?,
+        encoder_name: entries.optional("encoder_name", AllowedValues::Text)?.unwrap_or_default(),
+        firmware_version: entries.optional("firmware_version", AllowedValues::Text)?.unwrap_or_default(),
+        firmware_date: entries.optional("firmware_date", AllowedValues::Text)?.unwrap_or_default(),
+        eeprom_bytes: entries.optional("eeprom_bytes", AllowedValues::Whole)?.unwrap_or_default(),
+        options: entries.optional("options", AllowedValues::Byte)?.unwrap_or_default(),
         extended_label: entries.bytes("extended_label")?,
         unknown: entries.rest()?,
     })
@@ -234,21 +234,21 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 
 fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     Ok(Interface {
-        address: entries.required("address", Expected::Byte)?,
-        settings: LineSettings::from_byte(entries.required("settings", Expected::Byte)?),
+        address: entries.required("address", AllowedValues::Byte)?,
+        settings: LineSettings::from_byte(entries.required("settings", AllowedValues::Byte)?),
         unknown: entries.rest()?,
     })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        position: entries.optional("position", Expected::between(0, 4_294_967_295))?,
-        counter: entries.optional("counter", Expected::between(0, 16_777_215))?,
+        position: entries.optional("position", AllowedValues::between(0, 4_294_967_295))?,
+        counter: entries.optional("counter", AllowedValues::between(0, 16_777_215))?,
         unknown: entries.rest()?,
     })
 }
 
-fn read_marked(text: &str) -> Result<FieldRange, EntryError> {
+fn parse_mounting_item(text: &str) -> Result<FieldRange, EntryError> {
     match text.parse::<Item>() {
         Ok(Item::Field(range)) => Ok(range),
         _ => Err(EntryError::Marked(text.to_owned())),
@@ -256,14 +256,14 @@ fn read_marked(text: &str) -> Result<FieldRange, EntryError> {
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
-    let number: u8 = entries.required("number", Expected::between(0, 254))?;
-    let status = DataFieldStatus::from_byte(entries.required("status", Expected::Byte)?);
+    let number: u8 = entries.required("number", AllowedValues::between(0, 254))?;
+    let status = DataFieldStatus::from_byte(entries.required("status", AllowedValues::Byte)?);
     let wrong = |entries: &Entries, name: &str, error| Err(ProfileError::refused(entries.path_of(name), error));
     if !status.exists() {
         return wrong(&entries, "status", EntryError::Status(status.byte()));
     }
     let bytes = entries.bytes("bytes")?;
-    let locked = entries.optional("locked", Expected::words(&["true", "false"]))?.unwrap_or(false);
+    let locked = entries.optional("locked", AllowedValues::words(&["true", "false"]))?.unwrap_or(false);
     if bytes.is_some() == locked {
         return wrong(&entries, "bytes", if locked { EntryError::Locked } else { EntryError::NotLocked });
     }

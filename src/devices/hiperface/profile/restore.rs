@@ -66,18 +66,18 @@ pub struct Restore {
 
 /// Value that must be set up again after restoring the profile of another encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Redo {
+pub enum RequiredSetup {
     /// Offset between encoder and motor.
     Commutation,
     /// A mounting value.
     Value(FieldRange),
 }
 
-impl fmt::Display for Redo {
+impl fmt::Display for RequiredSetup {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Redo::Commutation => f.write_str("commutation"),
-            Redo::Value(range) => range.fmt(f),
+            RequiredSetup::Commutation => f.write_str("commutation"),
+            RequiredSetup::Value(range) => range.fmt(f),
         }
     }
 }

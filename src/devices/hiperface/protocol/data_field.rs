@@ -10,20 +10,20 @@ pub const MAX_TRANSFER: usize = 128;
 
 /// Number of one of the encoder's four access codes, 0…3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CodeNumber(u8);
+pub struct AccessCodeNumber(u8);
 
-impl CodeNumber {
+impl AccessCodeNumber {
     /// Access code 0, which also protects the encoder's own settings.
-    pub const ZERO: CodeNumber = CodeNumber(0);
+    pub const ZERO: AccessCodeNumber = AccessCodeNumber(0);
 
     /// Creates an access code number 0…3, or returns `None` for a greater number.
     pub const fn new(number: u8) -> Option<Self> {
-        if number < 4 { Some(CodeNumber(number)) } else { None }
+        if number < 4 { Some(AccessCodeNumber(number)) } else { None }
     }
 
     /// Returns all four numbers.
-    pub fn all() -> impl Iterator<Item = CodeNumber> {
-        (0..4).map(CodeNumber)
+    pub fn all() -> impl Iterator<Item = AccessCodeNumber> {
+        (0..4).map(AccessCodeNumber)
     }
 
     /// Returns the number.
@@ -32,7 +32,7 @@ impl CodeNumber {
     }
 }
 
-impl fmt::Display for CodeNumber {
+impl fmt::Display for AccessCodeNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
     }
@@ -119,7 +119,7 @@ impl DataFieldStatus {
     }
 
     /// Creates the status of an existing, writable field.
-    pub const fn new(size: FieldSize, code: CodeNumber, code_required: bool) -> Self {
+    pub const fn new(size: FieldSize, code: AccessCodeNumber, code_required: bool) -> Self {
         let required = if code_required { Self::CODE_REQUIRED } else { 0 };
         DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
     }
@@ -140,8 +140,8 @@ impl DataFieldStatus {
     }
 
     /// Returns the access code that protects the field.
-    pub const fn code(self) -> CodeNumber {
-        CodeNumber(self.0 >> 4 & 3)
+    pub const fn code(self) -> AccessCodeNumber {
+        AccessCodeNumber(self.0 >> 4 & 3)
     }
 
     /// Returns whether reading and writing require the access code (bit CE).
@@ -162,7 +162,7 @@ impl DataFieldStatus {
 
     /// Returns a copy of the status with another access code, which may be required or not.
     #[must_use]
-    pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
+    pub const fn with_code(self, code: AccessCodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
         DataFieldStatus(rest | code.0 << 4 | if required { Self::CODE_REQUIRED } else { 0 })
     }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn a_status_is_encoded_as_in_the_manual() {
         let size = FieldSize::from_bytes(32).unwrap();
-        let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);
+        let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
         assert_eq!(status.byte(), 0xC9);
         assert_eq!(status.deleted().byte(), 0x49);
         assert_eq!(DataFieldStatus::from_byte(0xE8).with_write_enable(false).byte(), 0xA8);

@@ -1,13 +1,13 @@
 //! Description of a captured frame as facts, for `decode` and the trace. Access codes are never included.
 
 use super::{
-    AccessCode, Answer, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings, Reply,
-    Request, RequestError, StatusCode,
+    AccessCode, AccessCodeNumber, Answer, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings,
+    Reply, Request, RequestError, StatusCode,
 };
 
 /// One item in the description of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FrameFact {
+pub enum FrameDetail {
     /// Address and command of the frame.
     Heading {
         /// Address, 40h…5Fh, or FFh in a broadcast.
@@ -64,7 +64,7 @@ pub enum Arguments {
         status: DataFieldStatus,
     },
     /// Number of the access code to change.
-    Code(CodeNumber),
+    Code(AccessCodeNumber),
     /// New address.
     Address(DeviceAddress),
     /// New interface settings.
@@ -76,18 +76,18 @@ pub enum Arguments {
 ///
 /// # Errors
 /// The bytes are not a frame.
-pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact>, FrameError> {
+pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameDetail>, FrameError> {
     let frame = Frame::parse(bytes)?;
-    let mut facts = vec![FrameFact::Heading { address: frame.address, command: frame.command }];
+    let mut facts = vec![FrameDetail::Heading { address: frame.address, command: frame.command }];
     if let Some(answer) = request.and_then(|request| request.parse_reply(frame.address, bytes).ok()) {
         facts.extend(answered(answer));
         return Ok(facts);
     }
     match Request::parse(&frame) {
-        Ok(request) => facts.push(FrameFact::Request(arguments(request))),
+        Ok(request) => facts.push(FrameDetail::Request(request_arguments(request))),
         Err(error) => match guess_reply(&frame, bytes) {
             Some(answer) => facts.extend(answered(answer)),
-            None => facts.push(FrameFact::NoRequest(error)),
+            None => facts.push(FrameDetail::NoRequest(error)),
         },
     }
     Ok(facts)
@@ -114,7 +114,7 @@ fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
         }
         (Command::FreeMemory, _) => Request::FreeMemory,
         (Command::ChangeCode, [number]) => {
-            Request::ChangeCode { number: CodeNumber::new(*number)?, old: code, new: code }
+            Request::ChangeCode { number: AccessCodeNumber::new(*number)?, old: code, new: code }
         }
         (Command::ReadStatus, _) => Request::ReadStatus,
         (Command::ReadTypeLabel, _) => Request::ReadTypeLabel,
@@ -129,7 +129,7 @@ fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     candidate.parse_reply(frame.address, bytes).ok()
 }
 
-fn arguments(request: Request) -> Arguments {
+fn request_arguments(request: Request) -> Arguments {
     match request {
         Request::SetPosition { position, .. } | Request::Synchronise { position, .. } => Arguments::Position(position),
         Request::ReadAnalogue { channel } => Arguments::Channel(channel),
@@ -154,11 +154,11 @@ fn arguments(request: Request) -> Arguments {
     }
 }
 
-fn answered(answer: Answer) -> Vec<FrameFact> {
+fn answered(answer: Answer) -> Vec<FrameDetail> {
     match answer {
-        Answer::Rejected { codes, .. } => codes.into_iter().map(FrameFact::Refused).collect(),
-        Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(FrameFact::Code).collect(),
-        Answer::Reply { reply, .. } => vec![FrameFact::Reply(reply)],
+        Answer::Rejected { codes, .. } => codes.into_iter().map(FrameDetail::Refused).collect(),
+        Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(FrameDetail::Code).collect(),
+        Answer::Reply { reply, .. } => vec![FrameDetail::Reply(reply)],
     }
 }
 
@@ -169,15 +169,15 @@ mod tests {
 
     #[test]
     fn requests_and_replies_are_distinguished() {
-        let heading = |command| FrameFact::Heading { address: 0x40, command };
+        let heading = |command| FrameDetail::Heading { address: 0x40, command };
         let cases = [
-            ("40 42 02", 0x42, FrameFact::Request(Arguments::None)),
-            ("40 42 00 0E 05 31 38", 0x42, FrameFact::Reply(Reply::Position(0x000E_0531))),
-            ("40 D0 0F 9F", 0xD0, FrameFact::Code(StatusCode::WRONG_CODE)),
-            ("40 4D 00 C9 C4", 0x4D, FrameFact::Reply(Reply::Done)),
-            ("40 4F 02 0D", 0x4F, FrameFact::Reply(Reply::Done)),
-            ("40 4B 01 05 02 0D", 0x4B, FrameFact::Reply(Reply::Done)),
-            ("40 41 01", 0x41, FrameFact::NoRequest(RequestError::Command(0x41))),
+            ("40 42 02", 0x42, FrameDetail::Request(Arguments::None)),
+            ("40 42 00 0E 05 31 38", 0x42, FrameDetail::Reply(Reply::Position(0x000E_0531))),
+            ("40 D0 0F 9F", 0xD0, FrameDetail::Code(StatusCode::WRONG_CODE)),
+            ("40 4D 00 C9 C4", 0x4D, FrameDetail::Reply(Reply::Done)),
+            ("40 4F 02 0D", 0x4F, FrameDetail::Reply(Reply::Done)),
+            ("40 4B 01 05 02 0D", 0x4B, FrameDetail::Reply(Reply::Done)),
+            ("40 41 01", 0x41, FrameDetail::NoRequest(RequestError::Command(0x41))),
         ];
         for (bytes, command, expected) in cases {
             let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
@@ -190,11 +190,11 @@ mod tests {
         // The manual's examples: code 66h opens field 1, code 2 becomes 66h.
         let cases = [
             ("40 4B 01 05 02 66 08 15 76", Arguments::Store { field: 1, address: 5, data: vec![0x08, 0x15] }),
-            ("40 4F 02 55 66 3E", Arguments::Code(CodeNumber::new(2).unwrap())),
+            ("40 4F 02 55 66 3E", Arguments::Code(AccessCodeNumber::new(2).unwrap())),
         ];
         for (bytes, expected) in cases {
             let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
-            assert_eq!(said.last(), Some(&FrameFact::Request(expected)), "{bytes}");
+            assert_eq!(said.last(), Some(&FrameDetail::Request(expected)), "{bytes}");
         }
     }
 
@@ -208,6 +208,6 @@ mod tests {
     fn a_refusal_is_recognized_by_its_request() {
         let request = Request::ReadPosition;
         let said = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
-        assert_eq!(said.last(), Some(&FrameFact::Refused(StatusCode::new(0x1F))));
+        assert_eq!(said.last(), Some(&FrameDetail::Refused(StatusCode::new(0x1F))));
     }
 }

@@ -113,7 +113,7 @@ impl EncoderTypes {
 
     /// Returns this table combined with the rows of `other`, which take precedence.
     #[must_use]
-    pub fn overlaid_with(self, other: EncoderTypes) -> Self {
+    pub fn merged_with(self, other: EncoderTypes) -> Self {
         let mut rows = other.0;
         rows.extend(self.0);
         EncoderTypes(rows)
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_users_row_overrides_the_built_in_one() {
         let own = r#"(types: [(code: 0x37, name: "XYZ", shape: Some(rotary(periods: 64, turns: 1)))])"#;
-        let types = EncoderTypes::built_in().overlaid_with(EncoderTypes::parse(own).unwrap());
+        let types = EncoderTypes::built_in().merged_with(EncoderTypes::parse(own).unwrap());
         assert_eq!(types.find(0x37).unwrap().name, "XYZ");
         assert_eq!(types.find(0x22).unwrap().geometry, Some(Geometry::Rotary { periods: 1024, turns: 1 }));
     }

@@ -33,9 +33,9 @@ pub const KIND: &str = "hiperface";
 pub use address::{BROADCAST, DeviceAddress};
 pub use command::{COMMANDS, Command, CommandRow};
 pub use data_field::{
-    AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
+    AccessCode, AccessCodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
-pub use describe::{Arguments, FrameFact, describe};
+pub use describe::{Arguments, FrameDetail, describe};
 pub use encoder_type::{EncoderType, EncoderTypes, ShapeEntry, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};

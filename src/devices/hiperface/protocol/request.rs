@@ -4,7 +4,8 @@
 use std::fmt;
 
 use super::{
-    AccessCode, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, LineSettings, MAX_TRANSFER, StatusCode,
+    AccessCode, AccessCodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, LineSettings, MAX_TRANSFER,
+    StatusCode,
 };
 use crate::bits::MaskedBytes;
 
@@ -75,7 +76,7 @@ pub enum Request {
     /// Changes an access code (4Fh).
     ChangeCode {
         /// Number of the access code.
-        number: CodeNumber,
+        number: AccessCodeNumber,
         /// Present code.
         old: AccessCode,
         /// New code.
@@ -268,7 +269,7 @@ impl Request {
                 Request::DefineField { field: *field, status: DataFieldStatus::from_byte(*status), code: code(*ac) }
             }
             (Command::FreeMemory, []) => Request::FreeMemory,
-            (Command::ChangeCode, [number, old, new]) => match CodeNumber::new(*number) {
+            (Command::ChangeCode, [number, old, new]) => match AccessCodeNumber::new(*number) {
                 Some(number) => Request::ChangeCode { number, old: code(*old), new: code(*new) },
                 None => return Some(Err(RequestError::Argument("code number"))),
             },
@@ -379,7 +380,7 @@ mod tests {
         let store = Request::StoreData { field: 1, address: 5, code: AccessCode::new(0x66), data: vec![0x08, 0x15] };
         assert_eq!(store.emit(0x40).masked().to_string(), "40 4B 01 05 02 ** 08 15 **");
         let change = Request::ChangeCode {
-            number: CodeNumber::new(2).unwrap(),
+            number: AccessCodeNumber::new(2).unwrap(),
             old: AccessCode::FACTORY,
             new: AccessCode::new(0x66),
         };

@@ -29,7 +29,7 @@ impl Timing {
     }
 
     /// Creates the timing for a settings byte, or returns `None` if the byte contains reserved values.
-    pub fn of_settings(settings: LineSettings) -> Option<Self> {
+    pub fn from_settings(settings: LineSettings) -> Option<Self> {
         Some(Self::new(settings.format()?, settings.long_timeout()))
     }
 
@@ -58,7 +58,7 @@ mod tests {
     /// manual's maximum times.
     #[test]
     fn worst_case_durations_at_9600_baud() {
-        let timing = Timing::of_settings(LineSettings::FACTORY).unwrap();
+        let timing = Timing::from_settings(LineSettings::FACTORY).unwrap();
         let code = AccessCode::FACTORY;
         let read = |count| Request::ReadData { field: 0, address: 0, count, code };
         let store = |count| Request::StoreData { field: 0, address: 0, code, data: vec![0; count] };

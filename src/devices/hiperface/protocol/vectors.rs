@@ -81,7 +81,7 @@ fn lines() -> Vec<Line> {
     lines
 }
 
-fn of_kind(kind: Kind) -> impl Iterator<Item = Line> {
+fn lines_of_kind(kind: Kind) -> impl Iterator<Item = Line> {
     lines().into_iter().filter(move |line| line.kind == kind)
 }
 
@@ -94,7 +94,7 @@ impl Line {
 }
 
 /// Returns whether the XOR of a frame is zero, by a separate loop independent of the function under test.
-fn sums_to_zero(bytes: &[u8]) -> bool {
+fn has_zero_xor(bytes: &[u8]) -> bool {
     let mut sum = 0;
     for byte in bytes {
         sum ^= byte;
@@ -108,12 +108,12 @@ fn every_frame_in_the_file_has_a_correct_checksum() {
         match line.kind {
             Kind::SingleByte => {}
             Kind::NotAFrame => {
-                assert!(line.bytes.len() < 3 || !sums_to_zero(&line.bytes), "line {}", line.number);
+                assert!(line.bytes.len() < 3 || !has_zero_xor(&line.bytes), "line {}", line.number);
                 assert!(Frame::parse(&line.bytes).is_err(), "line {}", line.number);
             }
-            Kind::LabelContent => assert!(sums_to_zero(&line.bytes), "line {}", line.number),
+            Kind::LabelContent => assert!(has_zero_xor(&line.bytes), "line {}", line.number),
             _ => {
-                assert!(sums_to_zero(&line.bytes), "line {}", line.number);
+                assert!(has_zero_xor(&line.bytes), "line {}", line.number);
                 let frame = Frame::parse(&line.bytes).unwrap();
                 assert_eq!(frame.emit(), line.bytes, "line {}", line.number);
             }
@@ -123,7 +123,7 @@ fn every_frame_in_the_file_has_a_correct_checksum() {
 
 #[test]
 fn every_request_in_the_file_round_trips() {
-    for line in of_kind(Kind::Request) {
+    for line in lines_of_kind(Kind::Request) {
         let (request, address) = line.requested_frame();
         assert_eq!(request.emit(address).bytes(), line.bytes, "line {}", line.number);
     }
@@ -131,7 +131,7 @@ fn every_request_in_the_file_round_trips() {
 
 #[test]
 fn every_reply_in_the_file_matches_its_request() {
-    for line in of_kind(Kind::Reply) {
+    for line in lines_of_kind(Kind::Reply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(matches!(answer, Ok(Answer::Reply { .. })), "line {}: {answer:?}", line.number);
@@ -142,7 +142,7 @@ fn every_reply_in_the_file_matches_its_request() {
 
 #[test]
 fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
-    for line in of_kind(Kind::ErrorFrame) {
+    for line in lines_of_kind(Kind::ErrorFrame) {
         let pending = line.bytes[1] == 0xD0;
         let codes = vec![StatusCode::new(line.bytes[2])];
         let refused = Request::FreeMemory.parse_reply(0x40, &line.bytes);
@@ -154,7 +154,7 @@ fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
 
 #[test]
 fn frames_that_are_not_replies_are_refused() {
-    for line in of_kind(Kind::NotAReply) {
+    for line in lines_of_kind(Kind::NotAReply) {
         let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(!matches!(answer, Ok(_) | Err(ReplyError::Frame(_))), "line {}: {answer:?}", line.number);
@@ -186,7 +186,7 @@ fn truncated_and_damaged_replies_are_refused() {
 
 #[test]
 fn single_bytes_decode_as_in_the_file() {
-    for line in of_kind(Kind::SingleByte) {
+    for line in lines_of_kind(Kind::SingleByte) {
         let (what, text) = line.meaning.split_once(": ").unwrap();
         let words: Vec<&str> = text.split(", ").collect();
         match what {
@@ -219,7 +219,7 @@ fn single_bytes_decode_as_in_the_file() {
 
 #[test]
 fn the_label_in_the_file_parses() {
-    let content = of_kind(Kind::LabelContent).next().unwrap().bytes;
+    let content = lines_of_kind(Kind::LabelContent).next().unwrap().bytes;
     assert_eq!(content.len(), 64);
     let label = ExtendedLabel::parse(&content).unwrap();
     let expected = ExtendedLabel {

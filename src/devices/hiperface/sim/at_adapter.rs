@@ -29,7 +29,7 @@ impl AttachableKind for AtAdapter {
 }
 
 impl SerialDevice for Bus {
-    fn another(&self) -> Box<dyn SerialDevice> {
+    fn duplicate(&self) -> Box<dyn SerialDevice> {
         Box::new(self.clone())
     }
 

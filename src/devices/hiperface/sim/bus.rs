@@ -9,8 +9,8 @@ use fastrand::Rng;
 use super::config::Config;
 use super::encoder::{Encoder, ReceivedCharacter};
 use crate::devices::hiperface::protocol::LineSettings;
-use crate::sim::Faults;
-use crate::sim::line::{Character, Queue, VirtualLine, Wires};
+use crate::sim::SimulatedFaults;
+use crate::sim::line::{SerialCharacter, TransitQueue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
 /// Line with one or several encoders, as seen from the host. Created from a [`Config`].
@@ -20,9 +20,9 @@ pub struct Bus {
     echo: bool,
     wires: Wires,
     /// Characters in transit to the encoders, by start time.
-    to_encoders: Queue<CharacterInTransit>,
+    to_encoders: TransitQueue<CharacterInTransit>,
     /// Characters in transit to the host, by end time.
-    to_host: Queue<CharacterInTransit>,
+    to_host: TransitQueue<CharacterInTransit>,
     talks: Vec<LineOccupation>,
 }
 
@@ -35,7 +35,7 @@ enum Talker {
 #[derive(Clone, Copy)]
 struct CharacterInTransit {
     talker: Talker,
-    character: Character,
+    character: SerialCharacter,
     format: CharacterFormat,
 }
 
@@ -66,8 +66,8 @@ impl Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
             echo: config.echo,
             wires: Wires::new(&config.faults, config.seed, CharacterFormat::FACTORY),
-            to_encoders: Queue::default(),
-            to_host: Queue::default(),
+            to_encoders: TransitQueue::default(),
+            to_host: TransitQueue::default(),
             talks: Vec::new(),
         }
     }
@@ -85,7 +85,7 @@ impl Bus {
         self.encoders.get_mut(index)
     }
 
-    pub fn set_faults(&mut self, faults: &Faults) {
+    pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         for encoder in &mut self.encoders {
             encoder.set_faults(faults.clone());
@@ -114,7 +114,7 @@ impl Bus {
     fn deliver_to_encoders(&mut self) {
         let Some((_, travelling)) = self.to_encoders.pop() else { return };
         let collides = self.has_collision(&travelling);
-        let Character { start, end, byte, flipped } = travelling.character;
+        let SerialCharacter { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
             // A driver that is on receives only its own bytes.
             if travelling.talker == Talker::Encoder(index) {
@@ -122,10 +122,10 @@ impl Bus {
             }
             let Some(format) = encoder.settings_at(start).and_then(LineSettings::format) else { continue };
             let clean = !collides && format == travelling.format;
-            let byte = if clean { byte } else { garbage(&mut self.wires.rng) };
+            let byte = if clean { byte } else { garbage_byte(&mut self.wires.rng) };
             // Without a parity bit a flipped bit is not detected.
             let intact = clean && (!flipped || format.parity == Parity::None);
-            encoder.hear(ReceivedCharacter { start, end, byte, intact });
+            encoder.handle_input(ReceivedCharacter { start, end, byte, intact });
         }
     }
 
@@ -133,14 +133,14 @@ impl Bus {
         let Some((_, travelling)) = self.to_host.pop() else { return };
         // The usual driver setting passes on bytes with a wrong parity bit unchanged.
         let clean = !self.has_collision(&travelling) && travelling.format == self.wires.host;
-        let byte = if clean { travelling.character.byte } else { garbage(&mut self.wires.rng) };
+        let byte = if clean { travelling.character.byte } else { garbage_byte(&mut self.wires.rng) };
         self.wires.inbox.push(byte);
     }
 
     /// Transmits bytes one character after another, and returns the end of the last character.
     fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
-        let on_the_way = |character: Character| CharacterInTransit { talker, character, format };
+        let on_the_way = |character: SerialCharacter| CharacterInTransit { talker, character, format };
         for heard in sent.heard.into_iter().map(on_the_way) {
             if talker != Talker::Host {
                 self.to_host.insert(heard.character.end, heard);
@@ -168,7 +168,7 @@ impl Bus {
 
 /// Returns the byte that a receiver produces for an unreadable character. The byte is never an address, so it cannot
 /// begin a frame.
-fn garbage(rng: &mut Rng) -> u8 {
+fn garbage_byte(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }
 

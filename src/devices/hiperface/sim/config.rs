@@ -4,25 +4,25 @@
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
-use crate::expected::{Expected, Quantity};
-use crate::parameter::{Checked, Maybe, Refused, SWITCH, Values, Whole, Words, number};
+use crate::expected::{AllowedValues, Quantity};
+use crate::parameter::{Checked, OptionalValue, Refused, SWITCH, Values, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
+use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
     /// Settings of a virtual line with encoders. The default is a single SKM36 with factory settings, at rest and
     /// without faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
-        pub(super) model: Model = usual_model(), "model" => Models;
-        pub(super) encoder_type: Option<u8> = None, "type" => Maybe(Checked(Expected::TypeByte, number::<u8>));
-        pub(super) serial_number: Option<String> = None, "serial" => Maybe(Checked(Expected::SerialNumber, serial));
-        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(Expected::BusAddress { last: DeviceAddress::LAST.byte() }, address);
+        pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) model: Model = default_model(), "model" => ModelValues;
+        pub(super) encoder_type: Option<u8> = None, "type" => OptionalValue(Checked(AllowedValues::TypeByte, number::<u8>));
+        pub(super) serial_number: Option<String> = None, "serial" => OptionalValue(Checked(AllowedValues::SerialNumber, serial));
+        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(AllowedValues::BusAddress { last: DeviceAddress::LAST.byte() }, address);
         pub(super) settings: LineSettings = LineSettings::FACTORY,
-            "settings" => Checked(Expected::SettingsByte, settings);
+            "settings" => Checked(AllowedValues::SettingsByte, settings);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        pub(super) position: Option<u32> = None, "position" => Maybe(Checked(Expected::Steps, number::<u32>));
+        pub(super) position: Option<u32> = None, "position" => OptionalValue(Checked(AllowedValues::Steps, number::<u32>));
         pub(super) temperature: i16 = 42, "temperature" => Whole(Quantity::WholeCelsius, -100..=300);
         pub(super) echo: bool = false, "echo" => SWITCH;
         pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Number, 1..=8);
@@ -78,12 +78,12 @@ impl Config {
         if let (Some(position), Some(range)) = (self.position, range)
             && u64::from(position) >= range
         {
-            let allowed = Expected::range(Quantity::Position, 0, range - 1);
+            let allowed = AllowedValues::range(Quantity::Position, 0, range - 1);
             return Err(Refused::new("position", position, allowed).into());
         }
         let last_first = DeviceAddress::LAST.byte() - (self.encoders - 1);
         if self.address.byte() > last_first {
-            let allowed = Expected::FirstAddress { last: last_first };
+            let allowed = AllowedValues::FirstAddress { last: last_first };
             let address = format!("{:#04X}", self.address.byte());
             return Err(Refused::new("address", address, allowed).into());
         }
@@ -91,22 +91,22 @@ impl Config {
     }
 }
 
-const fn usual_model() -> Model {
+const fn default_model() -> Model {
     let [usual, ..] = MODELS;
     usual
 }
 
-struct Models;
+struct ModelValues;
 
-impl Values for Models {
+impl Values for ModelValues {
     type Value = Model;
 
     fn read(&self, text: &str) -> Option<Model> {
         Model::find(text).copied()
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec())
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec())
     }
 }
 
@@ -126,8 +126,8 @@ impl Values for Codes {
         Some(codes)
     }
 
-    fn allowed(&self) -> Expected {
-        Expected::AccessCodes
+    fn allowed(&self) -> AllowedValues {
+        AllowedValues::AccessCodes
     }
 }
 

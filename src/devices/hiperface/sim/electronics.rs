@@ -8,8 +8,8 @@ use super::memory::Memory;
 use super::models::Model;
 use super::shaft::Shaft;
 use crate::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, Command, DataFieldStatus, DeviceAddress, EncoderTypes, FieldSize, LineSettings, Request,
-    StatusCode,
+    AccessCode, AccessCodeNumber, Command, DataFieldStatus, DeviceAddress, EncoderTypes, FieldSize, LineSettings,
+    Request, StatusCode,
 };
 use crate::units::Moment;
 
@@ -56,7 +56,7 @@ impl StatusQueue {
 
 /// Virtual encoder without its line.
 #[derive(Clone, Debug)]
-pub(super) struct Electronics {
+pub(super) struct EncoderElectronics {
     model: Model,
     kit: bool,
     encoder_type: u8,
@@ -72,7 +72,7 @@ pub(super) struct Electronics {
     temperature: i16,
 }
 
-impl Electronics {
+impl EncoderElectronics {
     /// 24 bits.
     const COUNTER_END: u32 = 0x00FF_FFFF;
     /// Analogue channel of the sine signal, as in the data sheets.
@@ -85,7 +85,7 @@ impl Electronics {
         let model = config.model;
         let types = EncoderTypes::built_in();
         let position = config.position.unwrap_or(model.position);
-        let mut electronics = Electronics {
+        let mut electronics = EncoderElectronics {
             model,
             kit: config.is_kit(&types),
             encoder_type: config.encoder_type.unwrap_or(model.encoder_type),
@@ -144,7 +144,7 @@ impl Electronics {
                 Ok(vec![])
             }
             Request::ReadAnalogue { channel } => {
-                let [high, low] = self.analogue(at, *channel)?.to_be_bytes();
+                let [high, low] = self.analogue_value(at, *channel)?.to_be_bytes();
                 Ok(vec![*channel, high, low])
             }
             Request::ReadCounter => {
@@ -215,7 +215,7 @@ impl Electronics {
     ///
     /// # Errors
     /// As for a complete store.
-    pub(super) fn store_half(
+    pub(super) fn store_partially(
         &mut self,
         field: u8,
         address: u8,
@@ -236,7 +236,7 @@ impl Electronics {
         Ok(self.shaft.position(at).to_be_bytes().to_vec())
     }
 
-    fn analogue(&self, at: Moment, channel: u8) -> Result<i16, StatusCode> {
+    fn analogue_value(&self, at: Moment, channel: u8) -> Result<i16, StatusCode> {
         match channel {
             Self::SINE => Ok(self.shaft.sine(at)),
             Self::COSINE => Ok(self.shaft.cosine(at)),
@@ -246,7 +246,7 @@ impl Electronics {
     }
 
     fn check_code0(&self, code0: AccessCode) -> Result<(), StatusCode> {
-        self.memory.check_code(CodeNumber::ZERO, code0)
+        self.memory.check_code(AccessCodeNumber::ZERO, code0)
     }
 
     /// Reports once that the temperature has just exceeded its limit.
@@ -262,7 +262,7 @@ impl Electronics {
 fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
-        let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);
+        let status = DataFieldStatus::new(size, AccessCodeNumber::ZERO, true);
         // If the name plate does not fit, the field is left out.
         let _ = memory
             .define(0, status, AccessCode::FACTORY)

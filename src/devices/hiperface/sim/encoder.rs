@@ -13,12 +13,12 @@
 use std::time::Duration;
 
 use super::config::Config;
-use super::electronics::{Electronics, Wear};
+use super::electronics::{EncoderElectronics, Wear};
 use super::memory::Memory;
 use crate::devices::hiperface::protocol::{
     BROADCAST, Command, DeviceAddress, Frame, FrameError, LineSettings, Request, StatusCode, Timing, checksum,
 };
-use crate::sim::Faults;
+use crate::sim::SimulatedFaults;
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,8 +74,8 @@ pub(super) struct Transmission {
 /// may contain access codes.
 #[derive(Clone)]
 pub struct Encoder {
-    electronics: Electronics,
-    faults: Faults,
+    electronics: EncoderElectronics,
+    faults: SimulatedFaults,
     pace: Pace,
     power: Power,
     /// Interface settings that were stored at the last start.
@@ -103,13 +103,13 @@ enum Power {
 
 #[derive(Clone)]
 enum Activity {
-    Listening(Option<Reception>),
+    Listening(Option<IncomingFrame>),
     Executing { until: Moment, settings: LineSettings, verdict: Result<Request, StatusCode> },
     Talking { until: Moment },
 }
 
 #[derive(Clone)]
-struct Reception {
+struct IncomingFrame {
     bytes: Vec<u8>,
     intact: bool,
     overlong: bool,
@@ -117,19 +117,19 @@ struct Reception {
     ends: Moment,
 }
 
-impl Reception {
+impl IncomingFrame {
     /// Capacity in bytes, greater than the length of the longest request (4Bh with 128 bytes: 135).
     const CAPACITY: usize = 140;
 
-    fn beginning(ends: Moment) -> Self {
-        Reception { bytes: Vec::new(), intact: true, overlong: false, ends }
+    fn ending_at(ends: Moment) -> Self {
+        IncomingFrame { bytes: Vec::new(), intact: true, overlong: false, ends }
     }
 }
 
 impl Encoder {
     pub(super) fn new(config: &Config, index: u8) -> Self {
         Encoder {
-            electronics: Electronics::new(config, index),
+            electronics: EncoderElectronics::new(config, index),
             faults: config.faults.clone(),
             pace: config.pace,
             power: Power::OnForLong,
@@ -214,7 +214,7 @@ impl Encoder {
     }
 
     /// Replaces the faults, keeping the counts of frames and stores.
-    pub(super) fn set_faults(&mut self, faults: Faults) {
+    pub(super) fn set_faults(&mut self, faults: SimulatedFaults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
     }
@@ -255,17 +255,17 @@ impl Encoder {
     }
 
     /// Records the start of a received character, after all actions due earlier have been [executed](Self::act).
-    pub(super) fn hear(&mut self, heard: ReceivedCharacter) {
+    pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
-        let Some(timing) = Timing::of_settings(settings) else { return };
+        let Some(timing) = Timing::from_settings(settings) else { return };
         let in_lost_frame = self.lost.is_some_and(|end| heard.start < end + timing.timeout);
         match &mut self.activity {
             Activity::Listening(reception) if !in_lost_frame => {
                 let ends = heard.end + timing.timeout;
-                let reception = reception.get_or_insert_with(|| Reception::beginning(ends));
+                let reception = reception.get_or_insert_with(|| IncomingFrame::ending_at(ends));
                 reception.ends = ends;
                 reception.intact &= heard.intact;
-                if reception.bytes.len() < Reception::CAPACITY {
+                if reception.bytes.len() < IncomingFrame::CAPACITY {
                     reception.bytes.push(heard.byte);
                 } else {
                     reception.overlong = true;
@@ -287,7 +287,7 @@ impl Encoder {
         }
     }
 
-    fn end_of_frame(&mut self, at: Moment, reception: &Reception) {
+    fn end_of_frame(&mut self, at: Moment, reception: &IncomingFrame) {
         // A frame that ends while the settings change is lost.
         let Some(settings) = self.settings_at(at) else { return };
         let broadcast = match reception.bytes.first() {
@@ -314,7 +314,7 @@ impl Encoder {
             self.power_on(at);
             return;
         }
-        let until = at + self.pace.time(&verdict) + self.faults.delay();
+        let until = at + self.pace.time(&verdict) + self.faults.reply_delay();
         self.activity = Activity::Executing { until, settings, verdict };
     }
 
@@ -350,7 +350,7 @@ impl Encoder {
         };
         let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
         // The settings were in use when the request was received, so they are not reserved ones.
-        let talk = Timing::of_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
+        let talk = Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
         if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
             // Used from the end of the reply on: until then nothing is received.
@@ -367,12 +367,12 @@ impl Encoder {
         }
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.faults.die_in_store() == Some(self.stores_begun)
-            && self.electronics.store_half(*field, *address, data, *code).is_ok()
+            && self.electronics.store_partially(*field, *address, data, *code).is_ok()
     }
 }
 
 /// Checks the parity, then the checksum, then the length, in the order of the reference.
-fn valid_frame(reception: &Reception) -> Result<Frame<'_>, StatusCode> {
+fn valid_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);
     }

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use crate::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, StatusCode,
+    AccessCode, AccessCodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, StatusCode,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +75,7 @@ impl Memory {
         self.bytes.get(self.place(field)?)
     }
 
-    pub fn code(&self, number: CodeNumber) -> AccessCode {
+    pub fn code(&self, number: AccessCodeNumber) -> AccessCode {
         // A number is 0…3; the factory value is used for the impossible case.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
@@ -136,7 +136,12 @@ impl Memory {
     ///
     /// # Errors
     /// 0Fh if `old` is not the present value.
-    pub fn change_code(&mut self, number: CodeNumber, old: AccessCode, new: AccessCode) -> Result<(), StatusCode> {
+    pub fn change_code(
+        &mut self,
+        number: AccessCodeNumber,
+        old: AccessCode,
+        new: AccessCode,
+    ) -> Result<(), StatusCode> {
         self.check_code(number, old)?;
         if let Some(code) = self.codes.get_mut(usize::from(number.get())) {
             *code = new;
@@ -145,7 +150,7 @@ impl Memory {
     }
 
     /// Checks the access code of commands that require a particular one.
-    pub(super) fn check_code(&self, number: CodeNumber, code: AccessCode) -> Result<(), StatusCode> {
+    pub(super) fn check_code(&self, number: AccessCodeNumber, code: AccessCode) -> Result<(), StatusCode> {
         if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
     }
 
@@ -278,7 +283,7 @@ mod tests {
     #[test]
     fn changing_a_field_needs_its_current_code() {
         let mut memory = two_fields();
-        let code2 = CodeNumber::new(2).unwrap();
+        let code2 = AccessCodeNumber::new(2).unwrap();
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
         assert_eq!(memory.change_code(code2, CODE, CODE), Err(StatusCode::WRONG_CODE));
         // Field 1 moves from code 2 to code 0: code 2 is required.

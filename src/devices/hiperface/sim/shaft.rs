@@ -47,14 +47,14 @@ impl Shaft {
     }
 
     pub(super) fn position(&self, at: Moment) -> u32 {
-        let word = (self.whole_steps(at) + self.offset) % self.range();
+        let word = (self.integer_steps(at) + self.offset) % self.range();
         // The range is at most 2³².
         u32::try_from(word).unwrap_or(u32::MAX)
     }
 
     pub(super) fn set_position(&mut self, at: Moment, position: u32) {
         let range = self.range();
-        self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;
+        self.offset = (u64::from(position) % range + range - self.integer_steps(at)) % range;
     }
 
     /// Returns the sine signal in counts of 10 bits for 5 V, with a mean of 2.5 V and 1 Vpp. The signal crosses its
@@ -78,7 +78,7 @@ impl Shaft {
         self.place(at) % period / period * TAU
     }
 
-    fn whole_steps(&self, at: Moment) -> u64 {
+    fn integer_steps(&self, at: Moment) -> u64 {
         self.place(at) as u64 // not negative, below the range
     }
 

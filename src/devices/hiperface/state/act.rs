@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::write::with_options;
 use crate::app::Text;
 use crate::app::services::Services;
-use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
+use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
 use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::Item;
@@ -25,7 +25,7 @@ impl Encoder {
             HiperfaceAction::ReadAnalogue(channel) => {
                 self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services)
             }
-            HiperfaceAction::ReadRest => self.read_rest(services),
+            HiperfaceAction::ReadRest => self.submit_rest_reading(services),
             HiperfaceAction::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             HiperfaceAction::Check { restart } => {
                 let then = self.stored_settings().filter(|_| restart);
@@ -46,7 +46,7 @@ impl Encoder {
             HiperfaceAction::Plan(change) => self.plan(change, services),
             HiperfaceAction::PlanAgain(options) => {
                 if let Some(review) = &self.session.review {
-                    self.plan_again(with_options(&review.change, options), services);
+                    self.replan(with_options(&review.change, options), services);
                 }
             }
             HiperfaceAction::ForceWear(force) => self.force_wear(force),
@@ -65,10 +65,10 @@ impl Encoder {
             watched.push(what);
         }
         self.record.watch(&watched);
-        self.wish_watched();
+        self.update_watches();
     }
 
-    pub(super) fn wish_watched(&mut self) {
+    pub(super) fn update_watches(&mut self) {
         if let Some(line) = &self.session.line {
             line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }

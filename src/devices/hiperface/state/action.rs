@@ -7,7 +7,7 @@ use crate::app::DeviceAction;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings};
+use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, LineSettings};
 use crate::profile::PlanId;
 
 pub enum HiperfaceAction {
@@ -27,7 +27,7 @@ pub enum HiperfaceAction {
     /// Changes the interface settings until the next restart.
     ConfigureForNow(LineSettings),
     UseCode {
-        number: CodeNumber,
+        number: AccessCodeNumber,
         code: AccessCode,
     },
     Put {

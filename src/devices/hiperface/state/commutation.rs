@@ -13,13 +13,13 @@ use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
 use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
-use crate::devices::hiperface::procedures::Rest;
+use crate::devices::hiperface::procedures::RestPosition;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::TEXTS;
 
 pub use form::{Form, OffsetInputs, Slot, Source, Storage, Vector};
 pub use offset_location::OffsetLocation;
-pub use outcome::{Offset, Setting, Stored, check_can_read, stored};
+pub use outcome::{CommutationOffset, Setting, Stored, check_can_read, stored};
 pub use report::kind_words;
 
 pub enum CommutationAction {
@@ -113,7 +113,7 @@ impl Commutation {
     }
 
     /// Stores a reading taken at rest in the slot for which it was requested, if any.
-    pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
+    pub(super) fn take(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.reading(rest, geometry) {
             Ok(reading) => self.note(asked.slot, reading),
@@ -144,7 +144,7 @@ impl Commutation {
 }
 
 impl PendingReading {
-    fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<RestReading, Text> {
+    fn reading(&self, rest: RestPosition, geometry: Option<Geometry>) -> Result<RestReading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
         }
@@ -159,7 +159,7 @@ impl PendingReading {
             (Source::Signals, Some(signals)) => {
                 let volts = signals.sine_v.hypot(signals.cosine_v);
                 let no_signal = || TEXTS.text("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
-                if Limits::HIPERFACE.amplitude(volts) == Verdict::Fault {
+                if Limits::HIPERFACE.amplitude_verdict(volts) == Verdict::Fault {
                     return Err(no_signal());
                 }
                 let phase = exact(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
@@ -195,11 +195,11 @@ mod tests {
 
     const SKM36: Option<Geometry> = Some(Geometry::Rotary { periods: 128, turns: 4096 });
 
-    fn rest(raw: u32, volts: Option<(f64, f64)>) -> Rest {
-        Rest { raw, valid: true, signals: volts.map(|(sine_v, cosine_v)| Signals { sine_v, cosine_v }) }
+    fn rest(raw: u32, volts: Option<(f64, f64)>) -> RestPosition {
+        RestPosition { raw, valid: true, signals: volts.map(|(sine_v, cosine_v)| Signals { sine_v, cosine_v }) }
     }
 
-    fn read(source: Source, phase: &str, rest: Rest) -> Result<RestReading, &'static str> {
+    fn read(source: Source, phase: &str, rest: RestPosition) -> Result<RestReading, &'static str> {
         let asked = PendingReading { slot: Slot::OneSide, source, phase: phase.to_owned() };
         asked.reading(rest, SKM36).map_err(|text| text.id())
     }
@@ -231,7 +231,10 @@ mod tests {
 
     #[test]
     fn invalid_positions_are_refused() {
-        assert_eq!(read(Source::Absolute, "", Rest { valid: false, ..rest(40, None) }), Err("commutation.invalid"));
+        assert_eq!(
+            read(Source::Absolute, "", RestPosition { valid: false, ..rest(40, None) }),
+            Err("commutation.invalid")
+        );
         for volts in [(0.0, 0.0), (0.1, 0.1), (0.7, 0.7), (f64::NAN, 0.5)] {
             assert_eq!(read(Source::Signals, "", rest(40, Some(volts))), Err("commutation.no_signal"), "{volts:?}");
         }

@@ -4,7 +4,7 @@
 use super::search::SearchFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, Typed, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
 use crate::app::connect::target::{entered, filled, host_and_port, refused, split_target};
 use crate::devices::hiperface::jobs::check;
 use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
@@ -12,7 +12,7 @@ use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::forms::with_addresses;
-use crate::link::{LinkUrl, Scheme, UrlError};
+use crate::link::{LinkScheme, LinkUrl, UrlError};
 use crate::parameter::{Entry, Parameters as _, Values as _, chosen};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -84,17 +84,17 @@ impl FormModel for LinkForm {
         let mut form = LinkForm::default();
         let target = url.target.clone();
         match url.scheme {
-            Scheme::Sim => form.kind = LinkKind::Virtual,
-            Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
-            Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
+            LinkScheme::Sim => form.kind = LinkKind::Virtual,
+            LinkScheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
+            LinkScheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
             // These do not lead to a HIPERFACE encoder.
-            Scheme::Bridge | Scheme::Modbus | Scheme::Enip => {}
-            Scheme::Tcp => {
+            LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip => {}
+            LinkScheme::Tcp => {
                 form.kind = LinkKind::Tcp;
                 (form.host, form.tcp_port) = split_target(&target);
             }
         }
-        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -125,14 +125,14 @@ impl LinkForm {
         chosen(&Config::entries(), &["rpm", "fault"])
     }
 
-    pub fn of_the_link() -> Vec<Entry> {
+    pub fn link_entries() -> Vec<Entry> {
         LinkParameters::entries()
     }
 
     /// Returns the typed parameters of the link and, if applicable, of the virtual encoder.
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == LinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
-        [own, Self::of_the_link()].concat()
+        [own, Self::link_entries()].concat()
     }
 
     /// Fills in the form entry for a parameter, or returns `false` if no entry can show it.
@@ -141,10 +141,10 @@ impl LinkForm {
             value.clone_into(&mut self.model);
             return true;
         }
-        self.typed.take(&self.entries(), name, value) || self.take_choice(name, value)
+        self.typed.take(&self.entries(), name, value) || self.set_choice(name, value)
     }
 
-    fn take_choice(&mut self, name: &str, value: &str) -> bool {
+    fn set_choice(&mut self, name: &str, value: &str) -> bool {
         let (baud, parity, echo, long_timeout) = (self.baud, self.parity, self.echo, self.long_timeout);
         let mut link = LinkParameters { baud, parity, echo, long_timeout, ..LinkParameters::default() };
         let is_taken = link.set(name, value).unwrap_or(false);
@@ -155,12 +155,12 @@ impl LinkForm {
         is_taken
     }
 
-    fn target(&self) -> Result<(Scheme, String), Text> {
+    fn target(&self) -> Result<(LinkScheme, String), Text> {
         match self.kind {
-            LinkKind::Virtual => Ok((Scheme::Sim, String::new())),
-            LinkKind::Serial => Ok((Scheme::Serial, entered(&self.port, "form.port_missing")?)),
-            LinkKind::Replay => Ok((Scheme::Replay, entered(&self.file, "form.file_missing")?)),
-            LinkKind::Tcp => Ok((Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?)),
+            LinkKind::Virtual => Ok((LinkScheme::Sim, String::new())),
+            LinkKind::Serial => Ok((LinkScheme::Serial, entered(&self.port, "form.port_missing")?)),
+            LinkKind::Replay => Ok((LinkScheme::Replay, entered(&self.file, "form.file_missing")?)),
+            LinkKind::Tcp => Ok((LinkScheme::Tcp, host_and_port(&self.host, &self.tcp_port)?)),
         }
     }
 
@@ -189,8 +189,8 @@ impl LinkForm {
         if !self.long_timeout {
             parameters.set("timeout", "11");
         }
-        parameters.typed(&Self::of_the_link(), &self.typed);
-        parameters.set_remaining(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.typed(&Self::link_entries(), &self.typed);
+        parameters.add_remaining(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
         Ok(parameters)
     }
 

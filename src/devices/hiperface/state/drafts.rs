@@ -2,11 +2,11 @@
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
+use crate::app::session::{HasDraft, HasSession, ProfileFile, Session};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::jobs::device_key;
 use crate::devices::hiperface::profile::HiperfaceProfile;
-use crate::profile::Document;
+use crate::profile::ProfileDocument;
 use crate::store::DeviceKey;
 
 /// Edited bytes, each as field, address and value.
@@ -24,7 +24,7 @@ impl HasSession for Encoder {
     }
 }
 
-impl Drafted for Encoder {
+impl HasDraft for Encoder {
     fn key(&self) -> Option<DeviceKey> {
         self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
     }
@@ -50,9 +50,9 @@ impl Drafted for Encoder {
         &mut self.staged
     }
 
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<HiperfaceProfile>() else { return };
         self.staged.refresh(profile.fields.clone());
-        self.session.take_document(file, document);
+        self.session.apply_document(file, document);
     }
 }

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use super::commutation::Commutation;
 use super::meaning::Meaning;
 use super::record::Record;
-use super::rest::RequestedRest;
+use super::rest::RestReadingRequest;
 use super::{Staged, rules};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings, StatusCode};
+use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, LineSettings, StatusCode};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
@@ -34,17 +34,17 @@ pub struct Encoder {
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
-    pub(super) rest: RequestedRest,
+    pub(super) rest: RestReadingRequest,
     pub(super) meaning: Meaning,
     /// Access codes that the user entered or changed; the next session with this encoder begins with these codes.
-    pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
+    pub(super) access_codes: Vec<(AccessCodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
     /// Access codes that must be passed to the session again once the encoder is identified.
-    pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
+    pub(super) codes_due: Vec<(AccessCodeNumber, AccessCode)>,
     /// Interface settings that the encoder will have after the running job.
     pub(super) settings_then: Option<LineSettings>,
     /// Number of the access code entered last; reading the fields will show whether the code is correct.
-    pub(super) tried_code: Option<CodeNumber>,
+    pub(super) tried_code: Option<AccessCodeNumber>,
 }
 
 impl Encoder {
@@ -62,7 +62,7 @@ impl Encoder {
             analogue: BTreeMap::new(),
             record: Record::default(),
             commutation: Commutation::default(),
-            rest: RequestedRest::default(),
+            rest: RestReadingRequest::default(),
             meaning: Meaning::default(),
             access_codes: Vec::new(),
             asked: None,
@@ -112,13 +112,13 @@ impl Encoder {
     }
 
     /// Adopts the values read from the encoder. Edits are kept unless they belong to another encoder.
-    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+    pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, it may be any of its type; an equal memory makes it count as the same.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
         if self.is_another(&identity) || (self.identity.is_some() && unproven) {
-            self.replaced_by(&identity.serial.serial_number, services);
+            self.handle_device_replacement(&identity.serial.serial_number, services);
         }
         let first = self.identity.is_none();
         self.identify(identity);

@@ -6,15 +6,15 @@ use super::review::Review;
 use super::words;
 use crate::app::Explained;
 use crate::app::review::written_texts;
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{EarlyEnd, Kind, SessionEvents, Source, WithMemory, first};
+use crate::app::services::{JobState, Services};
+use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, Source, first};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, JobStep, SavedProfile, Value,
 };
 use crate::devices::hiperface::procedures::{Error, Sample, Station};
 use crate::devices::hiperface::profile::{Item, Op};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, KIND, StatusCode};
+use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, KIND, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
 use crate::link::{LinkUrl, TraceEntry};
 use crate::profile::Body;
@@ -133,12 +133,12 @@ impl Encoder {
         }
     }
 
-    pub(super) fn remember_code(&mut self, number: CodeNumber, code: AccessCode) {
+    pub(super) fn remember_code(&mut self, number: AccessCodeNumber, code: AccessCode) {
         self.access_codes.retain(|(own, _)| *own != number);
         self.access_codes.push((number, code));
     }
 
-    fn take_value(&mut self, value: Value) {
+    fn apply_value(&mut self, value: Value) {
         match (value, self.asked.take()) {
             (Value::Analogue { value, limit }, Some(Item::Analogue(channel))) => {
                 self.analogue.insert(channel, Ok((value, limit)));
@@ -156,7 +156,7 @@ impl Encoder {
         let remarks = locked
             .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))
             .collect();
-        self.session.write_read(Body::new(saved.profile), edits, remarks, services);
+        self.session.save_read_values(Body::new(saved.profile), edits, remarks, services);
     }
 
     fn apply_completed_steps(&mut self, error: &JobError, services: &mut Services) {
@@ -194,7 +194,7 @@ impl SessionEvents for Encoder {
 
     fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
         match output {
-            HiperfaceOutput::Surveyed(survey) => self.take_survey(*survey, services),
+            HiperfaceOutput::Surveyed(survey) => self.apply_survey(*survey, services),
             HiperfaceOutput::Identity(identity) => {
                 let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
                 if proven {
@@ -207,7 +207,7 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
             HiperfaceOutput::Rest(rest) => self.adopt_rest_reading(rest),
-            HiperfaceOutput::Value(value) => self.take_value(value),
+            HiperfaceOutput::Value(value) => self.apply_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);
                 self.adopt_line_settings();
@@ -277,7 +277,7 @@ impl SessionEvents for Encoder {
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
-        services.end_job(self.session.id, id, JobEnd::Failed(why.clone()));
+        services.end_job(self.session.id, id, JobState::Failed(why.clone()));
         let stands_there = self.handle_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
             // The encoder has no such channel: this is a result, and shown where it was requested.

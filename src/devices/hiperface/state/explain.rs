@@ -21,9 +21,9 @@ use crate::devices::hiperface::state::TEXTS;
 pub use change::{change, staged};
 pub use check::{check, line_quality};
 pub use command::command;
-pub use damage::damage;
+pub use damage::damage_text;
 pub use frame::frame;
-pub use items::{field_range, item, plan_item, read_back, refused};
+pub use items::{field_range, item, plan_item_text, read_back, refused};
 pub use job_step::step_text;
 pub use label::{LabelRow, label};
 pub use op::op;
@@ -34,11 +34,11 @@ pub use words::{
 };
 
 use crate::app::Text;
-use crate::app::explain::{link, not_begun};
+use crate::app::explain::{link, not_started_text};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, OtherType};
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
-use crate::devices::hiperface::profile::{PlanError, Redo, UnknownField};
+use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
 /// Returns the messages for a job that ended early, at least one sentence, each of which may be on a line of its own.
@@ -46,15 +46,15 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![not_begun(why)],
+        JobError::NotBegun(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
-            interruption(interrupted, backup, *planned, *kind)
+            interruption_text(interrupted, backup, *planned, *kind)
         }
     }
 }
 
 /// Returns the messages for an interrupted write: progress, result, and location of the backup.
-pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
         Error::Cancelled => Text::new("write.cancelled").with("done", done.ops).with("planned", planned),
@@ -114,7 +114,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::Damaged { command, tries, cause } => {
             let text =
                 TEXTS.text("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
-            text.with_text("why", damage(cause))
+            text.with_text("why", damage_text(cause))
         }
         Error::NeverSilent => TEXTS.text("encoder.never_silent"),
         Error::Rejected { command, codes } => {
@@ -143,10 +143,10 @@ pub fn encoder(error: &Error) -> Text {
             out_of_field(*field, size.saturating_sub(1), *address, *count)
         }
         Error::CodeUnknown { field, number } => code_unknown(*field, number),
-        Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", plan_item(item)),
+        Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", plan_item_text(item)),
         Error::NotVerified { item, expected, got } => TEXTS
             .text("encoder.not_verified")
-            .with_text("item", plan_item(item))
+            .with_text("item", plan_item_text(item))
             .with("expected", expected)
             .with_text("got", read_back(got)),
         Error::OtherReply { command, reply } => {
@@ -161,10 +161,10 @@ pub fn encoder(error: &Error) -> Text {
 }
 
 /// Returns the message for a value that must be set up again.
-pub fn redo(redo: &Redo) -> Text {
+pub fn redo(redo: &RequiredSetup) -> Text {
     match redo {
-        Redo::Commutation => TEXTS.text("redo.commutation"),
-        Redo::Value(range) => field_range(range),
+        RequiredSetup::Commutation => TEXTS.text("redo.commutation"),
+        RequiredSetup::Value(range) => field_range(range),
     }
 }
 
@@ -254,7 +254,7 @@ mod tests {
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let path = Path::new("b.ron");
         let words = |cycles, kind| {
-            let texts = interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind);
+            let texts = interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind);
             texts.last().unwrap().words(Language::English)
         };
         let cases = [
@@ -268,7 +268,7 @@ mod tests {
         ];
         for (kind, part, terminal) in cases {
             let cut =
-                |cycles| interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal();
+                |cycles| interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal();
             assert!(words(2, kind).contains(part), "{}", words(2, kind));
             assert!(words(0, kind).contains("Nothing was changed."), "{}", words(0, kind));
             assert!(cut(2).contains(terminal) && cut(2).contains("b.ron"), "{}", cut(2));

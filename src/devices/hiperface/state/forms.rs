@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
-    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings,
+    AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings,
 };
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
@@ -96,7 +96,7 @@ pub fn settings(
     Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
 }
 
-pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> DataFieldStatus {
+pub fn new_field(size: FieldSize, code: AccessCodeNumber, code_required: bool) -> DataFieldStatus {
     DataFieldStatus::new(size, code, code_required)
 }
 

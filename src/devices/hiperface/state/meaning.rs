@@ -2,7 +2,7 @@
 
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
-use crate::devices::hiperface::protocol::{Answer, Frame, FrameFact, Reply, Request, StatusCode, describe};
+use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Request, StatusCode, describe};
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
@@ -36,16 +36,16 @@ impl Meaning {
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let asked = self.request.take();
         let answer = match asked.as_ref().map(|(address, request)| request.parse_reply(*address, bytes)) {
-            Some(Err(error)) => return Explained::broken(words::damage(&Damage::Reply(error))),
+            Some(Err(error)) => return Explained::broken(words::damage_text(&Damage::Reply(error))),
             Some(Ok(answer)) => Some(answer),
             None => None,
         };
         let facts = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
             Ok(facts) => facts,
-            Err(error) => return Explained::broken(words::damage(&Damage::Reply(error.into()))),
+            Err(error) => return Explained::broken(words::damage_text(&Damage::Reply(error.into()))),
         };
         // The heading contains the request's facts; of a reply only new facts are added.
-        let known = |facts: &FrameFact| asked.is_some() && matches!(facts, FrameFact::Heading { .. });
+        let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
         let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(is_report).map(|_| TraceFault::Reported);
         Explained { meaning, fault }

@@ -4,9 +4,9 @@ use std::convert::Infallible;
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::action::Opened;
-use crate::app::services::{Environment, JobEnd, Services};
+use crate::app::services::{Environment, JobState, Services};
 use crate::app::session::SessionEvents;
-use crate::app::{ActContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
+use crate::app::{ActionContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::AccessCodes;
 
@@ -21,16 +21,16 @@ impl DeviceModel for Encoder {
     }
 
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
+        self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.session.adopt_line(opened, services);
-        self.wish_watched();
+        self.update_watches();
         self.codes_due.clear();
         self.tried_code = None;
         self.read_encoder(services);
     }
 
-    fn act(&mut self, action: HiperfaceAction, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: HiperfaceAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 

@@ -7,13 +7,13 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: Track<Watch>,
+    pub(super) track: DeviceRecorder<Watch>,
     last: Option<PositionReading>,
     refused: bool,
 }
@@ -25,7 +25,7 @@ impl Record {
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
-        self.track.note_dropped(dropped);
+        self.track.record_dropped(dropped);
         let meaning = meaning(geometry);
         for sample in samples {
             match sample {
@@ -80,14 +80,14 @@ impl Record {
 fn meaning(geometry: Option<Geometry>) -> Meaning {
     match geometry {
         Some(Geometry::Linear { period_nm, .. }) => {
-            Meaning::of_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
+            Meaning::for_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
         }
         Some(rotary @ Geometry::Rotary { .. }) => {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
-            Meaning::of_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
+            Meaning::for_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
         // The whole word, which wraps at its end.
-        None => Meaning::of_steps(Some(1 << 32)),
+        None => Meaning::for_steps(Some(1 << 32)),
     }
 }
 

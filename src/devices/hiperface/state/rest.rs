@@ -5,14 +5,14 @@ use crate::app::services::Services;
 use crate::app::session::SessionEvents;
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::devices::hiperface::jobs::HiperfaceJob;
-use crate::devices::hiperface::procedures::Rest;
+use crate::devices::hiperface::procedures::RestPosition;
 use crate::devices::hiperface::protocol::Geometry;
 
 /// Reading with the shaft at rest, requested by the user rather than by the assistant.
 #[derive(Debug, Default)]
-pub(super) struct RequestedRest {
+pub(super) struct RestReadingRequest {
     is_under_way: bool,
-    result: Option<Result<Rest, Text>>,
+    result: Option<Result<RestPosition, Text>>,
 }
 
 impl Encoder {
@@ -21,11 +21,11 @@ impl Encoder {
         self.identity.as_ref().and_then(|identity| identity.geometry)
     }
 
-    pub(super) fn read_rest(&mut self, services: &mut Services) {
+    pub(super) fn submit_rest_reading(&mut self, services: &mut Services) {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    pub(super) fn adopt_rest_reading(&mut self, rest: Rest) {
+    pub(super) fn adopt_rest_reading(&mut self, rest: RestPosition) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Ok(rest));
             return;
@@ -73,8 +73,8 @@ impl SineCosineSource for Encoder {
     }
 }
 
-impl From<Rest> for SineCosineReading {
-    fn from(rest: Rest) -> Self {
+impl From<RestPosition> for SineCosineReading {
+    fn from(rest: RestPosition) -> Self {
         let signals = rest.signals.map(|own| SineCosineVolts { sine_v: own.sine_v, cosine_v: own.cosine_v });
         SineCosineReading { position: rest.raw, valid: rest.valid, signals }
     }

@@ -1,11 +1,11 @@
 //! Review of a write to a HIPERFACE encoder: permits, warnings and cost of its plan.
 
 use crate::app::Text;
-use crate::app::review::{self, OperationTexts, Permit, Question, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::Written;
 use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownField};
-use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::protocol::AccessCodeNumber;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
@@ -21,7 +21,7 @@ impl Review {
     }
 }
 
-impl Reviewed for Hiperface {
+impl Reviewable for Hiperface {
     type Change = Change;
     type Prepared = Prepared;
     type Written = Written;
@@ -87,7 +87,7 @@ impl Reviewed for Hiperface {
 
     fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
         let mut needs = Vec::new();
-        let mut codes: Vec<CodeNumber> = Vec::new();
+        let mut codes: Vec<AccessCodeNumber> = Vec::new();
         for op in &prepared.plan.ops {
             let need = match op {
                 Op::SetPosition { synchronise: true, .. } => Some(TEXTS.text("review.needs_synchronise")),

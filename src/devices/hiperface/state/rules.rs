@@ -7,7 +7,7 @@ use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{
     FieldImage, HiperfacePlan, Op, PlanError, plan_create, plan_delete, plan_redefine,
 };
-use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
@@ -15,7 +15,7 @@ use crate::devices::hiperface::state::explain as words;
 pub type Allowed = Result<(), Text>;
 
 /// Checks whether a new field of this size can be created.
-pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_required: bool) -> Allowed {
+pub fn create(memory: FreeMemory, size: FieldSize, code: AccessCodeNumber, code_required: bool) -> Allowed {
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
 
@@ -97,7 +97,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
 }
 
 /// Returns the maximum size to which the last field can be changed.
-pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
+pub fn largest_size(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())
 }

@@ -126,7 +126,7 @@ pub enum SearchAction {
     Choose(usize),
 }
 
-pub struct SearchLinkOpened {
+pub struct SearchLinkResult {
     number: u32,
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>,
 }
@@ -134,7 +134,7 @@ pub struct SearchLinkOpened {
 impl Finder for SearchFinder {
     type Form = LinkForm;
     type Action = SearchAction;
-    type Done = SearchLinkOpened;
+    type Done = SearchLinkResult;
 
     fn act(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
         match action {
@@ -148,7 +148,7 @@ impl Finder for SearchFinder {
             SearchAction::Choose(at) => {
                 let Some(search) = &self.search else { return };
                 if let Some(found) = search.found.get(at) {
-                    context.open_found(search.link_to(found));
+                    context.open_discovered(search.link_to(found));
                 }
             }
         }
@@ -165,13 +165,13 @@ impl Finder for SearchFinder {
             Err(problem) => return context.refuse(problem),
         };
         let number = context.new_number();
-        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, SearchLinkOpened { number, result });
+        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, SearchLinkResult { number, result });
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
     }
 
-    fn done(finder: Option<&mut Self>, done: SearchLinkOpened, services: &mut Services) {
-        let SearchLinkOpened { number, result } = done;
+    fn done(finder: Option<&mut Self>, done: SearchLinkResult, services: &mut Services) {
+        let SearchLinkResult { number, result } = done;
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),

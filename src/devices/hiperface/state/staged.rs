@@ -46,7 +46,7 @@ impl Staged {
     /// Adopts the values read from the encoder. Edits are kept, unless their byte no longer exists or already has the
     /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
-        self.read_again(|own| *own = device);
+        self.reread(|own| *own = device);
     }
 
     pub fn device(&self) -> &[FieldImage] {
@@ -64,12 +64,12 @@ impl Staged {
         fields
     }
 
-    pub fn on_device(&self, field: u8, address: usize) -> Option<u8> {
+    pub fn device_byte(&self, field: u8, address: usize) -> Option<u8> {
         self.field(field)?.bytes.as_ref()?.get(address).copied()
     }
 
     pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
-        self.get((field, address)).or_else(|| self.on_device(field, address))
+        self.get((field, address)).or_else(|| self.device_byte(field, address))
     }
 
     /// Returns whether the edited byte differs from the encoder's.
@@ -158,7 +158,7 @@ mod tests {
     fn an_edit_is_separate_from_the_device() {
         let mut staged = staged();
         staged.put(0, 3, &[0x08, 0x00, 0x15]).unwrap();
-        assert_eq!((staged.on_device(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
+        assert_eq!((staged.device_byte(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
         assert!(staged.is_edited(0, 3) && !staged.is_edited(0, 4) && staged.is_edited(0, 5));
         assert_eq!(staged.changes(), [FieldRange::new(0, 3, 1), FieldRange::new(0, 5, 1)]);
         assert_eq!(staged.wanted()[0].bytes.as_ref().unwrap()[5], 0x15);

@@ -6,7 +6,7 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, SessionEvents, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, SessionEvents, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
@@ -20,7 +20,7 @@ impl Encoder {
     }
 
     /// Prepares the plan under review again. An encoder that did not reply is queried again.
-    pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
+    pub(super) fn replan(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
@@ -32,7 +32,7 @@ impl Encoder {
     }
 }
 
-impl WithMemory for Encoder {
+impl HasMemory for Encoder {
     fn edited_change(&self) -> Option<Change> {
         self.staged.is_dirty().then(|| Change::Store(self.staged.changed_runs()))
     }
@@ -59,7 +59,7 @@ impl WithMemory for Encoder {
         rules::change(&self.staged, change).err()
     }
 
-    fn objection_to(&self, prepared: &Prepared) -> Option<Text> {
+    fn rejection_reason(&self, prepared: &Prepared) -> Option<Text> {
         rules::keeps_edits(&self.staged, &prepared.plan).err()
     }
 
@@ -72,9 +72,9 @@ impl WithMemory for Encoder {
     /// Logs nothing, because the list of jobs shows the start.
     fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
-    fn plan_with(&mut self, permit: Permit, services: &mut Services) {
+    fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
-            self.plan_again(change, services);
+            self.replan(change, services);
         }
     }
 
@@ -92,7 +92,7 @@ impl WithMemory for Encoder {
     }
 }
 
-impl Saved for Encoder {
+impl HasProfile for Encoder {
     fn read_all() -> HiperfaceJob {
         HiperfaceJob::Save(SaveOptions::default())
     }
@@ -107,7 +107,7 @@ impl Saved for Encoder {
         let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));
         let locked = locked
             .map(|own| Text::new("session.saved_locked").with("field", own.number).with("number", own.status.code()));
-        let remarks = without_edits(self.staged.count())
+        let remarks = unsaved_edits_remark(self.staged.count())
             .into_iter()
             .chain(locked)
             .chain(self.unreadable.values().cloned())

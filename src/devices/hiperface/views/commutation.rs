@@ -7,7 +7,7 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, Form, Offset, Slot, Source, Vector, check_can_read, kind_words,
+    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, kind_words,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
@@ -124,7 +124,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
         number_ui(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
         number_ui(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
-        if let Some(words) = form.other_periods(encoder.geometry()) {
+        if let Some(words) = form.periods_mismatch(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         entry(ui, theme, &say(theme, "commutation.direction"), |ui| {
@@ -174,8 +174,8 @@ fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actio
             (None, Err(why)) if any => warn(why),
             (None, Err(_)) => RichText::new(""),
             (None, Ok(_)) if commutation.sides_are_equal() => warn(TEXTS.text("commutation.sides_equal")),
-            (None, Ok(Offset { apart_deg: None, .. })) => warn(TEXTS.text("commutation.only_one_side")),
-            (None, Ok(Offset { apart_deg: Some(apart), fine_periods, .. })) => {
+            (None, Ok(CommutationOffset { apart_deg: None, .. })) => warn(TEXTS.text("commutation.only_one_side")),
+            (None, Ok(CommutationOffset { apart_deg: Some(apart), fine_periods, .. })) => {
                 let text = TEXTS.text("commutation.rest_value").with_number("apart", apart, 2);
                 RichText::new(theme.words(&text.with_number("mean", fine_periods, 5)))
             }

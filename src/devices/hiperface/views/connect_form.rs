@@ -8,7 +8,7 @@ use crate::devices::hiperface::views::say;
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
@@ -100,7 +100,7 @@ fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut 
         let times = times.map(|(long, id)| (long, say(theme, id)));
         choice(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
-    typed(ui, theme, say, LinkForm::of_the_link(), &mut form.typed);
+    typed(ui, theme, say, LinkForm::link_entries(), &mut form.typed);
 }
 
 fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {

@@ -9,7 +9,9 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, empty, enabled_button, folding_card, paragraph, row, two_columns};
+use crate::ui::controls::{
+    card, card_with, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
+};
 use crate::ui::{Theme, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
@@ -40,7 +42,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     };
     card_with(ui, theme, "encoder_card.title", read, |ui| {
         let Some(identity) = &encoder.identity else {
-            empty(ui, theme, &theme.say("encoder_card.nothing"), None);
+            empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
             return;
         };
         ui.label(theme.value(&identity.name));

@@ -7,11 +7,11 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
-use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Staged, TEXTS, forms, rules};
 use crate::devices::hiperface::views::say;
-use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
+use crate::ui::controls::{allowed_button, choice, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
 };
@@ -23,7 +23,7 @@ pub(super) struct MemoryUiState {
     free: bool,
     hex: HexView,
     size: FieldSize,
-    code: CodeNumber,
+    code: AccessCodeNumber,
     code_required: bool,
 }
 
@@ -35,7 +35,7 @@ impl Default for MemoryUiState {
             free: false,
             hex: HexView::default(),
             size: size.unwrap_or(DataFieldStatus::from_byte(0).size()),
-            code: CodeNumber::ZERO,
+            code: AccessCodeNumber::ZERO,
             code_required: true,
         }
     }
@@ -53,7 +53,7 @@ pub(super) fn page_ui(
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
         let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, theme, &say(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty_placeholder(ui, theme, &say(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
@@ -109,7 +109,7 @@ fn map_ui(
     let free = theme.words(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
     let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
-        let largest = rules::largest(memory, last);
+        let largest = rules::largest_size(memory, last);
         1..=usize::from(largest.blocks())
     });
     let model = FieldMap {
@@ -252,7 +252,7 @@ fn code_menu_ui(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &Fi
     let word = say(theme, "memory.code");
     ui.add_enabled_ui(allowed.is_ok(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
-            for code in CodeNumber::all() {
+            for code in AccessCodeNumber::all() {
                 for required in [true, false] {
                     let id = if required { "memory.code_required" } else { "memory.code_free" };
                     let words = theme.words(&TEXTS.text(id).with("number", code));
@@ -316,7 +316,7 @@ fn create_ui(
         let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
         choice(ui, &say(theme, "memory.size"), &mut view.size, sizes);
         ui.label(theme.label(say(theme, "memory.code")));
-        let codes = CodeNumber::all().map(|code| (code, code.to_string()));
+        let codes = AccessCodeNumber::all().map(|code| (code, code.to_string()));
         choice(ui, &say(theme, "memory.code"), &mut view.code, codes);
         ui.checkbox(&mut view.code_required, say(theme, "memory.required"));
         let allowed = if encoder.session.is_ready() {

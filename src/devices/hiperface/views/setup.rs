@@ -5,12 +5,12 @@ use egui::Ui;
 
 use crate::app::{Action, Text, explain};
 use crate::devices::hiperface::jobs::Change;
-use crate::devices::hiperface::protocol::{BAUDS, CodeNumber, LineSettings};
+use crate::devices::hiperface::protocol::{AccessCodeNumber, BAUDS, LineSettings};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    card, choice, enabled_button, entry, folding_card, forget_secret, paragraph, problem_below, row, secret_entry,
+    card, choice, enabled_button, entry, folding_card, forget_secret, paragraph, row, secret_entry, show_error_below,
     text_entry, two_columns,
 };
 use crate::ui::{Theme, icons};
@@ -27,7 +27,7 @@ pub(super) struct SetupUiState {
     address_problem: Option<Text>,
     settings: Option<Chosen>,
     settings_problem: Option<Text>,
-    code_number: CodeNumber,
+    code_number: AccessCodeNumber,
     code: String,
     new_code: String,
     new_again: String,
@@ -106,7 +106,7 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
             let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
             plan(encoder, change, &mut view.position_problem, actions);
         }
-        problem_below(ui, theme, view.position_problem.as_ref());
+        show_error_below(ui, theme, view.position_problem.as_ref());
         if let Some((from, to)) = encoder.position_set {
             let steps = i64::from(from) - i64::from(to);
             let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
@@ -125,7 +125,7 @@ fn codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
     card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "codes_card.words")));
         entry(ui, theme, &say(theme, "codes_card.number"), |ui| {
-            let numbers = CodeNumber::all().map(|number| (number, number.to_string()));
+            let numbers = AccessCodeNumber::all().map(|number| (number, number.to_string()));
             choice(ui, &say(theme, "codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
@@ -157,7 +157,7 @@ fn codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
                 plan(encoder, change, &mut view.code_problem, actions);
             }
         });
-        problem_below(ui, theme, view.code_problem.as_ref());
+        show_error_below(ui, theme, view.code_problem.as_ref());
     });
 }
 
@@ -175,7 +175,7 @@ fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiS
                 plan(encoder, change, &mut view.address_problem, actions);
             }
         });
-        problem_below(ui, theme, view.address_problem.as_ref());
+        show_error_below(ui, theme, view.address_problem.as_ref());
     });
 }
 
@@ -220,7 +220,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
                 }
             }
         });
-        problem_below(ui, theme, view.settings_problem.as_ref());
+        show_error_below(ui, theme, view.settings_problem.as_ref());
     });
 }
 

@@ -2,13 +2,13 @@
 
 use serde_json::json;
 
-use super::Disturbance;
+use super::DisturbanceLevel;
 use super::args::InterbusAction;
 use super::inspect::mode;
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
-use crate::cli::args::{Common, Do};
+use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_changed;
@@ -22,7 +22,7 @@ use crate::result_of;
 
 const ACTIONS: &str = "check, preset, default and lead-back";
 
-pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
@@ -50,15 +50,15 @@ fn preset(runner: &mut Runner) -> Result<u32> {
     )
 }
 
-fn check_device(common: &Common, output: &Output) -> Result {
+fn check_device(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbance::Reading.announce(output);
+    DisturbanceLevel::Reading.announce(output);
     result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
-fn lead_back(common: &Common, output: &Output) -> Result {
+fn lead_back(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbance::LeadingBack.announce(output);
+    DisturbanceLevel::LeadingBack.announce(output);
     let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
@@ -72,10 +72,15 @@ fn lead_back(common: &Common, output: &Output) -> Result {
     Err(Failure::Failed(vec![format!("The encoder was returned to operation, but sends {word}: {why}")]))
 }
 
-fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
+fn change(
+    common: &CommonArgs,
+    output: &Output,
+    act: &ActionArgs,
+    change: impl FnOnce(&mut Runner) -> Result<Change>,
+) -> Result {
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
-    Disturbance::Reading.announce(output);
+    DisturbanceLevel::Reading.announce(output);
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, output, change)?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));

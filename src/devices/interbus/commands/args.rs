@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use crate::cli::args::DirectionOption;
-use crate::devices::interbus::protocol::Mode;
+use crate::devices::interbus::protocol::EncoderMode;
 
 /// Options that select the meaning of an ambiguous word
 #[derive(Args)]
@@ -36,14 +36,14 @@ pub(crate) enum WordMode {
     Cam,
 }
 
-impl From<WordMode> for Mode {
+impl From<WordMode> for EncoderMode {
     fn from(mode: WordMode) -> Self {
         match mode {
-            WordMode::Position => Mode::Position,
-            WordMode::Parameterisation => Mode::Parameterisation,
-            WordMode::ReadOut => Mode::ReadOut,
-            WordMode::Velocity => Mode::Velocity,
-            WordMode::Cam => Mode::Cam,
+            WordMode::Position => EncoderMode::Position,
+            WordMode::Parameterisation => EncoderMode::Parameterisation,
+            WordMode::ReadOut => EncoderMode::ReadOut,
+            WordMode::Velocity => EncoderMode::Velocity,
+            WordMode::Cam => EncoderMode::Cam,
         }
     }
 }

@@ -4,14 +4,14 @@ use serde_json::{Map, Value as Json, json};
 
 use super::args::WordOptions;
 use super::meaning::{self, WordContext, WordMeaning};
-use crate::cli::args::{Decode, Direction};
+use crate::cli::args::{DecodeArgs, Direction};
 use crate::cli::decode::{Explained, show};
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
-use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOut, Single, WindowShift};
+use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOutNumber, Single, WindowShift};
 
-pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
+pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
     let options: WordOptions = arguments.own.read()?;
     let direction = options.way.direction;
     let known = WordContext {
@@ -19,7 +19,7 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
         read_out: options.read_out.as_deref().map(read_out).transpose()?,
         shift: options.shift.and_then(WindowShift::new),
     };
-    let words: Vec<Captured> = arguments.hex.iter().map(|word| captured(word)).collect::<Result<_>>()?;
+    let words: Vec<Captured> = arguments.hex.iter().map(|word| parse_captured(word)).collect::<Result<_>>()?;
     if let (Some(Captured::K1(word)), Some(Direction::Out)) =
         (words.iter().find(|word| matches!(word, Captured::K1(_))), direction)
     {
@@ -39,7 +39,7 @@ enum Captured {
     Long(u32),
 }
 
-fn captured(text: &str) -> Result<Captured> {
+fn parse_captured(text: &str) -> Result<Captured> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     // A sign is not a digit, though the number parser accepts one.
     let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
@@ -56,9 +56,9 @@ fn captured(text: &str) -> Result<Captured> {
 }
 
 /// Parses a read-out, given as a hyphenated name or a number.
-fn read_out(text: &str) -> Result<ReadOut> {
+fn read_out(text: &str) -> Result<ReadOutNumber> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
-    let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);
+    let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOutNumber::new);
     named.or_else(numbered).ok_or_else(|| {
         let names: Vec<String> = READ_OUTS.iter().map(|row| row.name.replace(' ', "-")).collect();
         Failure::Usage(format!(
@@ -71,7 +71,7 @@ fn read_out(text: &str) -> Result<ReadOut> {
 fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> Explained {
     let (shown, meanings) = match word {
         Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(Single::parse_k1(word))])),
-        Captured::Long(word) => (format!("{word:08X}"), long(word, direction, known)),
+        Captured::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
     if let Ok(meanings) = &meanings {
@@ -81,7 +81,11 @@ fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) ->
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-fn long(word: u32, direction: Option<Direction>, known: &WordContext) -> std::result::Result<Vec<WordMeaning>, String> {
+fn long_word_meanings(
+    word: u32,
+    direction: Option<Direction>,
+    known: &WordContext,
+) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
         Some(Direction::In) => Ok(meaning::in_word_meanings(word, known)),
         Some(Direction::Out) => meaning::out_word_meanings(word, known),

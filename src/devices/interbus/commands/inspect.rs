@@ -2,9 +2,9 @@
 
 use serde_json::{Value as Json, json};
 
-use super::Disturbance;
+use super::DisturbanceLevel;
 use super::run::{Runner, identity};
-use crate::cli::args::Common;
+use crate::cli::args::CommonArgs;
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
@@ -14,9 +14,9 @@ use crate::devices::interbus::protocol::{KIND, Reply, StartupMode, Value};
 use crate::devices::interbus::state::explain as words;
 use crate::result_of;
 
-pub(super) fn identify(common: &Common, output: &Output) -> Result {
+pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbance::Reading.announce(output);
+    DisturbanceLevel::Reading.announce(output);
     let identity = identity(&mut runner)?;
     let json = json!({
         "device": KIND,
@@ -64,9 +64,9 @@ pub(super) fn mode(mode: StartupMode) -> String {
     }
 }
 
-pub(super) fn status(common: &Common, output: &Output) -> Result {
+pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbance::Reading.announce(output);
+    DisturbanceLevel::Reading.announce(output);
     let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
     let errors: Vec<Json> = status
         .error
@@ -115,11 +115,14 @@ fn status_text(status: &Status) -> String {
     lines.text()
 }
 
-pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let item = super::item(item)?;
     let mut runner = Runner::open(common)?;
-    let disturbs =
-        if item.parameter().is_some() || !item.is_writable() { Disturbance::Reading } else { Disturbance::Programs };
+    let disturbs = if item.parameter().is_some() || !item.is_writable() {
+        DisturbanceLevel::Reading
+    } else {
+        DisturbanceLevel::Programs
+    };
     disturbs.begin(common, output, None)?;
     let value = result_of!(runner.run(InterbusJob::Read(item))?, InterbusOutput::Item(value) => value);
     let own = match value {

@@ -3,20 +3,21 @@
 use serde_json::{Value as Json, json};
 
 use crate::devices::interbus::protocol::{
-    CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
+    CamOutput, Command, EncoderMode, Parameter, ReadOutNumber, ReadOutValue, Reply, Single, StartupMode, Value,
+    WindowShift,
 };
 
 /// What is known about a word in addition to its digits.
 pub(super) struct WordContext {
-    pub(super) mode: Option<Mode>,
-    pub(super) read_out: Option<ReadOut>,
+    pub(super) mode: Option<EncoderMode>,
+    pub(super) read_out: Option<ReadOutNumber>,
     pub(super) shift: Option<WindowShift>,
 }
 
 pub(super) struct WordMeaning {
     direction: &'static str,
     /// Modes in which the word has this meaning; empty for all modes.
-    modes: Vec<Mode>,
+    modes: Vec<EncoderMode>,
     words: String,
     value: Option<u32>,
     /// Whether the word may be sent or received in these modes.
@@ -52,23 +53,23 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
-    let meaning = |command: Command, modes: Vec<Mode>| {
+    let meaning = |command: Command, modes: Vec<EncoderMode>| {
         let (words, value) = command_words(command);
         WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
-    let legal = |command: Command| Mode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
+    let legal = |command: Command| EncoderMode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
     match known.mode {
         None => Ok(readings
             .into_iter()
             .map(|command| {
-                let modes: Vec<Mode> = legal(command).collect();
-                let everywhere = modes.len() == Mode::ALL.len();
+                let modes: Vec<EncoderMode> = legal(command).collect();
+                let everywhere = modes.len() == EncoderMode::ALL.len();
                 meaning(command, if everywhere { Vec::new() } else { modes })
             })
             .collect()),
         Some(mode) => match Command::in_mode(word, mode) {
             Ok(command) => Ok(vec![meaning(command, vec![mode])]),
-            Err(refused) => Err(format!("not legal in {mode}: {}", other_mode_text(refused.command))),
+            Err(refused) => Err(format!("not legal in {mode}: {}", wrong_mode_text(refused.command))),
         },
     }
 }
@@ -81,7 +82,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
         .map(|refused| WordMeaning {
             direction: "OUT",
             modes: vec![refused.mode],
-            words: format!("not legal, {}", other_mode_text(refused.command)),
+            words: format!("not legal, {}", wrong_mode_text(refused.command)),
             value: command_words(refused.command).1,
             legal: false,
         })
@@ -89,22 +90,23 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
         .collect()
 }
 
-fn other_mode_text(command: Command) -> String {
-    let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
+fn wrong_mode_text(command: Command) -> String {
+    let modes: Vec<&str> =
+        EncoderMode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(EncoderMode::name).collect();
     format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
 }
 
 /// Returns the meaning of an IN word in the known mode, or in every mode in which the word may occur.
 pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
-    let meaning = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
+    let meaning = |modes: &[EncoderMode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",
         modes: modes.iter().copied().filter(|mode| known.mode.is_none_or(|known| known == *mode)).collect(),
         words,
         value,
         legal: true,
     };
-    use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
+    use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
     let mut all = match reply {
         Reply::Run { value, stray: bits } => {
             let stray = stray(bits.into(), "in bits 30 to 25");
@@ -119,11 +121,13 @@ pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeanin
             meaning(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
             meaning(&[Cam], echo(reply, Cam), None),
         ],
-        Reply::ReadOut(value) => vec![meaning(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
-        Reply::UnknownReadOut(_) => vec![meaning(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
+        Reply::ReadOut(value) => vec![meaning(&EncoderMode::ALL, read_out(value, known.read_out), Some(value.get()))],
+        Reply::UnknownReadOut(_) => {
+            vec![meaning(&EncoderMode::ALL, "unknown parameter in a read-out".to_owned(), None)]
+        }
         Reply::Unknown { code, data } => {
             let words = format!("a read-out word with code {}, which the manual does not have", code.get());
-            vec![meaning(&Mode::ALL, words, Some(data.get()))]
+            vec![meaning(&EncoderMode::ALL, words, Some(data.get()))]
         }
         Reply::Error(error) => {
             let words = format!(
@@ -133,12 +137,12 @@ pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeanin
                 error.data.get(),
                 error.remedy()
             );
-            vec![meaning(&Mode::ALL, words, Some(error.data.get()))]
+            vec![meaning(&EncoderMode::ALL, words, Some(error.data.get()))]
         }
     };
     all.retain(|meaning_of_mode| !meaning_of_mode.modes.is_empty());
     for meaning_of_mode in &mut all {
-        if meaning_of_mode.modes.len() == Mode::ALL.len() {
+        if meaning_of_mode.modes.len() == EncoderMode::ALL.len() {
             meaning_of_mode.modes.clear();
         }
     }
@@ -185,7 +189,7 @@ fn set(parameter: Parameter, value: Value) -> String {
     format!("set {} to {number}{meaning}{beyond}", row.name)
 }
 
-fn name(read_out: ReadOut) -> String {
+fn name(read_out: ReadOutNumber) -> String {
     match (read_out.row(), read_out.register()) {
         (Some(row), _) => row.name.to_owned(),
         (None, Some(register)) => format!("register {register} of the chip"),
@@ -216,14 +220,14 @@ fn outputs(word: u32, shift: Option<WindowShift>) -> String {
     format!("{} on; {window}{}", cams(output.outputs.into()), stray(output.stray.into(), "in bits 30 to 25"))
 }
 
-fn echo(reply: Reply, mode: Mode) -> String {
+fn echo(reply: Reply, mode: EncoderMode) -> String {
     let (code, manufacturer, data) = match reply {
         Reply::Busy { manufacturer, data } => (0, manufacturer, data),
         Reply::Echo { manufacturer, code, data } => (code.get(), manufacturer, data),
         _ => return String::new(),
     };
     let with = if manufacturer { ", manufacturer bit" } else { "" };
-    match (reply.echoed(mode), code) {
+    match (reply.echoed_command(mode), code) {
         (Some(command), 0) if !matches!(command, Command::CamStart(..) | Command::CamStop(..)) => {
             format!("echo of \"{}\"", command_words(command).0)
         }
@@ -235,19 +239,19 @@ fn echo(reply: Reply, mode: Mode) -> String {
     }
 }
 
-fn read_out(value: Value, read_out: Option<ReadOut>) -> String {
+fn read_out(value: Value, read_out: Option<ReadOutNumber>) -> String {
     let number = value.get();
     match read_out {
         Some(read_out) => format!("{} {}", name(read_out), scaled(value, read_out)),
         None => format!(
             "read-out value {number} (0x{number:X}); as temperature {}, as operating time {} (--read-out says what it is)",
-            scaled(value, ReadOut::TEMPERATURE),
-            scaled(value, ReadOut::OPERATING_TIME),
+            scaled(value, ReadOutNumber::TEMPERATURE),
+            scaled(value, ReadOutNumber::OPERATING_TIME),
         ),
     }
 }
 
-fn scaled(value: Value, read_out: ReadOut) -> String {
+fn scaled(value: Value, read_out: ReadOutNumber) -> String {
     match read_out.value(value) {
         ReadOutValue::Plain(number) => format!("{number} (0x{number:X})"),
         ReadOutValue::Minutes(minutes) => format!("{minutes} min"),

@@ -17,8 +17,8 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{InterbusAction, WordOptions};
-use crate::cli::args::{Command, Common, Consenting, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
+use crate::cli::args::{Command, CommonArgs, ConsentArgs, SimulateArgs};
+use crate::cli::commands::{CommandId, DeviceCommands, enum_values, options_of};
 use crate::cli::consent::{ask, can_ask};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
@@ -26,7 +26,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
-use crate::link::Scheme;
+use crate::link::LinkScheme;
 
 pub(crate) struct InterbusCommands;
 
@@ -80,10 +80,10 @@ impl DeviceCommands for InterbusCommands {
     }
 
     fn actions(&self) -> Vec<PossibleValue> {
-        values_of::<InterbusAction>()
+        enum_values::<InterbusAction>()
     }
 
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Identify(_) => inspect::identify(common, output),
             Command::Status(_) => inspect::status(common, output),
@@ -97,7 +97,7 @@ impl DeviceCommands for InterbusCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         simulate::simulated(output, arguments)
     }
 }
@@ -112,7 +112,7 @@ fn item(text: &str) -> Result<Item> {
 
 /// The extent to which a command disturbs the process data used by a machine.
 #[derive(Clone, Copy)]
-enum Disturbance {
+enum DisturbanceLevel {
     Reading,
     /// All cam programs are selected one after another.
     Programs,
@@ -120,14 +120,14 @@ enum Disturbance {
     LeadingBack,
 }
 
-impl Disturbance {
+impl DisturbanceLevel {
     /// Announces the disturbance in advance. On a terminal, switching live outputs requires a confirmation, unless a
     /// write was already approved or the encoder is virtual; without a terminal, the command continues.
-    fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
+    fn begin(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.announce(output);
-        let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
+        let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);
         let consented = consent.is_some_and(|consent| consent.yes);
-        if !matches!(self, Disturbance::Programs) || is_virtual || consented || !can_ask() {
+        if !matches!(self, DisturbanceLevel::Programs) || is_virtual || consented || !can_ask() {
             return Ok(());
         }
         if ask("Does the machine stand still? [y/N] ") {
@@ -138,9 +138,9 @@ impl Disturbance {
 
     fn announce(self, output: &Output) {
         let id = match self {
-            Disturbance::Reading => "ib_disturbs.reading",
-            Disturbance::Programs => "ib_disturbs.programs",
-            Disturbance::LeadingBack => "ib_disturbs.lead_back",
+            DisturbanceLevel::Reading => "ib_disturbs.reading",
+            DisturbanceLevel::Programs => "ib_disturbs.programs",
+            DisturbanceLevel::LeadingBack => "ib_disturbs.lead_back",
         };
         output.remark(&TEXTS.text(id).terminal());
     }

@@ -4,12 +4,12 @@ use serde_json::Value as Json;
 
 use super::run::Runner;
 use crate::cli::Result;
-use crate::cli::args::Consenting;
+use crate::cli::args::ConsentArgs;
 use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
-use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
+use crate::devices::interbus::profile::{InterbusPlan, Op, required_programs};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
@@ -19,7 +19,7 @@ use crate::result_of;
 /// Plans a change without writing anything.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
-        Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
+        Change::Restore { profile, .. } => required_programs(profile).len() == ProgramNumber::COUNT,
         Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
         Change::Item(..) => false,
         Change::Preset { .. } | Change::Default => true,
@@ -42,7 +42,7 @@ pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
-    consent: &Consenting,
+    consent: &ConsentArgs,
 ) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
         return Ok(WriteSummary::default());

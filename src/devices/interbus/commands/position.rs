@@ -2,11 +2,11 @@
 
 use serde_json::json;
 
-use super::Disturbance;
+use super::DisturbanceLevel;
 use super::inspect::mode;
 use super::run::{Runner, identity, programs};
 use crate::cli::Result;
-use crate::cli::args::{Common, Position};
+use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
@@ -16,9 +16,9 @@ use crate::result_of;
 
 /// Reads positions. The encoder is identified once, since a position depends on the gear; after that, only the IN word
 /// is read.
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbance::Reading.announce(output);
+    DisturbanceLevel::Reading.announce(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
         // The window determines the visible bits of the position; no program is selected to read it.

@@ -2,24 +2,25 @@
 
 use serde_json::json;
 
-use super::Disturbance;
+use super::DisturbanceLevel;
 use super::InterbusCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
-use crate::cli::args::{Common, Restore, Save};
+use crate::cli::args::{CommonArgs, Restore, SaveArgs};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{
-    UnrestoredItems, print_missing, print_skipped_mounting, restore_options, save_profile, to_restore, write_restore,
+    UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
+    write_restore,
 };
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
-use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_needed};
+use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, required_programs};
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Body;
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = saved(common, output)?;
     let programs = profile.image.known().count();
     save_profile(&save.file, Body::new(profile))?;
@@ -29,11 +30,12 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 impl ProfileCommands for InterbusCommands {
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
-        let profile = to_restore::<InterbusProfile>(restore, profile)?;
+        let profile = profile_to_restore::<InterbusProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
-        let disturbs = if programs_needed(&profile).is_empty() { Disturbance::Reading } else { Disturbance::Programs };
+        let disturbs =
+            if required_programs(&profile).is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
         disturbs.begin(common, output, Some(&restore.consent))?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
@@ -49,7 +51,7 @@ impl ProfileCommands for InterbusCommands {
 
     /// Reads the encoder for a comparison, limited to the contents of the profile if one is given. Reading a cam
     /// program switches the encoder's outputs.
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+    fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,
             Some(profile) => as_far_as(common, output, profile)?,
@@ -59,7 +61,7 @@ impl ProfileCommands for InterbusCommands {
 
     /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches no
     /// encoder.
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+    fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)
                 .err()?;
@@ -73,19 +75,19 @@ impl ProfileCommands for InterbusCommands {
     }
 }
 
-fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
+fn saved(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
     let mut runner = Runner::open(common)?;
-    Disturbance::Programs.begin(common, output, None)?;
+    DisturbanceLevel::Programs.begin(common, output, None)?;
     match runner.run(InterbusJob::Save { programs: true })? {
         InterbusOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
     }
 }
 
-fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
-    let needed = programs_needed(profile);
+fn as_far_as(common: &CommonArgs, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
+    let needed = required_programs(profile);
     let mut runner = Runner::open(common)?;
-    let disturbs = if needed.is_empty() { Disturbance::Reading } else { Disturbance::Programs };
+    let disturbs = if needed.is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
     disturbs.begin(common, output, None)?;
     let survey = survey(&mut runner)?;
     let mut image = Image::of(survey.parameters);

@@ -2,13 +2,13 @@
 
 use std::net::Ipv4Addr;
 
-use crate::cli::args::Simulate;
+use crate::cli::args::SimulateArgs;
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::sim::{Config, Gateway};
 
-pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what =
             "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";
@@ -25,7 +25,7 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 
 impl Simulated for Gateway {
     /// Returns another connection to the gateway, which serves several masters at once.
-    fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+    fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection()))
     }
 }

@@ -49,7 +49,7 @@ fn edge(item: Item, text: &str) -> Result<Value> {
 fn direction(item: Item, text: &str) -> Result<Direction> {
     match (text.parse(), parse_number(text)) {
         (Ok(direction), _) => Ok(direction),
-        (Err(_), Some(number)) => u32::try_from(number).ok().and_then(Direction::of_code).ok_or_else(|| {
+        (Err(_), Some(number)) => u32::try_from(number).ok().and_then(Direction::from_code).ok_or_else(|| {
             out_of_range(item, text, Direction::Clockwise.code().into(), Direction::Counterclockwise.code().into())
         }),
         (Err(error), None) => Err(Failure::Usage(format!("{text:?}: {error}"))),

@@ -9,7 +9,7 @@ use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
 };
 use crate::devices::interbus::protocol::{
-    GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift,
+    GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOutNumber, StartupMode, Value, WindowShift,
 };
 use crate::store::DeviceKey;
 
@@ -47,7 +47,7 @@ pub enum InterbusJob {
     Position,
     Read(Item),
     /// Reads a single read-out, which may also be a register of the chip.
-    ReadOut(ReadOut),
+    ReadOut(ReadOutNumber),
     /// Selects another mode (position, speed, or a cam program), in which the encoder stays.
     Select(StartupMode),
     Save {
@@ -164,7 +164,7 @@ pub enum DeviceMessage {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
-    ReadOut(ReadOut),
+    ReadOut(ReadOutNumber),
     Program(ProgramNumber),
     Operation(String),
 }
@@ -192,7 +192,7 @@ pub enum InterbusOutput {
     Check(Vec<InterbusStepResult>),
     Position(WordReading),
     Item(ItemValue),
-    ReadOut(ReadOut, Value),
+    ReadOut(ReadOutNumber, Value),
     Selected(StartupMode),
     Saved(Box<InterbusProfile>),
     Prepared(Box<Prepared>),

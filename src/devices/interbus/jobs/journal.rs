@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use jiff::Timestamp;
 
-use crate::devices::interbus::procedures::{Excursion, Journal};
+use crate::devices::interbus::procedures::{Journal, ModeSwitch};
 use crate::devices::interbus::protocol::{KIND, StartupMode, Value};
 use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, Store};
 
@@ -55,12 +55,12 @@ impl Journal for Notes {
         self.excursions().has_any(KIND)
     }
 
-    fn excursion(&self, serial_number: &str) -> Option<Excursion> {
+    fn recorded_excursion(&self, serial_number: &str) -> Option<ModeSwitch> {
         let text = warn(self.excursions().load(KIND, &self.name(serial_number)))??;
         parse(&text)
     }
 
-    fn leaves(&mut self, serial_number: &str, excursion: &Excursion) {
+    fn record_excursion(&mut self, serial_number: &str, excursion: &ModeSwitch) {
         warn(self.excursions().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
@@ -68,7 +68,7 @@ impl Journal for Notes {
         warn(self.excursions().remove(KIND, &self.name(serial_number)));
     }
 
-    fn intends(&mut self, serial_number: &str, stores: u64) {
+    fn record_intent(&mut self, serial_number: &str, stores: u64) {
         if !self.begun.contains_key(serial_number)
             && let Some(entry) = warn(self.intend(serial_number, stores))
         {
@@ -82,23 +82,23 @@ impl Journal for Notes {
             begun => begun,
         };
         if let Some((mut logbook, entry)) = begun {
-            warn(logbook.conclude(entry, Timestamp::now(), Outcome::Done, stores));
+            warn(logbook.record_outcome(entry, Timestamp::now(), Outcome::Done, stores));
         }
     }
 }
 
 /// Formats an excursion: the mode in which the encoder was found, then the modes to which it was switched, with the
 /// numbers of read-out 9.
-fn emit(excursion: &Excursion) -> String {
+fn emit(excursion: &ModeSwitch) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();
     format!("{modes:?}\n")
 }
 
-fn parse(text: &str) -> Option<Excursion> {
+fn parse(text: &str) -> Option<ModeSwitch> {
     let modes: Vec<u32> = warn(ron::from_str(text))?;
     let mut modes = modes.into_iter().map(|mode| StartupMode::parse(Value::of_word(mode)));
-    Some(Excursion { found: modes.next()?, sent: modes.collect() })
+    Some(ModeSwitch { found: modes.next()?, sent: modes.collect() })
 }
 
 #[cfg(test)]
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn an_excursion_is_stored_as_mode_numbers() {
         let mode = |number| StartupMode::parse(Value::of_word(number));
-        let excursion = Excursion { found: mode(1), sent: vec![mode(3), mode(6)] };
+        let excursion = ModeSwitch { found: mode(1), sent: vec![mode(3), mode(6)] };
         assert_eq!(emit(&excursion), "[1, 3, 6]\n");
         assert_eq!(parse("[1, 3, 6]\n"), Some(excursion));
         assert_eq!((parse("[]"), parse("cam 4")), (None, None));

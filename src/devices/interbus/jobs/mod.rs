@@ -20,8 +20,8 @@ use journal::Notes;
 
 use crate::devices::interbus::procedures::check::{Wear as Limits, check as check_device};
 use crate::devices::interbus::procedures::{
-    Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_item, read_one, read_programs,
-    read_status, save, select, survey,
+    Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_item, read_programs,
+    read_single_value, read_status, save, select, survey,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
@@ -54,7 +54,7 @@ impl Interbus {
 impl Session<Interbus> {
     /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process, and
     /// its stores are counted separately.
-    pub fn to_gateway(
+    pub fn for_gateway(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
         station: Station,
@@ -126,7 +126,7 @@ impl Device for Interbus {
             }
             InterbusJob::Read(item) => self.ask(context, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
             InterbusJob::ReadOut(what) => {
-                self.ask(context, tell, |master, _| Ok(Out::ReadOut(what, read_one(master, what)?)))
+                self.ask(context, tell, |master, _| Ok(Out::ReadOut(what, read_single_value(master, what)?)))
             }
             InterbusJob::Select(mode) => self.ask(context, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
             InterbusJob::Save { programs } => self.ask(context, tell, |master, steps| {

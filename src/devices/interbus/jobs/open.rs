@@ -7,9 +7,9 @@ use crate::bits::MaskedBytes;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::interbus::procedures::{LinkParameters, Station};
 use crate::devices::interbus::sim::{Config, Gateway};
-use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
+use crate::link::{Clock, Direction, LinkScheme, LinkUrl, RealClock, ReplayLink, TraceEntry, Wire};
 use crate::store::Store;
-use crate::worker::open::{inside, margin, open_bytes, read_recording, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_bytes, read_recording, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks the link URL of an INTERBUS encoder without opening the link.
@@ -29,9 +29,9 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     if let Wire::File(path) = url.wire() {
-        let entries = read_recording(path)?.into_iter().map(without_number).collect();
+        let entries = read_recording(path)?.into_iter().map(mask_numbers).collect();
         let wire = Box::new(ReplayLink::new(path, entries, clock.clone()));
-        return Ok(Session::to_gateway(wire, clock, station, store, None));
+        return Ok(Session::for_gateway(wire, clock, station, store, None));
     }
     let mut motor = None;
     // The connection to a gateway has no character format.
@@ -40,22 +40,22 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
         motor = Some(gateway.shaft());
         Ok(inside(gateway, &clock))
     })?;
-    Ok(Session::to_gateway(wire, clock, station, store, motor))
+    Ok(Session::for_gateway(wire, clock, station, store, motor))
 }
 
 /// Reads the settings of the gateway and the virtual encoder. The latter only apply to a link to a virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
+    if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Modbus | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
     }
     let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
-    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
-    station.recorded = url.scheme == Scheme::Replay;
+    let mut station = Station::from_query(&url.query, reply_margin(url.scheme))?;
+    station.recorded = url.scheme == LinkScheme::Replay;
     Ok((station, config))
 }
 
 /// Removes the request number, which differs for each request, so that a recording can answer any request.
-fn without_number(entry: TraceEntry) -> TraceEntry {
+fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }
 }

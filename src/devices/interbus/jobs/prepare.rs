@@ -4,7 +4,7 @@ use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, Progre
 use crate::devices::interbus::procedures::{identify, read_state};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, Item, Restore, check_allowed, other_type, plan_default, plan_edits, plan_preset, plan_restore,
-    programs_needed,
+    required_programs,
 };
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::worker::commit::cycles_seen;
@@ -30,7 +30,7 @@ pub(super) fn prepare(
         Change::Restore { profile, options } => {
             // Known before programs are read.
             check_allowed(profile, &identity.profile(), *options)?;
-            device = state(&programs_needed(profile))?;
+            device = state(&required_programs(profile))?;
             plan_restore(profile, &device, *options)?
         }
         Change::Write(wanted) => {

@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use super::error::Implausible;
+use super::error::ImplausibleValue;
 use super::identify::read_survey;
 use super::{Error, Identity, Master, Survey};
 use crate::analysis::check;
-use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode};
+use crate::devices::interbus::protocol::{ErrorWord, ReadOutNumber, Reply, StartupMode};
 
 pub use crate::analysis::check::{Verdict, Wear};
 
@@ -56,7 +56,7 @@ pub enum CheckFinding {
         steps: u32,
         turns: u32,
     },
-    Implausible(Implausible),
+    Implausible(ImplausibleValue),
     PresetBeyond {
         preset: u32,
         last: u32,
@@ -92,7 +92,7 @@ const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
-    progress: &mut dyn FnMut(u64, u64, ReadOut),
+    progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {

@@ -19,7 +19,7 @@ pub enum RequestedItem {
 }
 
 impl RequestedItem {
-    pub const fn function(self) -> u8 {
+    pub const fn function_code(self) -> u8 {
         match self {
             RequestedItem::Input { .. } => 4,
             RequestedItem::Output { .. } => 3,
@@ -114,7 +114,7 @@ pub enum Damage {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AwaitedWord {
+pub enum ExpectedWord {
     Echo,
     Value,
     /// A word sent during operation: a position, a speed, or cam outputs.
@@ -123,19 +123,19 @@ pub enum AwaitedWord {
     Preset,
 }
 
-impl fmt::Display for AwaitedWord {
+impl fmt::Display for ExpectedWord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            AwaitedWord::Echo => "acknowledgement",
-            AwaitedWord::Value => "value",
-            AwaitedWord::Run => "position",
-            AwaitedWord::Preset => "preset as position",
+            ExpectedWord::Echo => "acknowledgement",
+            ExpectedWord::Value => "value",
+            ExpectedWord::Run => "position",
+            ExpectedWord::Preset => "preset as position",
         })
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Implausible {
+pub enum ImplausibleValue {
     #[error(transparent)]
     Gear(#[from] GearError),
     #[error("{0} is not a direction")]
@@ -174,9 +174,9 @@ pub enum Error {
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
     /// The encoder did not react to a word within the handshake time.
-    #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
+    #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", unexpected_echo_note(*input))]
     TimeOut {
-        awaited: AwaitedWord,
+        awaited: ExpectedWord,
         sent: u32,
         input: u32,
         /// Time waited, in milliseconds.
@@ -196,7 +196,7 @@ pub enum Error {
         swapped: u32,
     },
     #[error("the encoder reports implausible data: {0}")]
-    Implausible(#[from] Implausible),
+    Implausible(#[from] ImplausibleValue),
     /// The encoder did not enter the requested mode.
     #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
     NoMode { wanted: StartupMode, is: StartupMode },
@@ -227,7 +227,7 @@ fn word(error: ErrorWord) -> u32 {
     Reply::Error(error).emit()
 }
 
-fn other_echo(input: u32) -> &'static str {
+fn unexpected_echo_note(input: u32) -> &'static str {
     match Reply::parse(input) {
         Reply::Echo { .. } => ", the acknowledgement of another word",
         _ => "",

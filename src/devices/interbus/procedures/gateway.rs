@@ -252,11 +252,11 @@ fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) 
         return Err(ExchangeError::Damage(Damage::Unit { requested: request.unit_id, got: unit }));
     }
     // The crate maps the codes 0Ah and 0Bh to others, and takes any other function for a refusal.
-    if function == requested.function() | REFUSED {
+    if function == requested.function_code() | REFUSED {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
-    if function != requested.function() {
-        return Err(ExchangeError::Damage(Damage::Function { requested: requested.function(), got: function }));
+    if function != requested.function_code() {
+        return Err(ExchangeError::Damage(Damage::Function { requested: requested.function_code(), got: function }));
     }
     let body = frame.get(HEADER + 1..).unwrap_or_default();
     let mut registers: Vec<u16> = Vec::new();

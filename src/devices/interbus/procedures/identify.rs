@@ -1,11 +1,11 @@
 //! Reading the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
 
-use super::error::Implausible;
+use super::error::ImplausibleValue;
 use super::{Error, Master, WordReading};
 use crate::devices::interbus::profile::{Direction, Image, Parameters};
 use crate::devices::interbus::protocol::{
-    Cam, CamNumber, Command, ErrorWord, Flags, Gear, Program, ProgramNumber, READ_OUTS, ReadOut, ReadOutValue, Reply,
-    StartupMode, Value, WindowShift,
+    Cam, CamNumber, Command, ErrorWord, Flags, Gear, Program, ProgramNumber, READ_OUTS, ReadOutNumber, ReadOutValue,
+    Reply, StartupMode, Value, WindowShift,
 };
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,8 +27,8 @@ impl Identity {
     /// as older encoders do (`U`: the manual says no more about it).
     ///
     /// # Errors
-    /// [`Implausible::Gear`].
-    pub fn gear(&self) -> Result<Gear, Implausible> {
+    /// [`ImplausibleValue::Gear`].
+    pub fn gear(&self) -> Result<Gear, ImplausibleValue> {
         gear(self.steps, self.revolutions, self.flags)
     }
 }
@@ -43,12 +43,12 @@ pub struct Survey {
     pub operating_minutes: u32,
     /// Temperature in tenths of a degree Celsius.
     pub temperature_tenths: i32,
-    values: Vec<(ReadOut, Value)>,
+    values: Vec<(ReadOutNumber, Value)>,
 }
 
 impl Survey {
     /// Returns all values read from the encoder, in raw form.
-    pub fn read_outs(&self) -> impl Iterator<Item = (ReadOut, Value)> {
+    pub fn read_outs(&self) -> impl Iterator<Item = (ReadOutNumber, Value)> {
         self.values.iter().copied()
     }
 }
@@ -79,7 +79,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
+pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOutNumber)) -> Result<Survey, Error> {
     master.run_guarded(|master| read_survey(master, progress))
 }
 
@@ -96,7 +96,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     };
     master.run_guarded(|master| {
         let identity = read_identity(master, &mut Vec::new())?;
-        let Measured { minutes, tenths } = read_measured(master)?;
+        let Measured { minutes, tenths } = read_measurements(master)?;
         (reading.mode, reading.gear) = (Some(identity.mode), identity.gear().ok());
         let Identity { mode, flags, .. } = identity;
         Ok(Status { reading, error, mode, flags, operating_minutes: minutes, temperature_tenths: tenths })
@@ -107,7 +107,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
 ///
 /// # Errors
 /// [`Error::UnknownReadOut`]; as [`identify`].
-pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Error> {
+pub fn read_single_value(master: &mut Master<'_>, read_out: ReadOutNumber) -> Result<Value, Error> {
     master.run_guarded(|master| master.read_out(read_out))
 }
 
@@ -136,9 +136,12 @@ pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode,
     })
 }
 
-pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, Value)>) -> Result<Identity, Error> {
+pub(super) fn read_identity(
+    master: &mut Master<'_>,
+    values: &mut Vec<(ReadOutNumber, Value)>,
+) -> Result<Identity, Error> {
     let mut read = |number: u16| {
-        let read_out = ReadOut::new(number);
+        let read_out = ReadOutNumber::new(number);
         let value = master.read_out(read_out)?;
         values.push((read_out, value));
         Ok::<u32, Error>(value.get())
@@ -146,7 +149,7 @@ pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, 
     let [serial, steps, revolutions, direction] = [read(0)?, read(1)?, read(2)?, read(3)?];
     let [software_version, flags] = [read(7)?, read(0xA)?];
     let mode = read_mode(master)?;
-    values.push((ReadOut::STARTUP_MODE, Value::of_word(mode.emit())));
+    values.push((ReadOutNumber::STARTUP_MODE, Value::of_word(mode.emit())));
     let identity = Identity {
         serial_number: serial.to_string(),
         steps,
@@ -162,11 +165,11 @@ pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, 
 
 pub(super) fn read_survey(
     master: &mut Master<'_>,
-    progress: &mut dyn FnMut(u64, u64, ReadOut),
+    progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
 ) -> Result<Survey, Error> {
     let total = READ_OUTS.len() as u64;
     let mut values = Vec::new();
-    progress(0, total, ReadOut::SERIAL_NUMBER);
+    progress(0, total, ReadOutNumber::SERIAL_NUMBER);
     let identity = read_identity(master, &mut values)?;
     for row in &READ_OUTS {
         if values.iter().all(|(read_out, _)| *read_out != row.read_out) {
@@ -189,7 +192,7 @@ pub(super) fn read_survey(
         parameters,
         preset_flag: value(6).get(),
         operating_minutes: minutes(value(8)),
-        temperature_tenths: tenths_of(value(0xC)),
+        temperature_tenths: temperature_tenths(value(0xC)),
         identity,
         values,
     })
@@ -198,32 +201,32 @@ pub(super) fn read_survey(
 fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     match master.reported_mode() {
         Some(mode) => Ok(mode),
-        None => Ok(StartupMode::parse(master.read_out(ReadOut::STARTUP_MODE)?)),
+        None => Ok(StartupMode::parse(master.read_out(ReadOutNumber::STARTUP_MODE)?)),
     }
 }
 
 /// Rereads the gear, since steps and turns may have changed.
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
-    let mut read = |number: u16| master.read_out(ReadOut::new(number));
+    let mut read = |number: u16| master.read_out(ReadOutNumber::new(number));
     let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
     master.remember_gear(gear(steps.get(), revolutions.get(), Flags::new(flags)).ok());
     Ok(())
 }
 
-fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible> {
+fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, ImplausibleValue> {
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
 /// Reads the position parameters that are not part of the identity. The identity must have been read in the same job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
-    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
+    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
     let [preset, zero_shift] = [read(4)?, read(5)?];
     Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
 pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Error> {
-    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
+    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
     let [steps, revolutions, direction] = [read(1)?, read(2)?, read(3)?];
     let [preset, zero_shift] = [read(4)?, read(5)?];
     Ok(Parameters { steps, revolutions, direction: direction_of(direction)?, preset, zero_shift })
@@ -256,7 +259,7 @@ pub(super) fn programs(
     progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
     let selects_first = wanted.is_empty() && !matches!(master.mode(), Some(StartupMode::Cams(_)));
-    master.will_read(wanted.len() + usize::from(selects_first))?;
+    master.record_program_reads(wanted.len() + usize::from(selects_first))?;
     let total = wanted.len() as u64;
     let mut read = Vec::new();
     for (done, number) in (0..).zip(wanted) {
@@ -292,7 +295,7 @@ pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, E
 pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> {
     let value = master.ask(Command::ReadShift)?.get();
     let read = Command::ReadShift.emit();
-    let shift = u8::try_from(value).ok().and_then(WindowShift::new).ok_or(Implausible::Value { read, value })?;
+    let shift = u8::try_from(value).ok().and_then(WindowShift::new).ok_or(ImplausibleValue::Value { read, value })?;
     master.remember_window_shift(shift);
     Ok(shift)
 }
@@ -302,20 +305,20 @@ pub(super) struct Measured {
     pub(super) tenths: i32,
 }
 
-pub(super) fn read_measured(master: &mut Master<'_>) -> Result<Measured, Error> {
-    let minutes = minutes(master.read_out(ReadOut::OPERATING_TIME)?);
-    Ok(Measured { minutes, tenths: tenths_of(master.read_out(ReadOut::TEMPERATURE)?) })
+pub(super) fn read_measurements(master: &mut Master<'_>) -> Result<Measured, Error> {
+    let minutes = minutes(master.read_out(ReadOutNumber::OPERATING_TIME)?);
+    Ok(Measured { minutes, tenths: temperature_tenths(master.read_out(ReadOutNumber::TEMPERATURE)?) })
 }
 
 fn minutes(value: Value) -> u32 {
-    match ReadOut::OPERATING_TIME.value(value) {
+    match ReadOutNumber::OPERATING_TIME.value(value) {
         ReadOutValue::Minutes(minutes) => minutes,
         _ => value.get(),
     }
 }
 
-fn tenths_of(value: Value) -> i32 {
-    match ReadOut::TEMPERATURE.value(value) {
+fn temperature_tenths(value: Value) -> i32 {
+    match ReadOutNumber::TEMPERATURE.value(value) {
         ReadOutValue::TenthsOfDegree(tenths) => tenths,
         // 25 bits.
         _ => value.get() as i32,
@@ -324,11 +327,11 @@ fn tenths_of(value: Value) -> i32 {
 
 /// Returns the direction for a code, which is either the parameter value or its complement as a flag (`U`: the manual
 /// calls the read-out a flag).
-pub(super) fn direction_of(code: u32) -> Result<Direction, Implausible> {
+pub(super) fn direction_of(code: u32) -> Result<Direction, ImplausibleValue> {
     let flag = match code {
         0 => Some(Direction::Clockwise),
         1 => Some(Direction::Counterclockwise),
-        code => Direction::of_code(code),
+        code => Direction::from_code(code),
     };
-    flag.ok_or(Implausible::Direction(code))
+    flag.ok_or(ImplausibleValue::Direction(code))
 }

@@ -5,7 +5,7 @@ use crate::devices::interbus::protocol::StartupMode;
 
 /// A temporary switch of an encoder away from its original mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Excursion {
+pub struct ModeSwitch {
     /// The mode before.
     pub found: StartupMode,
     /// Every mode to which the encoder has been switched so far.
@@ -18,16 +18,16 @@ pub trait Journal {
     fn has_excursions(&self) -> bool;
 
     /// Returns the recorded excursion of an encoder that was not returned to its mode, or `None` if there is no record.
-    fn excursion(&self, serial_number: &str) -> Option<Excursion>;
+    fn recorded_excursion(&self, serial_number: &str) -> Option<ModeSwitch>;
 
     /// Records, before the switch, that the encoder will enter the last mode listed in the excursion.
-    fn leaves(&mut self, serial_number: &str, excursion: &Excursion);
+    fn record_excursion(&mut self, serial_number: &str, excursion: &ModeSwitch);
 
     /// Records that the encoder is back in its previous mode.
     fn is_back(&mut self, serial_number: &str);
 
     /// Records, in advance, the number of cam programs to be selected, since leaving a program may store it.
-    fn intends(&mut self, serial_number: &str, stores: u64);
+    fn record_intent(&mut self, serial_number: &str, stores: u64);
 
     /// Records how many cam programs the encoder may have stored. Does nothing if no store was announced and none can
     /// have happened.

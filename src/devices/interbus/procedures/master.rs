@@ -9,14 +9,16 @@ mod stability;
 use std::time::Duration;
 
 use notes::Notes;
-use stability::{CycleResult, Held, LEAST_PATIENCE};
+use stability::{CycleResult, LEAST_PATIENCE, StabilityTimer};
 
 use super::data::ProcessData;
-use super::error::{AwaitedWord, RequestedItem};
+use super::error::{ExpectedWord, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
 use super::reading::{swap_words, unexplained_swapped_word};
 use super::{Error, Gateway, KnownState, Station, WordReading};
-use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
+use crate::devices::interbus::protocol::{
+    Command, EncoderMode, Gear, ReadOutNumber, Reply, StartupMode, Value, WindowShift,
+};
 use crate::link::Ctx;
 use crate::units::Moment;
 
@@ -158,7 +160,7 @@ impl<'a> Master<'a> {
         self.leave_value()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
-        self.until(command, AwaitedWord::Value, self.patience, |CycleResult { word, same, .. }| {
+        self.until(command, ExpectedWord::Value, self.patience, |CycleResult { word, same, .. }| {
             match Reply::parse(word) {
                 Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
                 Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
@@ -174,9 +176,9 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
-    pub(super) fn read_out(&mut self, read_out: ReadOut) -> Result<Value, Error> {
+    pub(super) fn read_out(&mut self, read_out: ReadOutNumber) -> Result<Value, Error> {
         let value = self.ask(Command::ReadOut(read_out))?;
-        if read_out == ReadOut::SERIAL_NUMBER {
+        if read_out == ReadOutNumber::SERIAL_NUMBER {
             self.note_serial_number(value.get());
         }
         Ok(value)
@@ -202,8 +204,8 @@ impl<'a> Master<'a> {
 
     fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        let (mut runs, found) = (Held::new(self.recorded), self.found_error);
-        self.until(command, AwaitedWord::Run, patience, |CycleResult { now, word, same }| {
+        let (mut runs, found) = (StabilityTimer::new(self.recorded), self.found_error);
+        self.until(command, ExpectedWord::Run, patience, |CycleResult { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
             (runs.is_stable() || Some(word) == found && same.is_settled()).then_some(Ok(()))
         })
@@ -214,12 +216,12 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// [`Error::TimeOut`] if the position does not reach the preset; otherwise as [`set`](Self::set).
-    pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
+    pub(super) fn trigger_preset(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.return_to_operation()?;
         self.ensure_legal(Command::Preset)?;
-        let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
+        let (mut sent, mut there) = (StabilityTimer::new(self.recorded), StabilityTimer::new(self.recorded));
         let fired =
-            self.until(Command::Preset, AwaitedWord::Preset, self.patience, |CycleResult { now, word, .. }| {
+            self.until(Command::Preset, ExpectedWord::Preset, self.patience, |CycleResult { now, word, .. }| {
                 sent.go_on(true, now);
                 there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
                 (sent.is_settled() && there.is_stable()).then_some(Ok(()))
@@ -232,25 +234,25 @@ impl<'a> Master<'a> {
     fn until<T>(
         &mut self,
         command: Command,
-        awaited: AwaitedWord,
+        awaited: ExpectedWord,
         patience: Duration,
         mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
         let least = stability::least_cycles(self.recorded);
-        let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
-        let mut at_work = Held::new(self.recorded);
+        let (mut last, mut same, mut cycles) = (None, StabilityTimer::new(self.recorded), 0);
+        let mut at_work = StabilityTimer::new(self.recorded);
         loop {
             let word = self.cycle(command)?;
             let now = self.data.now();
             cycles += 1;
             if last != Some(word) {
-                same = Held::new(self.recorded);
+                same = StabilityTimer::new(self.recorded);
             }
             same.go_on(true, now);
             last = Some(word);
             at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
-            self.known.processing = self.known.processing.max(at_work.stable_for());
+            self.known.processing = self.known.processing.max(at_work.stable_duration());
             if let Some(ended) = judge(CycleResult { now, word, same }) {
                 return ended;
             }
@@ -296,7 +298,7 @@ impl<'a> Master<'a> {
     }
 
     /// Returns the most likely reason for a missing reply.
-    fn timeout_error(&mut self, command: Command, awaited: AwaitedWord, input: u32, patience: Duration) -> Error {
+    fn timeout_error(&mut self, command: Command, awaited: ExpectedWord, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
             Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },
@@ -319,16 +321,16 @@ impl<'a> Master<'a> {
 
     /// Returns the mode in which the encoder will interpret the next word; any read-out is ended before another word is
     /// sent.
-    fn mode_at_start(&self) -> Mode {
+    fn mode_at_start(&self) -> EncoderMode {
         match self.is {
-            Some(StartupMode::Cams(_)) => Mode::Cam,
+            Some(StartupMode::Cams(_)) => EncoderMode::Cam,
             // The manual does not define the effect of other words then.
-            Some(StartupMode::Unknown(_)) => Mode::ReadOut,
-            _ if self.parameterising => Mode::Parameterisation,
+            Some(StartupMode::Unknown(_)) => EncoderMode::ReadOut,
+            _ if self.parameterising => EncoderMode::Parameterisation,
             // Only read-outs are allowed before it has reported its mode.
-            None => Mode::ReadOut,
-            Some(StartupMode::Velocity) => Mode::Velocity,
-            Some(_) => Mode::Position,
+            None => EncoderMode::ReadOut,
+            Some(StartupMode::Velocity) => EncoderMode::Velocity,
+            Some(_) => EncoderMode::Position,
         }
     }
 }

@@ -21,11 +21,11 @@ mod station;
 pub mod write;
 
 pub use data::ProcessData;
-pub use error::{AwaitedWord, Damage, Error, Exception, Implausible, RequestedItem};
+pub use error::{Damage, Error, Exception, ExpectedWord, ImplausibleValue, RequestedItem};
 pub use gateway::{Carried, Fault, Gateway, carried_word, fault};
 pub use handshake::{Handshake, LeftState, WordReply};
-pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
-pub use journal::{Excursion, Journal};
+pub use identify::{Identity, Status, Survey, identify, read_programs, read_single_value, read_status, select, survey};
+pub use journal::{Journal, ModeSwitch};
 pub use master::Master;
 pub use reading::{TurnPosition, WordReading};
 pub use save::{SaveStep, read_item, read_state, save};

@@ -4,7 +4,7 @@ use super::identify::{direction_of, programs, read_cam, read_image, read_other_p
 use super::write::read_parameter;
 use super::{Error, Identity, Master, Survey};
 use crate::devices::interbus::profile::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
-use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
+use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, ReadOutNumber, ReadOutValue, StartupMode};
 use crate::profile::Unknown;
 
 impl Identity {
@@ -49,7 +49,7 @@ pub fn save(
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SaveStep {
-    ReadOut(ReadOut),
+    ReadOut(ReadOutNumber),
     Program(ProgramNumber),
 }
 
@@ -79,7 +79,7 @@ pub fn read_state(
 pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
     master.run_guarded(|master| {
         if let Some(program) = item.program() {
-            master.will_read(1)?;
+            master.record_program_reads(1)?;
             master.go(StartupMode::Cams(program))?;
         }
         if let Some(parameter) = item.parameter() {
@@ -97,7 +97,8 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
             Item::CamMask(_) => ItemValue::Mask(master.ask(Command::ReadActivation)?.get() as u8),
             Item::Cam(_, cam) => ItemValue::Cam(read_cam(master, cam)?),
             item => {
-                let read_out = if item == Item::Temperature { ReadOut::TEMPERATURE } else { ReadOut::OPERATING_TIME };
+                let read_out =
+                    if item == Item::Temperature { ReadOutNumber::TEMPERATURE } else { ReadOutNumber::OPERATING_TIME };
                 let value = master.read_out(read_out)?;
                 match read_out.value(value) {
                     ReadOutValue::TenthsOfDegree(tenths) => ItemValue::TenthsOfDegree(tenths),

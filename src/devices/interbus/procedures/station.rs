@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::devices::interbus::protocol::{Command, Gear, INPUT, OUTPUT, StartupMode, UNIT, WindowShift, WordOrder};
 use crate::link::line::LineState;
-use crate::link::{Query, UrlError};
+use crate::link::{UrlError, UrlQuery};
 use crate::parameter::{Milliseconds, Parameters};
 use crate::parameters;
 
@@ -73,7 +73,7 @@ impl Station {
     ///
     /// # Errors
     /// A parameter value is invalid; the error lists the allowed values.
-    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         Ok(Station { link: LinkParameters::read(query.pairs())?, ..Station::new(margin) })
     }
 }

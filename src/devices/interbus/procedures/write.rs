@@ -5,7 +5,7 @@ use std::time::Duration;
 
 pub use crate::profile::Written;
 
-use super::error::Implausible;
+use super::error::ImplausibleValue;
 use super::handshake::LeftState;
 use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
 use super::{Error, Identity, Master};
@@ -13,7 +13,7 @@ use crate::devices::interbus::profile::{
     Base, CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange,
 };
 use crate::devices::interbus::protocol::{
-    Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, Reply, StartupMode, Value,
+    Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOutNumber, Reply, StartupMode, Value,
 };
 use crate::profile::{Confirmed, Write};
 
@@ -79,7 +79,7 @@ impl Write for EncoderWrite<'_, '_> {
 
 fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) -> Result<(), Error> {
     let changed = |item: String| Err(Error::Changed { item });
-    if master.read_out(ReadOut::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
+    if master.read_out(ReadOutNumber::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
         return changed("the encoder itself".to_owned());
     }
     if let Some(before) = plan.base.parameters {
@@ -89,7 +89,7 @@ fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) ->
             return changed(row.name.to_owned());
         }
     }
-    master.will_read(plan.base.programs.len())?;
+    master.record_program_reads(plan.base.programs.len())?;
     for (number, program) in &plan.base.programs {
         master.go(StartupMode::Cams(*number))?;
         if read_program(master)? != *program {
@@ -113,7 +113,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
         Op::Parameterise(changes) => parameterise(master, changes, done)?,
         Op::Program(change) => program(master, change, done)?,
         Op::FirePreset { value } => {
-            fire(master, *value)?;
+            trigger_preset(master, *value)?;
             done.verified += 1;
         }
         Op::Default => {
@@ -135,7 +135,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     done.write_cycles += 1;
     for change in changes {
         let code = u32::from(change.parameter.row().code) << Value::BITS;
-        let value = Value::new(change.to).ok_or(Implausible::Value { read: code, value: change.to })?;
+        let value = Value::new(change.to).ok_or(ImplausibleValue::Value { read: code, value: change.to })?;
         master.set(Command::Set(change.parameter, value))?;
     }
     master.run()?;
@@ -169,7 +169,7 @@ pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> R
         Parameter::ZeroShift => 5,
         Parameter::Default => return Ok(0),
     };
-    Ok(master.read_out(ReadOut::new(number))?.get())
+    Ok(master.read_out(ReadOutNumber::new(number))?.get())
 }
 
 fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
@@ -222,11 +222,11 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
 }
 
 /// Sets the shaft's position to the preset value, which must have been programmed before.
-fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
+fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
     // Within one step: the previous position may be close.
-    master.fire(|position| apart(position, value, gear) <= 1)
+    master.trigger_preset(|position| apart(position, value, gear) <= 1)
 }
 
 /// Watches the position briefly to make sure that the shaft is at rest. The encoder keeps sending its position

@@ -50,7 +50,7 @@ impl Direction {
     }
 
     /// Returns the direction for a parameter value, or `None` if it is neither 3 nor 4.
-    pub const fn of_code(code: u32) -> Option<Self> {
+    pub const fn from_code(code: u32) -> Option<Self> {
         match code {
             3 => Some(Direction::Clockwise),
             4 => Some(Direction::Counterclockwise),
@@ -142,10 +142,10 @@ mod tests {
     fn directions_have_the_codes_of_the_manual() {
         for (text, code) in [("cw", 3), ("3", 3), ("ccw", 4), ("4", 4)] {
             let direction: Direction = text.parse().unwrap();
-            assert_eq!((direction.code(), Direction::of_code(code)), (code, Some(direction)), "{text}");
+            assert_eq!((direction.code(), Direction::from_code(code)), (code, Some(direction)), "{text}");
         }
         assert_eq!("left".parse::<Direction>(), Err(DirectionError));
-        assert_eq!(Direction::of_code(5), None);
+        assert_eq!(Direction::from_code(5), None);
     }
 
     #[test]

@@ -113,7 +113,7 @@ impl Item {
     }
 
     /// Returns the item of a parameter, or `None` if the parameter is not a setting.
-    pub const fn of_parameter(parameter: Parameter) -> Option<Self> {
+    pub const fn from_parameter(parameter: Parameter) -> Option<Self> {
         match parameter {
             Parameter::Steps => Some(Item::Steps),
             Parameter::Turns => Some(Item::Revolutions),
@@ -234,16 +234,16 @@ impl Image {
                 Some(shift) => self.shift = Some(shift),
                 None => return false,
             },
-            (Item::CamMask(program), ItemValue::Mask(mask)) => self.program_or_new(program, |own| own.mask = mask),
+            (Item::CamMask(program), ItemValue::Mask(mask)) => self.modify_program(program, |own| own.mask = mask),
             (Item::Cam(program, number), ItemValue::Cam(cam)) => {
-                self.program_or_new(program, |own| own.set_cam(number, Some(cam)));
+                self.modify_program(program, |own| own.set_cam(number, Some(cam)));
             }
             _ => return false,
         }
         true
     }
 
-    fn program_or_new(&mut self, number: ProgramNumber, change: impl FnOnce(&mut Program)) {
+    fn modify_program(&mut self, number: ProgramNumber, change: impl FnOnce(&mut Program)) {
         if let Some(place) = self.program_mut(number) {
             change(place.get_or_insert_default());
         }

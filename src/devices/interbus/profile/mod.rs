@@ -25,9 +25,9 @@ pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
 pub use note::ChangeStep;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
-pub use record::{InterbusProfile, MountingMark, Names, ProfileIdentity, Recorded, UnknownEntries};
+pub use record::{CamNames, InterbusProfile, MountingMark, ProfileIdentity, Recorded, UnknownEntries};
 pub use restore::{
-    DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, programs_needed,
+    DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, required_programs,
 };
 pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
 pub use table::{

@@ -38,7 +38,7 @@ impl Op {
         };
         match self {
             Op::Parameterise(changes) => {
-                let number = |parameter: Parameter, number: u32| match Direction::of_code(number) {
+                let number = |parameter: Parameter, number: u32| match Direction::from_code(number) {
                     Some(direction) if parameter == Parameter::Direction => direction.to_string(),
                     _ => number.to_string(),
                 };

@@ -101,7 +101,7 @@ impl Op {
     pub fn items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
-                changes.iter().filter_map(|change| Item::of_parameter(change.parameter)).collect()
+                changes.iter().filter_map(|change| Item::from_parameter(change.parameter)).collect()
             }
             Op::Program(change) => change.items(),
             Op::FirePreset { .. } | Op::Default => Vec::new(),

@@ -15,7 +15,7 @@ pub struct InterbusProfile {
     /// EEPROM content. Programs, cams or a window shift that are not in the profile are `None`.
     pub image: Image,
     /// Names of programs and cams, which the encoder does not store.
-    pub names: Names,
+    pub names: CamNames,
     /// Values that depend on the mounting and are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
     /// Values that change on their own or cannot be written. They are recorded, but neither compared nor restored.
@@ -57,7 +57,7 @@ pub type MountingMark = crate::profile::MountingMark<Item>;
 
 /// User-defined names of programs and cams. A name is empty if none was defined.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Names {
+pub struct CamNames {
     programs: BTreeMap<ProgramNumber, String>,
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
@@ -76,7 +76,7 @@ impl InterbusProfile {
         let mut profile = InterbusProfile {
             identity,
             image,
-            names: Names::default(),
+            names: CamNames::default(),
             mounting: Vec::new(),
             recorded,
             unknown: UnknownEntries::default(),
@@ -105,7 +105,7 @@ impl InterbusProfile {
     }
 }
 
-impl Names {
+impl CamNames {
     /// Returns the name of a program.
     pub fn program(&self, program: ProgramNumber) -> &str {
         self.programs.get(&program).map_or("", String::as_str)

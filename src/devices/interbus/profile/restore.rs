@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// EEPROM content: at least the programs of [`programs_needed`], and the window shift if there are any.
+    /// EEPROM content: at least the programs of [`required_programs`], and the window shift if there are any.
     pub image: Image,
 }
 
@@ -20,7 +20,7 @@ pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
 /// together with a program, which is the first one if the profile only contains the shift.
-pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
+pub fn required_programs(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
     match profile.image.shift {
@@ -56,7 +56,7 @@ pub fn plan_restore(
         wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
     }
     let plan = plan_edits(&device.image, &wanted).map_err(|error| match error {
-        PlanError::OutOfRange(refused) => match Item::of_parameter(refused.parameter) {
+        PlanError::OutOfRange(refused) => match Item::from_parameter(refused.parameter) {
             Some(item) if mounting_left.contains(&item) => {
                 let OutOfRange { value, low, high, .. } = refused;
                 PlanError::MountingLeft { item, value, low, high }

@@ -116,7 +116,7 @@ impl Scale {
     }
 
     /// Returns the number of steps per unit.
-    pub const fn steps_in_unit(&self) -> f64 {
+    pub const fn steps_per_unit(&self) -> f64 {
         self.steps
     }
 

@@ -12,7 +12,7 @@ mod tests;
 
 pub use emit::emit as emit_table;
 
-use super::{Names, Outside, Scale, Unit};
+use super::{CamNames, Outside, Scale, Unit};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 

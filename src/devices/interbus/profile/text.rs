@@ -1,20 +1,20 @@
 //! The text format of an INTERBUS profile, which people read and edit. Errors name the entry.
 
 use super::{
-    Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Names, Parameters, ProfileIdentity,
-    Recorded, UnknownEntries,
+    CamNames, Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Parameters,
+    ProfileIdentity, Recorded, UnknownEntries,
 };
 use crate::devices::interbus::protocol::{
     self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
 };
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const NUMBER: Expected = Expected::between(0, Value::MAX.get() as i128);
-const DIRECTION: Expected = Expected::words(&["cw", "ccw"]);
-const SHIFT: Expected = Expected::between(0, 25);
+const NUMBER: AllowedValues = AllowedValues::between(0, Value::MAX.get() as i128);
+const DIRECTION: AllowedValues = AllowedValues::words(&["cw", "ccw"]);
+const SHIFT: AllowedValues = AllowedValues::between(0, 25);
 
 impl Profile for InterbusProfile {
     const KIND: &'static str = protocol::KIND;
@@ -27,7 +27,7 @@ impl Profile for InterbusProfile {
         let mut unknown = UnknownEntries::default();
         let mut image = Image::of(read_parameters(entries.structure("parameters")?, &mut unknown)?);
         image.shift = entries.optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
-        let mut names = Names::default();
+        let mut names = CamNames::default();
         for entries in entries.structures("programs")? {
             let path = entries.path_of("program");
             let (number, program) = read_program(entries, &mut names, &mut unknown)?;
@@ -38,7 +38,7 @@ impl Profile for InterbusProfile {
                 }
             }
         }
-        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("preset"), read_marked)?;
+        let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("preset"), parse_mounting_item)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         Ok(InterbusProfile { identity, image, names, mounting, recorded, unknown })
     }
@@ -163,7 +163,7 @@ fn name(writer: &mut Writer, name: &str) {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let serial_number = entries.optional("serial_number", Expected::Text)?.unwrap_or_default();
+    let serial_number = entries.optional("serial_number", AllowedValues::Text)?.unwrap_or_default();
     let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
     Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
 }
@@ -182,20 +182,20 @@ fn read_parameters(mut entries: Entries, unknown: &mut UnknownEntries) -> Result
 
 fn read_program(
     mut entries: Entries,
-    names: &mut Names,
+    names: &mut CamNames,
     unknown: &mut UnknownEntries,
 ) -> Result<(ProgramNumber, Program), ProfileError> {
     let path = entries.path_of("program");
-    let number: u32 = entries.required("program", Expected::Whole)?;
+    let number: u32 = entries.required("program", AllowedValues::Whole)?;
     let at = u8::try_from(number)
         .ok()
         .and_then(ProgramNumber::new)
         .ok_or_else(|| ProfileError::refused(path, EntryError::Item(ItemError::Program { number: number.into() })))?;
-    names.set_program(at, entries.optional("name", Expected::Text)?.unwrap_or_default());
-    let mut program = Program { mask: entries.required("mask", Expected::Byte)?, ..Program::default() };
+    names.set_program(at, entries.optional("name", AllowedValues::Text)?.unwrap_or_default());
+    let mut program = Program { mask: entries.required("mask", AllowedValues::Byte)?, ..Program::default() };
     for mut entries in entries.structures("cams")? {
         let path = entries.path_of("cam");
-        let number: u32 = entries.required("cam", Expected::Whole)?;
+        let number: u32 = entries.required("cam", AllowedValues::Whole)?;
         let cam = u8::try_from(number).ok().and_then(CamNumber::new);
         let wrong = |error: EntryError| ProfileError::refused(path, error);
         let Some(cam) = cam else {
@@ -205,7 +205,7 @@ fn read_program(
             return Err(wrong(EntryError::CamTwice(cam)));
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
-        names.set_cam(at, cam, entries.optional("name", Expected::Text)?.unwrap_or_default());
+        names.set_cam(at, cam, entries.optional("name", AllowedValues::Text)?.unwrap_or_default());
         add_unknown(&mut unknown.cams, (at, cam), entries.rest()?);
     }
     add_unknown(&mut unknown.programs, at, entries.rest()?);
@@ -218,7 +218,7 @@ fn add_unknown<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place:
     }
 }
 
-fn read_marked(text: &str) -> Result<Item, EntryError> {
+fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
     match text.parse::<Item>() {
         Ok(item) if item.is_writable() => Ok(item),
         Ok(item) => Err(EntryError::Measured(item)),
@@ -228,11 +228,11 @@ fn read_marked(text: &str) -> Result<Item, EntryError> {
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        software_version: entries.optional("software_version", Expected::Whole)?,
-        operating_minutes: entries.optional("operating_minutes", Expected::Whole)?,
-        temperature_tenths: entries.optional("temperature_tenths", Expected::Whole)?,
+        software_version: entries.optional("software_version", AllowedValues::Whole)?,
+        operating_minutes: entries.optional("operating_minutes", AllowedValues::Whole)?,
+        temperature_tenths: entries.optional("temperature_tenths", AllowedValues::Whole)?,
         mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
-        preset_flag: entries.optional("preset_flag", Expected::Whole)?,
+        preset_flag: entries.optional("preset_flag", AllowedValues::Whole)?,
         unknown: entries.rest()?,
     })
 }

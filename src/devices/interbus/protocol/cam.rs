@@ -107,7 +107,7 @@ impl Program {
     }
 
     /// Activates or deactivates a cam.
-    pub const fn set_on(&mut self, cam: CamNumber, on: bool) {
+    pub const fn set_cam_enabled(&mut self, cam: CamNumber, on: bool) {
         self.mask = self.mask & !(1 << cam.0) | (on as u8) << cam.0;
     }
 

@@ -2,9 +2,9 @@
 
 use super::cam::{CamNumber, ProgramNumber};
 use super::cam_output::WindowShift;
-use super::mode::Mode;
+use super::mode::EncoderMode;
 use super::parameter::Parameter;
-use super::read_out::ReadOut;
+use super::read_out::ReadOutNumber;
 use super::value::{Code, Value};
 
 /// Meaning of an OUT word.
@@ -23,7 +23,7 @@ pub enum Command {
     /// 20400001h and 20400000h: selects the speed or the position for the IN word.
     Velocity(bool),
     /// 2021xxxxh: requests a read-out.
-    ReadOut(ReadOut),
+    ReadOut(ReadOutNumber),
     /// 2080000ph: selects cam mode with the given program, or position mode if there is none.
     Cams(Option<ProgramNumber>),
     /// 2040cccch: sets the active cams, with bit i for cam i. There are 8 cams, so the upper byte is 0 (reference 6.9).
@@ -54,7 +54,7 @@ pub struct Refused {
     /// The intended command.
     pub command: Command,
     /// Present mode of the encoder.
-    pub mode: Mode,
+    pub mode: EncoderMode,
 }
 
 const RUN: u32 = 0x8000_0000;
@@ -102,7 +102,7 @@ impl Command {
     /// define the word.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
-            [Command::decode_non_cam_command(word), Command::of_cams(word)].into_iter().flatten().collect();
+            [Command::decode_non_cam_command(word), Command::parse_cam_word(word)].into_iter().flatten().collect();
         // Both contain the selection of a program, with the same meaning.
         match both.as_slice() {
             [] => vec![Command::Unknown(word)],
@@ -115,7 +115,7 @@ impl Command {
     ///
     /// # Errors
     /// [`Refused`] with the meaning of the word in another mode, if any.
-    pub fn in_mode(word: u32, mode: Mode) -> Result<Command, Refused> {
+    pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
             Some(command) => Ok(*command),
@@ -127,15 +127,15 @@ impl Command {
     ///
     /// # Errors
     /// [`Refused`]: the command must not be sent.
-    pub fn ensure_legal(self, mode: Mode) -> Result<(), Refused> {
+    pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), Refused> {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }
 
     /// Returns whether the command may be sent in a mode. Words remain on the process data, so a word that enters a
     /// mode is also legal in that mode. Read-outs are allowed while the outputs are valid, since one of them reveals
     /// the mode (`U`).
-    pub const fn is_legal_in(self, mode: Mode) -> bool {
-        use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
+    pub const fn is_legal_in(self, mode: EncoderMode) -> bool {
+        use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {
             Command::Normal | Command::Run => true,
             Command::Preset | Command::FrabaPreset => matches!(mode, Position),
@@ -189,17 +189,17 @@ impl Command {
             PRESET => Some(Command::Preset),
             FRABA_PRESET => Some(Command::FrabaPreset),
             _ if word == MASK | u32::from(low & 1) => Some(Command::Velocity(low == 1)),
-            _ if word >> 16 == READ_OUT >> 16 => Some(Command::ReadOut(ReadOut::new(low))),
+            _ if word >> 16 == READ_OUT >> 16 => Some(Command::ReadOut(ReadOutNumber::new(low))),
             _ if word >> 16 == CAMS >> 16 => program(low),
             _ if word >> 29 == 0 => {
-                Parameter::of_code(Code::of_word(word)).map(|parameter| Command::Set(parameter, Value::of_word(word)))
+                Parameter::from_code(Code::of_word(word)).map(|parameter| Command::Set(parameter, Value::of_word(word)))
             }
             _ => None,
         }
     }
 
     /// Parses an OUT word received while a cam program is selected.
-    fn of_cams(word: u32) -> Option<Command> {
+    fn parse_cam_word(word: u32) -> Option<Command> {
         let low = word as u16;
         let cam = || CamNumber::new(Code::of_word(word).get());
         let read_cam = || u8::try_from(low & 0xF).ok().and_then(CamNumber::new);

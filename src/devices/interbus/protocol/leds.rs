@@ -37,25 +37,25 @@ pub struct LedRow {
 
 use LedState::{Blinking, Off, On};
 
-const fn leds(ul: LedState, ba: LedState, rc: LedState, rbda: LedState) -> Leds {
+const fn led_states(ul: LedState, ba: LedState, rc: LedState, rbda: LedState) -> Leds {
     Leds { ul, ba, rc, rbda }
 }
 
 /// The LED combinations in the order of the manual.
 pub const LEDS: [LedRow; 4] = [
     LedRow {
-        leds: leds(On, Off, On, Off),
+        leds: led_states(On, Off, On, Off),
         meaning: "no run",
         remedy: "start the bus master: the encoder has its supply and the incoming cable, and no data come",
     },
     LedRow {
-        leds: leds(On, Blinking, On, Off),
+        leds: led_states(On, Blinking, On, Off),
         meaning: "configured",
         remedy: "let the bus master run: it knows the encoder and exchanges no data with it yet",
     },
-    LedRow { leds: leds(On, On, On, On), meaning: "run", remedy: "nothing: data are exchanged" },
+    LedRow { leds: led_states(On, On, On, On), meaning: "run", remedy: "nothing: data are exchanged" },
     LedRow {
-        leds: leds(On, Off, Off, On),
+        leds: led_states(On, Off, Off, On),
         meaning: "bus error",
         remedy: "check the bus cables and plugs before and behind the encoder, then ask the master's diagnosis",
     },

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The same OUT word has different meanings in different modes: [`Command::readings`] returns all of them, and
-//! [`Command::in_mode`] the one for an encoder in a [`Mode`].
+//! [`Command::in_mode`] the one for an encoder in a [`EncoderMode`].
 
 #![warn(missing_docs)]
 
@@ -45,9 +45,9 @@ pub use command::{Command, Refused};
 pub use compiled::CompiledPrograms;
 pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};
 pub use leds::{LEDS, LedRow, LedState, Leds};
-pub use mode::Mode;
+pub use mode::EncoderMode;
 pub use parameter::{OutOfRange, PARAMETERS, Parameter, ParameterRow};
-pub use read_out::{Flags, READ_OUTS, ReadOut, ReadOutRow, ReadOutValue, StartupMode};
+pub use read_out::{Flags, READ_OUTS, ReadOutNumber, ReadOutRow, ReadOutValue, StartupMode};
 pub use reply::{ErrorWord, Reply};
 pub use value::{Code, Value};
 pub use word_order::{INPUT, OUTPUT, UNIT, WordOrder};

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A mode of a K3 encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Mode {
+pub enum EncoderMode {
     /// Normal operation, in which IN contains the position.
     Position,
     /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not, so the outputs are invalid.
@@ -17,23 +17,29 @@ pub enum Mode {
     Cam,
 }
 
-impl Mode {
+impl EncoderMode {
     /// All modes in the order of the manual.
-    pub const ALL: [Mode; 5] = [Mode::Position, Mode::Parameterisation, Mode::ReadOut, Mode::Velocity, Mode::Cam];
+    pub const ALL: [EncoderMode; 5] = [
+        EncoderMode::Position,
+        EncoderMode::Parameterisation,
+        EncoderMode::ReadOut,
+        EncoderMode::Velocity,
+        EncoderMode::Cam,
+    ];
 
     /// Returns the name of the mode.
     pub const fn name(self) -> &'static str {
         match self {
-            Mode::Position => "position",
-            Mode::Parameterisation => "parameterisation",
-            Mode::ReadOut => "read-out",
-            Mode::Velocity => "velocity",
-            Mode::Cam => "cam",
+            EncoderMode::Position => "position",
+            EncoderMode::Parameterisation => "parameterisation",
+            EncoderMode::ReadOut => "read-out",
+            EncoderMode::Velocity => "velocity",
+            EncoderMode::Cam => "cam",
         }
     }
 }
 
-impl fmt::Display for Mode {
+impl fmt::Display for EncoderMode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} mode", self.name())
     }

@@ -96,7 +96,7 @@ impl Parameter {
     }
 
     /// Returns the parameter with the given code, or `None` if the manual does not define the code.
-    pub fn of_code(code: Code) -> Option<Self> {
+    pub fn from_code(code: Code) -> Option<Self> {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
 

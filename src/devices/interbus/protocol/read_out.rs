@@ -6,13 +6,13 @@ use super::value::Value;
 /// Number of a read-out, which is in bits 15..0 of the word 2021xxxxh. Numbers that the manual does not define are
 /// preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ReadOut(u16);
+pub struct ReadOutNumber(u16);
 
 /// A row of the read-out table.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOutRow {
     /// Number of the read-out.
-    pub read_out: ReadOut,
+    pub read_out: ReadOutNumber,
     /// Name in the manual.
     pub name: &'static str,
     /// Unit of the transmitted value, or an empty string if there is none.
@@ -21,21 +21,21 @@ pub struct ReadOutRow {
 
 /// All read-outs in the order of the manual, except the sixteen registers of the OPC chip.
 pub const READ_OUTS: [ReadOutRow; 12] = [
-    row(ReadOut::SERIAL_NUMBER, "serial number", ""),
-    row(ReadOut(0x1), "steps", "steps"),
-    row(ReadOut(0x2), "revolutions", "turns"),
-    row(ReadOut(0x3), "complement", ""),
-    row(ReadOut(0x4), "preset", "steps"),
-    row(ReadOut(0x5), "zero shift", "steps"),
-    row(ReadOut(0x6), "preset flag", ""),
-    row(ReadOut(0x7), "software version", ""),
-    row(ReadOut::OPERATING_TIME, "operating time", "10 min"),
-    row(ReadOut::STARTUP_MODE, "startup mode", ""),
-    row(ReadOut::FLAGS, "flags", ""),
-    row(ReadOut::TEMPERATURE, "temperature", "0.1 °C"),
+    row(ReadOutNumber::SERIAL_NUMBER, "serial number", ""),
+    row(ReadOutNumber(0x1), "steps", "steps"),
+    row(ReadOutNumber(0x2), "revolutions", "turns"),
+    row(ReadOutNumber(0x3), "complement", ""),
+    row(ReadOutNumber(0x4), "preset", "steps"),
+    row(ReadOutNumber(0x5), "zero shift", "steps"),
+    row(ReadOutNumber(0x6), "preset flag", ""),
+    row(ReadOutNumber(0x7), "software version", ""),
+    row(ReadOutNumber::OPERATING_TIME, "operating time", "10 min"),
+    row(ReadOutNumber::STARTUP_MODE, "startup mode", ""),
+    row(ReadOutNumber::FLAGS, "flags", ""),
+    row(ReadOutNumber::TEMPERATURE, "temperature", "0.1 °C"),
 ];
 
-const fn row(read_out: ReadOut, name: &'static str, unit: &'static str) -> ReadOutRow {
+const fn row(read_out: ReadOutNumber, name: &'static str, unit: &'static str) -> ReadOutRow {
     ReadOutRow { read_out, name, unit }
 }
 
@@ -77,26 +77,26 @@ pub enum StartupMode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Flags(Value);
 
-impl ReadOut {
+impl ReadOutNumber {
     /// Serial number, 0.
-    pub const SERIAL_NUMBER: ReadOut = ReadOut(0x0);
+    pub const SERIAL_NUMBER: ReadOutNumber = ReadOutNumber(0x0);
     /// Operating time in units of ten minutes, read-out 8.
-    pub const OPERATING_TIME: ReadOut = ReadOut(0x8);
+    pub const OPERATING_TIME: ReadOutNumber = ReadOutNumber(0x8);
     /// Start-up mode, 9.
-    pub const STARTUP_MODE: ReadOut = ReadOut(0x9);
+    pub const STARTUP_MODE: ReadOutNumber = ReadOutNumber(0x9);
     /// Flags, Ah.
-    pub const FLAGS: ReadOut = ReadOut(0xA);
+    pub const FLAGS: ReadOutNumber = ReadOutNumber(0xA);
     /// Temperature in tenths of a degree Celsius, read-out Ch.
-    pub const TEMPERATURE: ReadOut = ReadOut(0xC);
+    pub const TEMPERATURE: ReadOutNumber = ReadOutNumber(0xC);
 
     /// Creates a read-out from its number. Every number is valid.
     pub const fn new(number: u16) -> Self {
-        ReadOut(number)
+        ReadOutNumber(number)
     }
 
     /// Returns the read-out of an OPC chip register, `xDh`, or `None` for registers above 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
-        if register < 16 { Some(ReadOut((register as u16) << 4 | CHIP)) } else { None }
+        if register < 16 { Some(ReadOutNumber((register as u16) << 4 | CHIP)) } else { None }
     }
 
     /// Returns its number.
@@ -117,10 +117,10 @@ impl ReadOut {
     /// Interprets a value received for this read-out.
     pub fn value(self, value: Value) -> ReadOutValue {
         match self {
-            ReadOut::OPERATING_TIME => ReadOutValue::Minutes(value.get() * 10),
-            ReadOut::STARTUP_MODE => ReadOutValue::StartupMode(StartupMode::parse(value)),
-            ReadOut::FLAGS => ReadOutValue::Flags(Flags(value)),
-            ReadOut::TEMPERATURE => ReadOutValue::TenthsOfDegree(signed(value)),
+            ReadOutNumber::OPERATING_TIME => ReadOutValue::Minutes(value.get() * 10),
+            ReadOutNumber::STARTUP_MODE => ReadOutValue::StartupMode(StartupMode::parse(value)),
+            ReadOutNumber::FLAGS => ReadOutValue::Flags(Flags(value)),
+            ReadOutNumber::TEMPERATURE => ReadOutValue::TenthsOfDegree(signed(value)),
             _ => ReadOutValue::Plain(value.get()),
         }
     }

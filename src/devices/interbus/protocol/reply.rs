@@ -1,8 +1,8 @@
 //! IN words of a K3 encoder (reference 2). The meaning of a position or value depends on the mode: see
-//! [`CamOutput`](super::CamOutput) and [`ReadOut::value`](super::ReadOut::value).
+//! [`CamOutput`](super::CamOutput) and [`ReadOutNumber::value`](super::ReadOutNumber::value).
 
 use super::command::Command;
-use super::mode::Mode;
+use super::mode::EncoderMode;
 use super::value::{Code, Value};
 
 /// Meaning of an IN word.
@@ -98,7 +98,7 @@ impl Reply {
     }
 
     /// Returns the echoed command, if a parameter or cam can be set in this mode.
-    pub fn echoed(self, mode: Mode) -> Option<Command> {
+    pub fn echoed_command(self, mode: EncoderMode) -> Option<Command> {
         let sets = |command: &Command| {
             use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};
             matches!(command, Set(..) | Cams(_) | Activate(_) | Shift(_) | CamStart(..) | CamStop(..))

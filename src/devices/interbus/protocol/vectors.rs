@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use Mode::{Cam as Cams, Parameterisation, Position, ReadOut as Reading, Velocity};
+use EncoderMode::{Cam as Cams, Parameterisation, Position, ReadOut as Reading, Velocity};
 use Parameter as P;
 
 use super::*;
@@ -31,7 +31,7 @@ fn program(number: u8) -> Command {
 /// Reference 3, 5 and 7: a command, its word, and a mode in which it has this meaning.
 #[test]
 fn published_commands_match() {
-    let register = |number| Command::ReadOut(ReadOut::chip_register(number).unwrap());
+    let register = |number| Command::ReadOut(ReadOutNumber::chip_register(number).unwrap());
     let cases = [
         ("normal", Command::Normal, 0x0000_0000, Position),
         ("run", Command::Run, 0x8000_0000, Parameterisation),
@@ -53,10 +53,10 @@ fn published_commands_match() {
         ("default", set(P::Default, 0), 0x0E00_0000, Position),
         ("velocity start", Command::Velocity(true), 0x2040_0001, Position),
         ("velocity stop", Command::Velocity(false), 0x2040_0000, Velocity),
-        ("serial number", Command::ReadOut(ReadOut::SERIAL_NUMBER), 0x2021_0000, Reading),
-        ("temperature", Command::ReadOut(ReadOut::TEMPERATURE), 0x2021_000C, Position),
+        ("serial number", Command::ReadOut(ReadOutNumber::SERIAL_NUMBER), 0x2021_0000, Reading),
+        ("temperature", Command::ReadOut(ReadOutNumber::TEMPERATURE), 0x2021_000C, Position),
         ("chip register 5", register(5), 0x2021_005D, Reading),
-        ("mode", Command::ReadOut(ReadOut::STARTUP_MODE), 0x2021_0009, Cams),
+        ("mode", Command::ReadOut(ReadOutNumber::STARTUP_MODE), 0x2021_0009, Cams),
         ("position mode", program(0), 0x2080_0000, Cams),
         ("program 1", program(1), 0x2080_0001, Position),
         ("program 8", program(8), 0x2080_0008, Cams),
@@ -80,7 +80,7 @@ fn published_commands_match() {
         assert_eq!(Command::in_mode(word, mode), Ok(command), "{label}");
         assert!(Command::readings(word).contains(&command), "{label}");
     }
-    assert_eq!(ReadOut::chip_register(16), None);
+    assert_eq!(ReadOutNumber::chip_register(16), None);
 }
 
 /// Reference 2 and 7.
@@ -127,17 +127,17 @@ fn published_replies_match() {
 /// Reference 3 and 7.
 #[test]
 fn read_outs_have_their_units() {
-    let read = |read_out: ReadOut, word| match Reply::parse(word) {
+    let read = |read_out: ReadOutNumber, word| match Reply::parse(word) {
         Reply::ReadOut(value) => read_out.value(value),
         other => panic!("{other:?}"),
     };
-    assert_eq!(read(ReadOut::SERIAL_NUMBER, 0xA000_0FA0), ReadOutValue::Plain(4000));
-    assert_eq!(read(ReadOut::TEMPERATURE, 0xA000_00FD), ReadOutValue::TenthsOfDegree(253));
+    assert_eq!(read(ReadOutNumber::SERIAL_NUMBER, 0xA000_0FA0), ReadOutValue::Plain(4000));
+    assert_eq!(read(ReadOutNumber::TEMPERATURE, 0xA000_00FD), ReadOutValue::TenthsOfDegree(253));
     for word in [0xA1FF_FF9C, 0xA000_FF9C] {
-        assert_eq!(read(ReadOut::TEMPERATURE, word), ReadOutValue::TenthsOfDegree(-100), "{word:08X}");
+        assert_eq!(read(ReadOutNumber::TEMPERATURE, word), ReadOutValue::TenthsOfDegree(-100), "{word:08X}");
     }
-    assert_eq!(read(ReadOut::TEMPERATURE, 0xA000_7FFF), ReadOutValue::TenthsOfDegree(0x7FFF));
-    assert_eq!(read(ReadOut::OPERATING_TIME, 0xA000_03E8), ReadOutValue::Minutes(10_000));
+    assert_eq!(read(ReadOutNumber::TEMPERATURE, 0xA000_7FFF), ReadOutValue::TenthsOfDegree(0x7FFF));
+    assert_eq!(read(ReadOutNumber::OPERATING_TIME, 0xA000_03E8), ReadOutValue::Minutes(10_000));
     let mode = |number| StartupMode::parse(value(number));
     let program = |number| StartupMode::Cams(ProgramNumber::new(number).unwrap());
     assert_eq!([mode(0), mode(1), mode(2)], [StartupMode::K2, StartupMode::K3, StartupMode::Velocity]);
@@ -149,7 +149,7 @@ fn read_outs_have_their_units() {
     assert_eq!((names[3], names[10], names[11]), ("complement", "flags", "temperature"));
     let numbers: Vec<u16> = READ_OUTS.iter().map(|row| row.read_out.number()).collect();
     assert_eq!(numbers, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0xA, 0xC]);
-    assert_eq!((ReadOut::new(0x5D).register(), ReadOut::new(0xC).register()), (Some(5), None));
+    assert_eq!((ReadOutNumber::new(0x5D).register(), ReadOutNumber::new(0xC).register()), (Some(5), None));
 }
 
 /// Reference 6, by its numbers, as far as it is about reading and writing of bytes. 8: the echo of steps 255.
@@ -199,11 +199,11 @@ fn the_mode_determines_the_meaning_of_a_word() {
         (start, &[Position, Velocity]),
         (program(1), &[Position, Cams]),
         (Command::ReadShift, &[Cams]),
-        (Command::ReadOut(ReadOut::STARTUP_MODE), &[Position, Reading, Velocity, Cams]),
-        (Command::Run, &Mode::ALL),
+        (Command::ReadOut(ReadOutNumber::STARTUP_MODE), &[Position, Reading, Velocity, Cams]),
+        (Command::Run, &EncoderMode::ALL),
         (Command::Unknown(1), &[]),
     ] {
-        let modes: Vec<Mode> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).collect();
+        let modes: Vec<EncoderMode> = EncoderMode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).collect();
         assert_eq!(modes, legal, "{command:?}");
     }
 }
@@ -211,12 +211,12 @@ fn the_mode_determines_the_meaning_of_a_word() {
 /// Reference 4 and 5: the echo of a cam is an assumption.
 #[test]
 fn the_mode_determines_the_echo() {
-    assert_eq!(Reply::parse(0xC200_00FF).echoed(Parameterisation), Some(set(P::Steps, 255)));
-    assert_eq!(Reply::parse(0xC200_00FF).echoed(Cams), Some(Command::CamStart(cam(1), value(255))));
-    assert_eq!(Reply::parse(0xE600_0213).echoed(Cams), Some(Command::CamStop(cam(3), value(0x213))));
-    assert_eq!(Reply::parse(0xE040_0008).echoed(Cams), Some(Command::Activate(8)));
-    assert_eq!(Reply::parse(0xC000_0000).echoed(Parameterisation), None);
-    assert_eq!(Reply::parse(0xA000_00FF).echoed(Parameterisation), None);
+    assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Parameterisation), Some(set(P::Steps, 255)));
+    assert_eq!(Reply::parse(0xC200_00FF).echoed_command(Cams), Some(Command::CamStart(cam(1), value(255))));
+    assert_eq!(Reply::parse(0xE600_0213).echoed_command(Cams), Some(Command::CamStop(cam(3), value(0x213))));
+    assert_eq!(Reply::parse(0xE040_0008).echoed_command(Cams), Some(Command::Activate(8)));
+    assert_eq!(Reply::parse(0xC000_0000).echoed_command(Parameterisation), None);
+    assert_eq!(Reply::parse(0xA000_00FF).echoed_command(Parameterisation), None);
     // The worked example.
     let example = [(P::Steps, 255, 0xC200_00FF), (P::Turns, 1, 0xC400_0001), (P::Direction, 3, 0xC600_0003)];
     for (parameter, number, word) in example {
@@ -320,9 +320,9 @@ fn parameter_limits_are_checked() {
     assert_eq!(refused.to_string(), "preset: 3600 is not within 0 to 3599");
     for (row, code) in PARAMETERS.iter().zip([1, 2, 3, 4, 5, 7]) {
         assert_eq!((row.code, row.parameter.row().code), (code, code));
-        assert_eq!(P::of_code(Code::new(code).unwrap()), Some(row.parameter));
+        assert_eq!(P::from_code(Code::new(code).unwrap()), Some(row.parameter));
     }
-    assert_eq!(P::of_code(Code::new(6).unwrap()), None);
+    assert_eq!(P::from_code(Code::new(6).unwrap()), None);
 }
 
 /// Reference 7: edges belong to a cam.
@@ -360,7 +360,7 @@ proptest! {
         if let Ok(output) = CamOutput::parse(word) {
             prop_assert_eq!(output.emit(), word);
         }
-        for mode in Mode::ALL {
+        for mode in EncoderMode::ALL {
             if let Ok(command) = Command::in_mode(word, mode) {
                 prop_assert!(command.is_legal_in(mode) && command.emit() == word);
             }
@@ -377,7 +377,7 @@ proptest! {
     }
 
     #[test]
-    fn a_word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(Mode::ALL.to_vec())) {
+    fn a_word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(EncoderMode::ALL.to_vec())) {
         let legal = Command::readings(word).into_iter().filter(|command| command.is_legal_in(mode)).count();
         prop_assert!(legal <= 1);
     }

@@ -7,22 +7,24 @@ use super::memory::{Memory, PLACES};
 use crate::devices::interbus::protocol::{
     Class, Gear, INPUT, OUTPUT, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, TURNS, UNIT, Value, WordOrder,
 };
-use crate::expected::{Expected, Quantity};
-use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Values, Whole, Words, number};
+use crate::expected::{AllowedValues, Quantity};
+use crate::parameter::{
+    ANY, Checked, Decimal, Milliseconds, OptionalValue, Refused, SWITCH, Values, Whole, Words, number,
+};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
+use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
     /// Settings of a virtual gateway and its encoders. The default is one K3 encoder with factory settings, at rest and
     /// without faults, behind a gateway with unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
         // The gear, and the values that must fit into it: checked together, and put into the memory.
-        steps: Option<String> = None, "steps" => Maybe(ANY);
-        revolutions: Option<String> = None, "revolutions" => Maybe(ANY);
-        pub(super) memory: Memory = Memory::delivered();
+        steps: Option<String> = None, "steps" => OptionalValue(ANY);
+        revolutions: Option<String> = None, "revolutions" => OptionalValue(ANY);
+        pub(super) memory: Memory = Memory::factory_default();
         counterclockwise: bool = false, "direction" => Words(&[("cw", false), ("ccw", true)]);
         /// Preset in steps within the range, neither fired nor armed.
-        preset: Option<String> = None, "preset" => Maybe(ANY);
+        preset: Option<String> = None, "preset" => OptionalValue(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         /// Initial shaft position, in disc steps.
@@ -36,10 +38,10 @@ parameters! {
         /// Whether read-out 3 returns 0 or 1 instead of a code (`U`).
         pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
         /// The running cam program, or else normal operation.
-        pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(Expected::Program, mode);
+        pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(AllowedValues::Program, mode);
         /// Whether the encoder starts with demonstration cam programs.
         demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
-        pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
+        pub(super) stores: u32 = 3, "stores" => Checked(AllowedValues::Stores, number::<u32>);
         /// Whether the number of steps is reported minus one, as by older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
@@ -59,7 +61,7 @@ parameters! {
         pub(super) seed: u64 = 0, "seed" => SEED;
         /// Shares of replies that are lost (`drop`), have one bit inverted (`flip`), or are replaced by random bytes
         /// (`garbage`).
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
@@ -94,7 +96,7 @@ impl Config {
         }
         if let Some(steps) = self.steps.take() {
             let range = Parameter::Steps.range(memory.gear);
-            let allowed = Expected::StepsOfTurns { low: *range.start(), high: *range.end() };
+            let allowed = AllowedValues::StepsOfTurns { low: *range.start(), high: *range.end() };
             let gear = number(&steps).and_then(|steps| Gear::new(steps, memory.gear.turns()).ok());
             memory.gear = gear.ok_or_else(|| Refused::new("steps", steps, allowed))?;
         }
@@ -139,7 +141,7 @@ mod tests {
             counterclockwise: true,
             preset: 99,
             zero_shift: 500,
-            ..Memory::delivered()
+            ..Memory::factory_default()
         };
         let expected = Config {
             counterclockwise: true,

@@ -20,9 +20,9 @@ use super::config::Config;
 use super::memory::{Eeprom, Ended, Memory, Stored};
 use super::shaft::Shaft;
 use crate::devices::interbus::protocol::{
-    Class, Code, Command, Gear, Mode, Parameter, ProgramNumber, StartupMode, Value,
+    Class, Code, Command, EncoderMode, Gear, Parameter, ProgramNumber, StartupMode, Value,
 };
-use crate::sim::{Faults, Motor};
+use crate::sim::{Motor, SimulatedFaults};
 use crate::units::Moment;
 
 #[derive(Debug)]
@@ -43,7 +43,7 @@ pub struct Encoder {
     out: u32,
     content: InWordContent,
     /// Previous IN word, which is still returned for some time after a new OUT word.
-    old: Old,
+    old: StaleWord,
     busy_until: Moment,
     busy: Duration,
     stale: u32,
@@ -77,7 +77,7 @@ enum InWordContent {
 /// IN word from before the last change of the OUT word. Each reading of the IN word counts as a cycle; without
 /// readings, cycles elapse with time.
 #[derive(Clone, Copy, Debug, Default)]
-struct Old {
+struct StaleWord {
     word: u32,
     /// Remaining number of cycles for which the old word is returned.
     cycles: u32,
@@ -140,7 +140,7 @@ impl Encoder {
             power: true,
             out: 0,
             content: InWordContent::Live,
-            old: Old::default(),
+            old: StaleWord::default(),
             busy_until: Moment::START,
             busy: config.busy,
             stale: config.stale,
@@ -177,13 +177,13 @@ impl Encoder {
     }
 
     /// Returns the mode in which the next word is interpreted.
-    pub const fn mode(&self) -> Mode {
+    pub const fn mode(&self) -> EncoderMode {
         match (self.mode, self.activity) {
-            (StartupMode::Cams(_), _) => Mode::Cam,
-            (_, Activity::Setting) => Mode::Parameterisation,
-            (_, Activity::ReadingOut) => Mode::ReadOut,
-            (StartupMode::Velocity, Activity::Running) => Mode::Velocity,
-            (_, Activity::Running) => Mode::Position,
+            (StartupMode::Cams(_), _) => EncoderMode::Cam,
+            (_, Activity::Setting) => EncoderMode::Parameterisation,
+            (_, Activity::ReadingOut) => EncoderMode::ReadOut,
+            (StartupMode::Velocity, Activity::Running) => EncoderMode::Velocity,
+            (_, Activity::Running) => EncoderMode::Position,
         }
     }
 
@@ -197,8 +197,8 @@ impl Encoder {
     }
 
     /// Replaces the EEPROM faults without resetting the store count.
-    pub(super) fn set_faults(&mut self, faults: &Faults) {
-        self.eeprom.set_die_in_store(faults.die_in_store());
+    pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
+        self.eeprom.set_store_failure(faults.die_in_store());
     }
 
     /// Returns whether the encoder is powered. An unpowered encoder has no words.
@@ -211,7 +211,7 @@ impl Encoder {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
         (self.activity, self.unstored) = (Activity::Running, None);
-        (self.content, self.old) = (InWordContent::Live, Old::default());
+        (self.content, self.old) = (InWordContent::Live, StaleWord::default());
     }
 
     /// Restores the power of an encoder that has lost it. The master's present OUT word is treated as new.
@@ -230,7 +230,7 @@ impl Encoder {
         if word == before || !self.power || self.class != Class::K3 {
             return;
         }
-        self.old = Old { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
+        self.old = StaleWord { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
             Ok(command) => self.obey(now, command, before),
             Err(_) => self.note_unexpected_word(now, word),
@@ -255,11 +255,11 @@ impl Encoder {
             Command::Run if before >> 31 == 0 => self.run(),
             Command::Normal | Command::Run | Command::Unknown(_) => {}
             Command::Preset if self.memory.armed => {
-                self.fire(now);
+                self.trigger_preset(now);
                 (self.memory.armed, self.eeprom.kept.armed) = (false, false);
             }
             Command::Preset => {}
-            Command::FrabaPreset => self.fire(now),
+            Command::FrabaPreset => self.trigger_preset(now),
             Command::Set(parameter, value) => {
                 let taken = self.take(parameter, value).map(|()| Stored::Parameters);
                 self.set(now, taken);
@@ -303,7 +303,7 @@ impl Encoder {
             Err(fault) => fault.word(),
         };
         self.unstored = taken.ok().or(self.unstored);
-        self.turn_to(Activity::Setting, InWordContent::Word(word));
+        self.switch_activity(Activity::Setting, InWordContent::Word(word));
         self.busy_until = now + self.busy;
     }
 
@@ -321,7 +321,7 @@ impl Encoder {
             Parameter::Default => {
                 within()?;
                 let Memory { shift, programs, .. } = self.memory.clone();
-                self.memory = Memory { shift, programs, ..Memory::delivered() };
+                self.memory = Memory { shift, programs, ..Memory::factory_default() };
             }
         }
         Ok(())
@@ -330,7 +330,7 @@ impl Encoder {
     /// Handles the rising edge of the run command by returning to position, speed or cam output.
     fn run(&mut self) {
         self.store();
-        self.turn_to(Activity::Running, InWordContent::Live);
+        self.switch_activity(Activity::Running, InWordContent::Live);
     }
 
     /// Stores the values that were set, if any.
@@ -354,7 +354,7 @@ impl Encoder {
     }
 
     /// Switches to another activity immediately, without busy words.
-    const fn turn_to(&mut self, activity: Activity, content: InWordContent) {
+    const fn switch_activity(&mut self, activity: Activity, content: InWordContent) {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
 
@@ -374,10 +374,10 @@ impl Encoder {
         }
         self.mode = program.map_or(StartupMode::K3, StartupMode::Cams);
         if program.is_some() && self.acknowledges_selection {
-            self.turn_to(Activity::Setting, InWordContent::Word(self.out | ECHO));
+            self.switch_activity(Activity::Setting, InWordContent::Word(self.out | ECHO));
             self.busy_until = now + self.busy;
         } else {
-            self.turn_to(Activity::Running, InWordContent::Live);
+            self.switch_activity(Activity::Running, InWordContent::Live);
         }
     }
 }

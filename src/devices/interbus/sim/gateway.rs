@@ -10,9 +10,9 @@ use fastrand::Rng;
 use super::config::Config;
 use super::encoder::Encoder;
 use super::frame::{self, Exception, Registers};
-use super::registers::{Encoders, Map};
-use crate::sim::line::Queue;
-use crate::sim::{ByteDevice, Faults, Motor};
+use super::registers::{EncoderList, RegisterMap};
+use crate::sim::line::TransitQueue;
+use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::Moment;
 
 /// Client connection to a virtual gateway, created from a [`Config`]. Use [`connection`](Self::connection) to add
@@ -22,14 +22,14 @@ pub struct Gateway {
     shared: Arc<Mutex<Shared>>,
     /// Received bytes of an incomplete frame.
     received: Vec<u8>,
-    to_host: Queue<Vec<u8>>,
+    to_host: TransitQueue<Vec<u8>>,
 }
 
 struct Shared {
     unit: u8,
-    map: Map,
-    encoders: Encoders,
-    faults: Faults,
+    map: RegisterMap,
+    encoders: EncoderList,
+    faults: SimulatedFaults,
     exceptions: f64,
     rng: Rng,
     requests: u32,
@@ -42,20 +42,20 @@ impl Gateway {
     pub fn new(config: &Config) -> Self {
         let shared = Shared {
             unit: config.unit,
-            map: Map::new(config),
-            encoders: Encoders::new(config),
+            map: RegisterMap::new(config),
+            encoders: EncoderList::new(config),
             faults: config.faults.clone(),
             exceptions: config.exceptions,
             rng: Rng::with_seed(config.seed),
             requests: 0,
             now: Moment::START,
         };
-        Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: Queue::default() }
+        Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: TransitQueue::default() }
     }
 
     /// Returns a connection to the same gateway and encoders for another client.
     pub fn connection(&self) -> Self {
-        Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
+        Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: TransitQueue::default() }
     }
 
     pub fn shaft(&self) -> Motor {
@@ -68,7 +68,7 @@ impl Gateway {
     }
 
     /// Replaces the faults, for example when a cable is repaired or breaks later. Request and store counts are kept.
-    pub fn set_faults(&self, faults: &Faults) {
+    pub fn set_faults(&self, faults: &SimulatedFaults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
         shared.encoders.iter_mut().for_each(|encoder| encoder.set_faults(faults));
@@ -136,7 +136,7 @@ impl ByteDevice for Gateway {
         while let Some(request) = frame::next(&mut self.received) {
             let mut shared = self.lock();
             shared.now = shared.now.max(now);
-            let due = shared.now + Self::REPLY + shared.faults.delay();
+            let due = shared.now + Self::REPLY + shared.faults.reply_delay();
             let reply = shared.take(&request);
             drop(shared);
             if let Some(reply) = reply {
@@ -157,7 +157,7 @@ impl ByteDevice for Gateway {
     /// back.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
-        self.to_host = Queue::default();
+        self.to_host = TransitQueue::default();
         let mut shared = self.lock();
         shared.now = shared.now.max(now);
         let now = shared.now;

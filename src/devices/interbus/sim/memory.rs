@@ -19,7 +19,7 @@ pub struct Memory {
 
 impl Memory {
     /// Returns the factory settings: all steps over all turns, and no active cams.
-    pub(super) fn delivered() -> Self {
+    pub(super) fn factory_default() -> Self {
         Memory {
             gear: FULL,
             counterclockwise: false,
@@ -45,7 +45,7 @@ impl Memory {
     }
 
     /// Returns whether a preset has been set but not fired yet.
-    pub const fn preset_is_armed(&self) -> bool {
+    pub const fn is_preset_armed(&self) -> bool {
         self.armed
     }
 
@@ -143,7 +143,7 @@ impl Eeprom {
         self.stores
     }
 
-    pub(super) const fn set_die_in_store(&mut self, number: Option<u32>) {
+    pub(super) const fn set_store_failure(&mut self, number: Option<u32>) {
         self.die_in_store = number;
     }
 
@@ -157,7 +157,7 @@ impl Eeprom {
             return Ended::Kept;
         }
         self.lost = true;
-        let delivered = Memory::delivered();
+        let delivered = Memory::factory_default();
         match what {
             Stored::Parameters => {
                 let Memory { shift, programs, .. } = self.kept.clone();

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::WordOrder;
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Map {
+pub(super) struct RegisterMap {
     input: u16,
     output: u16,
     order: WordOrder,
@@ -17,7 +17,7 @@ pub(super) struct Map {
 
 /// Encoders in register order.
 #[derive(Debug)]
-pub(super) struct Encoders {
+pub(super) struct EncoderList {
     pub(super) first: Encoder,
     others: Vec<Encoder>,
 }
@@ -27,10 +27,10 @@ const REGISTERS: usize = 2;
 
 type Result<T> = std::result::Result<T, Exception>;
 
-impl Encoders {
+impl EncoderList {
     pub(super) fn new(config: &Config) -> Self {
         let others = (1..config.encoders).map(|number| Encoder::new(config, number)).collect();
-        Encoders { first: Encoder::new(config, 0), others }
+        EncoderList { first: Encoder::new(config, 0), others }
     }
 
     pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Encoder> {
@@ -42,23 +42,23 @@ impl Encoders {
     }
 }
 
-impl Map {
+impl RegisterMap {
     pub(super) const fn new(config: &Config) -> Self {
-        Map { input: config.input, output: config.output, order: config.order }
+        RegisterMap { input: config.input, output: config.output, order: config.order }
     }
 
     /// Reads IN words (function 4).
-    pub(super) fn inputs(&self, encoders: &mut Encoders, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
+    pub(super) fn inputs(&self, encoders: &mut EncoderList, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.input, first, count, |encoder| encoder.read(now).ok_or(Exception::NoAnswer))
     }
 
     /// Reads the present OUT words (function 3).
-    pub(super) fn outputs(&self, encoders: &mut Encoders, first: u16, count: u16) -> Result<Vec<u16>> {
+    pub(super) fn outputs(&self, encoders: &mut EncoderList, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
     }
 
     /// Writes complete or half OUT words (functions 6 and 16).
-    pub(super) fn write(&self, encoders: &mut Encoders, now: Moment, first: u16, values: &[u16]) -> Result<()> {
+    pub(super) fn write(&self, encoders: &mut EncoderList, now: Moment, first: u16, values: &[u16]) -> Result<()> {
         let begin = self.range(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
@@ -80,7 +80,7 @@ impl Map {
 
     fn read(
         &self,
-        encoders: &mut Encoders,
+        encoders: &mut EncoderList,
         base: u16,
         first: u16,
         count: u16,
@@ -100,7 +100,7 @@ impl Map {
     }
 
     /// Returns the offset from the first encoder's register, after checking that the complete range exists.
-    fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
+    fn range(&self, encoders: &EncoderList, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }
     }

@@ -4,7 +4,7 @@ use super::action::InterbusAction;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::services::Services;
-use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
+use crate::app::session::{HasMemory, HasProfile, Phase, SessionEvents};
 use crate::app::{DeviceFile, FileQuestion, Text};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -15,7 +15,7 @@ use crate::profile::Body;
 impl Encoder {
     pub(crate) fn act(&mut self, action: InterbusAction, services: &mut Services) {
         match action {
-            InterbusAction::Stopped(stopped) => self.say_stopped(stopped),
+            InterbusAction::Stopped(stopped) => self.set_stopped(stopped),
             InterbusAction::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
             InterbusAction::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
             InterbusAction::Select(mode) => self.submit(InterbusJob::Select(mode), services),
@@ -32,7 +32,7 @@ impl Encoder {
             }
             InterbusAction::OpenTable(path) => self.open_table(path, services),
             InterbusAction::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
-            InterbusAction::TakeTable(take) => self.take_table(take),
+            InterbusAction::TakeTable(take) => self.finish_import(take),
             InterbusAction::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
                 let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));
@@ -70,17 +70,17 @@ impl Encoder {
             profile.names = wanted.names.clone();
         }
         let edits = self.is_dirty().then(|| self.staged.count());
-        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
+        self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
     }
 
     /// Automatically reads the next part of a virtual encoder, or returns `false` if nothing is left to read.
-    pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
+    pub(super) fn read_next_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;
         }
         if self.survey.is_none() {
             self.try_submit(InterbusJob::Survey, services)
-        } else if self.programs_read() < ProgramNumber::COUNT {
+        } else if self.known_program_count() < ProgramNumber::COUNT {
             self.try_submit(InterbusJob::Programs(ProgramNumber::all().collect()), services)
         } else {
             false

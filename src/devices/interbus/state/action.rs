@@ -6,14 +6,14 @@ use super::staged::Edit;
 use crate::app::DeviceAction;
 use crate::devices::interbus::jobs::Change;
 use crate::devices::interbus::profile::Scale;
-use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};
+use crate::devices::interbus::protocol::{ProgramNumber, ReadOutNumber, StartupMode};
 
 pub enum InterbusAction {
     /// Sets whether the user has confirmed that the machine stands still.
     Stopped(bool),
     /// Reads cam programs, which switches the encoder's outputs to each of them in turn.
     ReadPrograms(Vec<ProgramNumber>),
-    ReadOut(ReadOut),
+    ReadOut(ReadOutNumber),
     /// Selects the data that the encoder sends: position, speed or the outputs of a program.
     Select(StartupMode),
     Check,

@@ -12,9 +12,9 @@ pub mod table_words;
 mod tests;
 pub mod words;
 
-pub use grid::{Tick, next_line, rounded, ticks};
-pub use moving::{Hold, drawn, moved, pulled};
-pub use snap::{Snap, snap};
+pub use grid::{Tick, next_grid_line, rounded, ticks};
+pub use moving::{DragTarget, drawn, moved, pulled};
+pub use snap::{SnapSettings, snap};
 
 use super::staged::{EditedValues, Mark, Staged};
 use crate::devices::interbus::profile::Edge;

@@ -2,12 +2,12 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
 use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
 use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
-use crate::link::{LinkUrl, Scheme};
+use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,9 +54,11 @@ impl FormModel for InterbusForm {
 
     fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
-            Scheme::Sim => InterbusLinkKind::Virtual,
-            Scheme::Replay => InterbusLinkKind::Replay,
-            Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Enip => InterbusLinkKind::Gateway,
+            LinkScheme::Sim => InterbusLinkKind::Virtual,
+            LinkScheme::Replay => InterbusLinkKind::Replay,
+            LinkScheme::Modbus | LinkScheme::Bridge | LinkScheme::Serial | LinkScheme::Tcp | LinkScheme::Enip => {
+                InterbusLinkKind::Gateway
+            }
         };
         let mut form = InterbusForm { kind: way, ..InterbusForm::default() };
         match form.kind {
@@ -64,7 +66,7 @@ impl FormModel for InterbusForm {
             InterbusLinkKind::Gateway => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             InterbusLinkKind::Virtual => {}
         }
-        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -89,7 +91,7 @@ impl InterbusForm {
     }
 
     /// Returns the entries that locate the words in the gateway, followed by the rarely needed entries.
-    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+    pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
 
@@ -104,13 +106,13 @@ impl InterbusForm {
         is_low_first || self.typed.take(&self.entries(), name, value)
     }
 
-    fn target(&self) -> Result<(Scheme, String), Text> {
+    fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
-            InterbusLinkKind::Virtual => (Scheme::Sim, String::new()),
+            InterbusLinkKind::Virtual => (LinkScheme::Sim, String::new()),
             InterbusLinkKind::Gateway => {
-                (Scheme::Modbus, host_and_default_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
+                (LinkScheme::Modbus, host_and_default_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
             }
-            InterbusLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            InterbusLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
@@ -121,7 +123,7 @@ impl InterbusForm {
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
-        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

@@ -3,11 +3,11 @@
 use super::encoder::Encoder;
 use super::staged::SavedEdit;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
+use crate::app::session::{HasDraft, HasSession, ProfileFile, Session};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::jobs::device_key;
 use crate::devices::interbus::profile::InterbusProfile;
-use crate::profile::Document;
+use crate::profile::ProfileDocument;
 use crate::store::DeviceKey;
 
 pub(crate) type Edits = Vec<SavedEdit>;
@@ -24,7 +24,7 @@ impl HasSession for Encoder {
     }
 }
 
-impl Drafted for Encoder {
+impl HasDraft for Encoder {
     fn key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
@@ -45,9 +45,9 @@ impl Drafted for Encoder {
         &mut self.staged
     }
 
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<InterbusProfile>() else { return };
         self.staged.saved(profile.image.clone(), profile.names.clone());
-        self.session.take_document(file, document);
+        self.session.apply_document(file, document);
     }
 }

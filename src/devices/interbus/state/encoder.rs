@@ -10,12 +10,14 @@ use super::trace::Meaning;
 use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Saved, Session, Source, WithMemory, some};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, Session, Source, some};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Survey, WordReading};
 use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
-use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
+use crate::devices::interbus::protocol::{
+    EncoderMode, ProgramNumber, ReadOutNumber, StartupMode, Value, WindowShift, WordOrder,
+};
 use crate::devices::interbus::state::TEXTS;
 use crate::sim::Motor;
 
@@ -116,9 +118,9 @@ impl Encoder {
     /// Returns the context needed to decode IN words.
     pub fn known(&self) -> WordContext {
         let mode = match self.mode() {
-            Some(StartupMode::Velocity) => Mode::Velocity,
-            Some(StartupMode::Cams(_)) => Mode::Cam,
-            _ => Mode::Position,
+            Some(StartupMode::Velocity) => EncoderMode::Velocity,
+            Some(StartupMode::Cams(_)) => EncoderMode::Cam,
+            _ => EncoderMode::Position,
         };
         WordContext { mode, read_out: None, shift: self.shift() }
     }
@@ -148,7 +150,7 @@ impl Encoder {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
 
-    pub(super) fn say_stopped(&mut self, stopped: bool) {
+    pub(super) fn set_stopped(&mut self, stopped: bool) {
         self.stopped = stopped;
     }
 
@@ -157,7 +159,7 @@ impl Encoder {
         self.staged.wanted().map_or(0, EditedValues::range)
     }
 
-    pub fn read_out(&self, what: ReadOut) -> Option<Value> {
+    pub fn read_out(&self, what: ReadOutNumber) -> Option<Value> {
         self.read_outs.get(&what.number()).copied()
     }
 
@@ -166,7 +168,7 @@ impl Encoder {
     }
 
     /// Returns how many of the eight programs have been read.
-    pub fn programs_read(&self) -> usize {
+    pub fn known_program_count(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
     }
 
@@ -188,9 +190,9 @@ impl Encoder {
     }
 
     /// Adopts the results of a survey. Edits are kept unless they belong to another encoder.
-    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+    pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
-            self.replaced_by(&survey.identity.serial_number, services);
+            self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         self.session.title = Some(title(&survey.identity));

@@ -5,8 +5,8 @@ use super::encoder::Encoder;
 use super::job;
 use crate::app::Explained;
 use crate::app::review::{Review, written_texts};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{EarlyEnd, Kind, Saved, SessionEvents, WithMemory};
+use crate::app::services::{JobState, Services};
+use crate::app::session::{EarlyEnd, HasMemory, HasProfile, Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, JobStep};
 use crate::devices::interbus::procedures::WordReading;
@@ -67,7 +67,7 @@ impl Kind for Interbus {
 
 impl Encoder {
     /// Reads a word for display, unless polling already delivers words.
-    fn see_a_word(&mut self, services: &mut Services) {
+    fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);
         }
@@ -100,22 +100,22 @@ impl SessionEvents for Encoder {
                     self.session.log_answer(vec![word], services);
                 }
                 self.record.observe_reading(reading);
-                self.read_on(services);
+                self.read_next_part(services);
             }
             InterbusOutput::Surveyed(survey) => {
-                self.take_survey(*survey, services);
+                self.apply_survey(*survey, services);
                 let programs = std::mem::take(&mut self.read_after);
                 if !programs.is_empty() {
                     self.submit(InterbusJob::Programs(programs), services);
-                } else if !self.read_on(services) {
-                    self.see_a_word(services);
+                } else if !self.read_next_part(services) {
+                    self.refresh_word(services);
                 }
             }
             InterbusOutput::Programs(programs, shift) => {
                 self.staged.refresh_programs(&programs, Some(shift));
                 // Reading them may have cost stores.
                 self.list_backups(services);
-                self.see_a_word(services);
+                self.refresh_word(services);
             }
             InterbusOutput::Position(reading) => self.record.add(vec![reading], 0),
             InterbusOutput::ReadOut(what, value) => {
@@ -125,7 +125,7 @@ impl SessionEvents for Encoder {
                 if let Some(survey) = &mut self.survey {
                     survey.identity.mode = mode;
                 }
-                self.see_a_word(services);
+                self.refresh_word(services);
             }
             InterbusOutput::Check(lines) => self.check = Some(words::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
@@ -142,7 +142,7 @@ impl SessionEvents for Encoder {
 
     /// Discards the review and the confirmation that the machine stands still.
     fn forget_requests(&mut self) {
-        self.say_stopped(false);
+        self.set_stopped(false);
         self.forget_plan();
     }
 
@@ -162,7 +162,7 @@ impl SessionEvents for Encoder {
         self.session.submit(job, services)
     }
 
-    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
         self.forget_requests();
         self.session.let_go(end, services);

@@ -11,14 +11,14 @@ mod write;
 use crate::devices::interbus::state::TEXTS;
 pub use check::check;
 pub use entry::entry;
-pub use gateway::{damage, exception};
+pub use gateway::{damage_text, exception_text};
 pub use item::{direction, parameter, read_out, startup};
 pub use write::{change, op, other_type, plan, wear, weight, written};
 
 use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::devices::interbus::jobs::{JobError, JobStep};
-use crate::devices::interbus::procedures::{AwaitedWord, Error, Implausible, LeftState};
+use crate::devices::interbus::procedures::{Error, ExpectedWord, ImplausibleValue, LeftState};
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
@@ -27,9 +27,9 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![write::not_begun(why)],
+        JobError::NotBegun(why) => vec![write::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
-            write::interruption(interrupted, backup, *planned, *kind)
+            write::interruption_text(interrupted, backup, *planned, *kind)
         }
     }
 }
@@ -62,14 +62,14 @@ pub fn encoder(error: &Error) -> Text {
             .text("interbus.damaged")
             .with_text("asked", gateway::item_text(*requested))
             .with("tries", tries)
-            .with_text("why", gateway::damage(*cause)),
+            .with_text("why", gateway::damage_text(*cause)),
         Error::NeverSilent => TEXTS.text("interbus.never_silent"),
         Error::Exception { requested, exception } => TEXTS
             .text("interbus.exception")
             .with_text("asked", gateway::item_text(*requested))
             .with("code", format!("0x{:02X}", exception.code()))
             .with_text("name", gateway::exception_name(*exception))
-            .with_text("cause", gateway::exception(*exception)),
+            .with_text("cause", gateway::exception_text(*exception)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Illegal(refused) => TEXTS.text("interbus.illegal").with("word", word(refused.command.emit())),
         Error::Refused { sent, error } => TEXTS
@@ -111,12 +111,12 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-fn time_out(awaited: AwaitedWord) -> Text {
+fn time_out(awaited: ExpectedWord) -> Text {
     TEXTS.text(match awaited {
-        AwaitedWord::Echo => "interbus.no_echo",
-        AwaitedWord::Value => "interbus.no_value",
-        AwaitedWord::Run => "interbus.no_run",
-        AwaitedWord::Preset => "interbus.no_preset",
+        ExpectedWord::Echo => "interbus.no_echo",
+        ExpectedWord::Value => "interbus.no_value",
+        ExpectedWord::Run => "interbus.no_run",
+        ExpectedWord::Preset => "interbus.no_preset",
     })
 }
 
@@ -132,14 +132,16 @@ pub fn refusal(error: ErrorWord) -> Text {
     })
 }
 
-pub fn implausible(why: Implausible) -> Text {
+pub fn implausible(why: ImplausibleValue) -> Text {
     match why {
-        Implausible::Gear(GearError::Turns { turns }) => TEXTS.text("interbus.implausible_turns").with("turns", turns),
-        Implausible::Gear(GearError::Steps { steps, turns, most }) => {
+        ImplausibleValue::Gear(GearError::Turns { turns }) => {
+            TEXTS.text("interbus.implausible_turns").with("turns", turns)
+        }
+        ImplausibleValue::Gear(GearError::Steps { steps, turns, most }) => {
             TEXTS.text("interbus.implausible_steps").with("steps", steps).with("turns", turns).with("most", most)
         }
-        Implausible::Direction(code) => TEXTS.text("interbus.implausible_direction").with("code", code),
-        Implausible::Value { read, value } => {
+        ImplausibleValue::Direction(code) => TEXTS.text("interbus.implausible_direction").with("code", code),
+        ImplausibleValue::Value { read, value } => {
             TEXTS.text("interbus.implausible_value").with("read", word(read)).with("value", value)
         }
     }

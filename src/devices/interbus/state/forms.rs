@@ -83,7 +83,7 @@ pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
 }
 
 /// Returns the default scale for a unit, in which the measuring range is one machine turn.
-pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
+pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     let steps = match unit {
         Unit::Degrees => f64::from(range.max(1)),
         Unit::Steps | Unit::Millimetres => 1.0,
@@ -95,8 +95,8 @@ pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
 pub fn steps_of(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
-        Unit::Degrees => Some(scale.steps_in_unit() * 360.0),
-        Unit::Millimetres => Some(scale.steps_in_unit()),
+        Unit::Degrees => Some(scale.steps_per_unit() * 360.0),
+        Unit::Millimetres => Some(scale.steps_per_unit()),
     }
 }
 
@@ -114,7 +114,7 @@ pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
 ///
 /// # Errors
 /// The entry is not a position within the measuring range.
-pub fn with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
+pub fn scale_with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = number(text)?;
     let last = range.saturating_sub(1);
     if zero > last {

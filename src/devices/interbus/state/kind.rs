@@ -33,7 +33,7 @@ impl DeviceType for Encoder {
     fn tables(_store: &Store) -> Self::Tables {}
 
     fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
-        let staged = profile.map(|(profile, ())| Staged::of_profile(profile.image.clone(), profile.names.clone()));
+        let staged = profile.map(|(profile, ())| Staged::for_profile(profile.image.clone(), profile.names.clone()));
         Encoder::with(session, staged.unwrap_or_default())
     }
 

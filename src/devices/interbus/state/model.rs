@@ -3,9 +3,9 @@
 use super::trace::Meaning;
 use super::{Done, Encoder, InterbusAction, TEXTS};
 use crate::app::action::Opened;
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Saved, SessionEvents};
-use crate::app::{ActContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
+use crate::app::services::{JobState, Services};
+use crate::app::session::{HasProfile, SessionEvents};
+use crate::app::{ActionContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 
 impl DeviceModel for Encoder {
@@ -14,7 +14,7 @@ impl DeviceModel for Encoder {
     type Done = Done;
 
     fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
+        self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.trace = Meaning::new(self.order());
@@ -22,7 +22,7 @@ impl DeviceModel for Encoder {
         self.submit(InterbusJob::Hello, services);
     }
 
-    fn act(&mut self, action: InterbusAction, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: InterbusAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 

@@ -2,7 +2,7 @@
 
 use super::word_meaning::{self, WordContext};
 use crate::app::Text;
-use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
+use crate::devices::interbus::protocol::{EncoderMode, ReadOutNumber, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
 /// Direction of a word and encoder class.
@@ -46,15 +46,15 @@ impl WordSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     pub source: WordSource,
-    pub mode: Mode,
+    pub mode: EncoderMode,
     /// The value being read out, if any.
-    pub read_out: Option<ReadOut>,
+    pub read_out: Option<ReadOutNumber>,
     pub shift: WindowShift,
 }
 
 impl Default for Reading {
     fn default() -> Self {
-        Reading { source: WordSource::In, mode: Mode::Position, read_out: None, shift: WindowShift::default() }
+        Reading { source: WordSource::In, mode: EncoderMode::Position, read_out: None, shift: WindowShift::default() }
     }
 }
 

@@ -7,7 +7,7 @@ use jiff::Zoned;
 
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
+use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
@@ -21,7 +21,7 @@ pub(super) enum RecordedValue {
 
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: Track<RecordedValue>,
+    pub(super) track: DeviceRecorder<RecordedValue>,
     last: Option<WordReading>,
 }
 
@@ -33,7 +33,7 @@ impl Record {
 
     /// Adds new readings; `dropped` is the number of readings that arrived too late to be recorded.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
-        self.track.note_dropped(dropped);
+        self.track.record_dropped(dropped);
         for reading in readings {
             self.see(&reading);
             self.last = Some(reading);
@@ -96,8 +96,8 @@ impl Record {
 
 fn meaning(gear: Option<Gear>) -> Meaning {
     match gear {
-        Some(gear) => Meaning::of_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),
-        None => Meaning::of_steps(None),
+        Some(gear) => Meaning::for_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),
+        None => Meaning::for_steps(None),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Review of a write to an INTERBUS encoder: permits, warnings and cost of its plan.
 
 use crate::app::explain::plain;
-use crate::app::review::{self, OperationTexts, Permit, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
 use crate::devices::interbus::procedures::write::Written;
@@ -12,7 +12,7 @@ use crate::devices::interbus::state::explain as words;
 pub type Review = review::Review<Interbus>;
 pub type ReviewState = review::ReviewState<Interbus>;
 
-impl Reviewed for Interbus {
+impl Reviewable for Interbus {
     type Change = Change;
     type Prepared = Prepared;
     type Written = Written;

@@ -23,7 +23,7 @@ pub use mark::Mark;
 
 use crate::app::history::History;
 use crate::app::{SteppedEdits, SteppedParts};
-use crate::devices::interbus::profile::{Image, Names, Parameters};
+use crate::devices::interbus::profile::{CamNames, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
 /// All editable values in their edited state.
@@ -32,7 +32,7 @@ pub struct EditedValues {
     pub image: Image,
     /// Names of programs and cams, which no encoder stores. Two cams of a program with the same name are pulses on one
     /// track.
-    pub names: Names,
+    pub names: CamNames,
 }
 
 /// Source of the values with which the edits are compared.
@@ -60,7 +60,7 @@ pub struct Staged {
 impl EditedValues {
     /// Creates the edits without names.
     pub fn of(image: Image) -> Self {
-        EditedValues { image, names: Names::default() }
+        EditedValues { image, names: CamNames::default() }
     }
 
     /// Returns the number of steps in the measuring range. All positions are below it.
@@ -84,14 +84,14 @@ impl EditedValues {
 
 impl Staged {
     /// Creates the edits of a profile, to which missing values can also be added.
-    pub fn of_profile(image: Image, names: Names) -> Self {
+    pub fn for_profile(image: Image, names: CamNames) -> Self {
         let base = EditedValues { image, names };
         Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
     /// Adopts the new content of the profile. If it equals the edited values, it was saved, and the undo steps are
     /// kept. Otherwise another program has written it, and only the values edited here keep their edits.
-    pub fn saved(&mut self, image: Image, names: Names) {
+    pub fn saved(&mut self, image: Image, names: CamNames) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
             self.base = Some(now);
@@ -109,7 +109,7 @@ impl Staged {
         let known = self.base.take();
         let (names, image) = match &known {
             Some(known) => (known.names.clone(), merge::over(&known.image, read)),
-            None => (Names::default(), read),
+            None => (CamNames::default(), read),
         };
         self.base = known;
         self.rebase(EditedValues { image, names });

@@ -53,7 +53,7 @@ impl Encoder {
 
     /// Applies the imported table to the edits, or discards it. A table with problems stays open with the reason shown,
     /// since omitting a line would switch its cam off.
-    pub(super) fn take_table(&mut self, take: bool) {
+    pub(super) fn finish_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {
             return;

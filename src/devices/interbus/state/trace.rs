@@ -3,7 +3,7 @@
 use super::word_meaning::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::interbus::procedures::{Carried, Fault, carried_word, fault};
-use crate::devices::interbus::protocol::{Command, Mode, ReadOut, Reply, WindowShift, WordOrder};
+use crate::devices::interbus::protocol::{Command, EncoderMode, ReadOutNumber, Reply, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
@@ -14,18 +14,18 @@ pub(super) struct Meaning {
     /// Order in which the halves of a word are transmitted.
     pub(super) order: WordOrder,
     pub(super) shift: Option<WindowShift>,
-    mode: Mode,
-    read_out: Option<ReadOut>,
+    mode: EncoderMode,
+    read_out: Option<ReadOutNumber>,
     requested: Vec<u8>,
 }
 
 impl Meaning {
     /// Creates the decoder for a new link, which starts in position mode.
     pub(super) fn new(order: WordOrder) -> Self {
-        Meaning { order, shift: None, mode: Mode::Position, read_out: None, requested: Vec::new() }
+        Meaning { order, shift: None, mode: EncoderMode::Position, read_out: None, requested: Vec::new() }
     }
 
-    pub(super) fn found(&mut self, mode: Mode) {
+    pub(super) fn found(&mut self, mode: EncoderMode) {
         self.mode = mode;
     }
 
@@ -34,12 +34,12 @@ impl Meaning {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
             self.requested.clone_from(&bytes);
-            return self.meanings(entry.direction, &bytes).into();
+            return self.word_meaning_texts(entry.direction, &bytes).into();
         }
         match fault(&self.requested, &bytes, self.order) {
-            Some(Fault::Broken(damage)) => Explained::broken(explained::damage(damage)),
+            Some(Fault::Broken(damage)) => Explained::broken(explained::damage_text(damage)),
             Some(Fault::Refused(exception)) => {
-                Explained { meaning: vec![explained::exception(exception)], fault: Some(TraceFault::Reported) }
+                Explained { meaning: vec![explained::exception_text(exception)], fault: Some(TraceFault::Reported) }
             }
             None => self.received(&bytes),
         }
@@ -47,7 +47,7 @@ impl Meaning {
 
     /// Decodes a reply. An error word in the reply counts as reported by the encoder.
     fn received(&mut self, bytes: &[u8]) -> Explained {
-        let meaning = self.meanings(Direction::Received, bytes);
+        let meaning = self.word_meaning_texts(Direction::Received, bytes);
         let is_error = match carried_word(false, bytes, self.order) {
             Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
@@ -55,16 +55,16 @@ impl Meaning {
         Explained { meaning, fault: is_error.then_some(TraceFault::Reported) }
     }
 
-    fn meanings(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
+    fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
         match carried_word(direction == Direction::Sent, bytes, self.order) {
             Some(Carried::Out(word)) => {
                 let command = self.command(word);
                 self.follow(command);
-                vec![word_of("ib_trace.out", word), word_meaning::command_text(command)]
+                vec![hex_word_text("ib_trace.out", word), word_meaning::command_text(command)]
             }
             Some(Carried::In(word)) => {
                 let known = WordContext { mode: self.mode, read_out: self.read_out, shift: self.shift };
-                vec![word_of("ib_trace.in", word), word_meaning::word_text(word, &known)]
+                vec![hex_word_text("ib_trace.in", word), word_meaning::word_text(word, &known)]
             }
             None => Vec::new(),
         }
@@ -78,17 +78,17 @@ impl Meaning {
 
     fn follow(&mut self, command: Command) {
         match command {
-            Command::Cams(Some(_)) => self.mode = Mode::Cam,
-            Command::Cams(None) | Command::Velocity(false) => self.mode = Mode::Position,
-            Command::Velocity(true) => self.mode = Mode::Velocity,
-            _ if word_meaning::mode_of_command(command) == Mode::Cam => self.mode = Mode::Cam,
+            Command::Cams(Some(_)) => self.mode = EncoderMode::Cam,
+            Command::Cams(None) | Command::Velocity(false) => self.mode = EncoderMode::Position,
+            Command::Velocity(true) => self.mode = EncoderMode::Velocity,
+            _ if word_meaning::mode_of_command(command) == EncoderMode::Cam => self.mode = EncoderMode::Cam,
             _ => {}
         }
         self.read_out = if let Command::ReadOut(read_out) = command { Some(read_out) } else { None };
     }
 }
 
-fn word_of(id: &'static str, word: u32) -> Text {
+fn hex_word_text(id: &'static str, word: u32) -> Text {
     TEXTS.text(id).with("word", format!("0x{word:08X}"))
 }
 

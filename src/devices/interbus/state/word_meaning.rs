@@ -4,7 +4,7 @@ use super::words;
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::interbus::protocol::{
-    CamOutput, Command, ErrorWord, Mode, Parameter, ReadOut, ReadOutValue, Reply, Value, WindowShift,
+    CamOutput, Command, EncoderMode, ErrorWord, Parameter, ReadOutNumber, ReadOutValue, Reply, Value, WindowShift,
 };
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
@@ -12,8 +12,8 @@ use crate::devices::interbus::state::explain as explained;
 /// Facts about an encoder that determine how its IN words are decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordContext {
-    pub mode: Mode,
-    pub read_out: Option<ReadOut>,
+    pub mode: EncoderMode,
+    pub read_out: Option<ReadOutNumber>,
     pub shift: Option<WindowShift>,
 }
 
@@ -26,7 +26,7 @@ impl WordContext {
 }
 
 /// Describes an OUT word in the given mode, including whether the word is illegal in that mode.
-pub fn out(word: u32, mode: Mode) -> Text {
+pub fn out(word: u32, mode: EncoderMode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
         Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
@@ -67,17 +67,21 @@ pub fn command_text(command: Command) -> Text {
 }
 
 /// Returns the mode in which an encoder accepts a command, preferring position mode over cam mode.
-pub fn mode_of_command(command: Command) -> Mode {
-    if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
+pub fn mode_of_command(command: Command) -> EncoderMode {
+    if command.is_legal_in(EncoderMode::Position) || !command.is_legal_in(EncoderMode::Cam) {
+        EncoderMode::Position
+    } else {
+        EncoderMode::Cam
+    }
 }
 
 pub fn word_text(word: u32, known: &WordContext) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
-            Mode::Velocity => TEXTS.text("ib_word.speed").with("rpm", value.signed()),
-            Mode::Cam => outputs(word, known.shift),
-            Mode::Position | Mode::Parameterisation | Mode::ReadOut => {
+            EncoderMode::Velocity => TEXTS.text("ib_word.speed").with("rpm", value.signed()),
+            EncoderMode::Cam => outputs(word, known.shift),
+            EncoderMode::Position | EncoderMode::Parameterisation | EncoderMode::ReadOut => {
                 TEXTS.text("ib_word.position").with("position", value.get())
             }
         },
@@ -119,9 +123,9 @@ fn error(error: ErrorWord) -> Text {
     TEXTS.text(id).with("word", format!("0x{:08X}", Reply::Error(error).emit()))
 }
 
-fn echo(reply: Reply, mode: Mode) -> Text {
-    let in_mode = if mode == Mode::Cam { Mode::Cam } else { Mode::Parameterisation };
-    match reply.echoed(in_mode) {
+fn echo(reply: Reply, mode: EncoderMode) -> Text {
+    let in_mode = if mode == EncoderMode::Cam { EncoderMode::Cam } else { EncoderMode::Parameterisation };
+    match reply.echoed_command(in_mode) {
         Some(command) => TEXTS.text("ib_word.echo").with_text("command", command_text(command)),
         None if matches!(reply, Reply::Busy { .. }) => TEXTS.text("ib_word.busy"),
         None => TEXTS.text("ib_word.other_echo"),
@@ -150,7 +154,7 @@ mod tests {
     use super::*;
     use crate::app::Language;
 
-    fn known(mode: Mode) -> WordContext {
+    fn known(mode: EncoderMode) -> WordContext {
         WordContext { mode, read_out: None, shift: WindowShift::new(0) }
     }
 
@@ -159,34 +163,34 @@ mod tests {
     fn words_are_decoded_in_their_mode() {
         let english = |text: Text| text.words(Language::English);
         for (word, mode, says) in [
-            (0x0200_00FF, Mode::Position, "Steps := 255"),
-            (0x0600_0004, Mode::Parameterisation, "Direction := counterclockwise"),
-            (0x2040_0001, Mode::Position, "Send the speed instead of the position"),
-            (0x2040_0001, Mode::Cam, "Active cams: 0"),
-            (0x2040_0093, Mode::Cam, "Active cams: 0, 1, 4, 7"),
-            (0x4600_0015, Mode::Cam, "Cam 3 starts at 21"),
-            (0x2021_000C, Mode::Position, "Read out: temperature"),
+            (0x0200_00FF, EncoderMode::Position, "Steps := 255"),
+            (0x0600_0004, EncoderMode::Parameterisation, "Direction := counterclockwise"),
+            (0x2040_0001, EncoderMode::Position, "Send the speed instead of the position"),
+            (0x2040_0001, EncoderMode::Cam, "Active cams: 0"),
+            (0x2040_0093, EncoderMode::Cam, "Active cams: 0, 1, 4, 7"),
+            (0x4600_0015, EncoderMode::Cam, "Cam 3 starts at 21"),
+            (0x2021_000C, EncoderMode::Position, "Read out: temperature"),
             (
                 0x4600_0015,
-                Mode::Position,
+                EncoderMode::Position,
                 "Not valid in position mode. In other modes, this word means: Cam 3 starts at 21",
             ),
         ] {
             assert_eq!(english(out(word, mode)), says, "{word:08X}");
         }
         for (word, mode, says) in [
-            (0x0012_3456, Mode::Position, "position 1193046"),
-            (0xC000_0000, Mode::Position, "busy"),
+            (0x0012_3456, EncoderMode::Position, "position 1193046"),
+            (0xC000_0000, EncoderMode::Position, "busy"),
             // −60 in 25 bits.
-            (0x01FF_FFC4, Mode::Velocity, "speed -60 rpm"),
-            (0xC200_00FF, Mode::Parameterisation, "echo of: Steps := 255"),
-            (0x01CD_EF20, Mode::Cam, "cams on: 5; window 0x001CDEF"),
-            (0x8000_0000, Mode::Cam, "position or cam outputs not valid (0x80000000)"),
-            (0x9800_0004, Mode::Cam, "a cam starts or stops outside the measuring range (0x98000004)"),
+            (0x01FF_FFC4, EncoderMode::Velocity, "speed -60 rpm"),
+            (0xC200_00FF, EncoderMode::Parameterisation, "echo of: Steps := 255"),
+            (0x01CD_EF20, EncoderMode::Cam, "cams on: 5; window 0x001CDEF"),
+            (0x8000_0000, EncoderMode::Cam, "position or cam outputs not valid (0x80000000)"),
+            (0x9800_0004, EncoderMode::Cam, "a cam starts or stops outside the measuring range (0x98000004)"),
         ] {
             assert_eq!(english(word_text(word, &known(mode))), says, "{word:08X}");
         }
-        let temperature = WordContext { read_out: Some(ReadOut::TEMPERATURE), ..known(Mode::ReadOut) };
+        let temperature = WordContext { read_out: Some(ReadOutNumber::TEMPERATURE), ..known(EncoderMode::ReadOut) };
         assert_eq!(english(word_text(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
         assert_eq!(word_text(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
         assert!(stray(0x0412_3456).is_some() && stray(0x0012_3456).is_none() && stray(0xC200_00FF).is_none());

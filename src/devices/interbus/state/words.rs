@@ -3,7 +3,9 @@
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::interbus::profile::Direction;
-use crate::devices::interbus::protocol::{Flags, Interface, LedRow, Mode, Parameter, ReadOut, ReadOutValue, Value};
+use crate::devices::interbus::protocol::{
+    EncoderMode, Flags, Interface, LedRow, Parameter, ReadOutNumber, ReadOutValue, Value,
+};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain::{direction, startup};
 
@@ -19,20 +21,20 @@ pub fn parameter(parameter: Parameter) -> Text {
 }
 
 pub fn setting(parameter: Parameter, number: u32) -> Text {
-    match (parameter, Direction::of_code(number)) {
+    match (parameter, Direction::from_code(number)) {
         (Parameter::Direction, Some(own)) => direction(own),
         _ => plain(number),
     }
 }
 
 /// Returns the name of a mode, worded for use in a sentence.
-pub fn mode(mode: Mode) -> Text {
+pub fn mode(mode: EncoderMode) -> Text {
     TEXTS.text(match mode {
-        Mode::Position => "ib_mode.position",
-        Mode::Parameterisation => "ib_mode.parameterisation",
-        Mode::ReadOut => "ib_mode.read_out",
-        Mode::Velocity => "ib_mode.velocity",
-        Mode::Cam => "ib_mode.cam",
+        EncoderMode::Position => "ib_mode.position",
+        EncoderMode::Parameterisation => "ib_mode.parameterisation",
+        EncoderMode::ReadOut => "ib_mode.read_out",
+        EncoderMode::Velocity => "ib_mode.velocity",
+        EncoderMode::Cam => "ib_mode.cam",
     })
 }
 
@@ -93,8 +95,8 @@ pub fn range(steps: u32, turns: u32) -> Text {
 }
 
 /// Formats a read-out value for display beside its name.
-pub fn read_value(what: ReadOut, value: Value) -> Text {
-    match (what.number(), Direction::of_code(value.get())) {
+pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
+    match (what.number(), Direction::from_code(value.get())) {
         (0x3, Some(own)) => direction(own),
         // A counted number or an identifier; its bits have no meaning of their own.
         (0x0..=0x7, _) => plain(value.get()),

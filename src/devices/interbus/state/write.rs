@@ -4,7 +4,7 @@ use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, some, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
 use crate::devices::interbus::profile::{
@@ -38,7 +38,7 @@ impl Encoder {
     }
 }
 
-impl WithMemory for Encoder {
+impl HasMemory for Encoder {
     fn edited_change(&self) -> Option<Change> {
         let edited = self.edited_image().filter(|_| self.staged.is_dirty())?;
         Some(Change::Write(Box::new(edited)))
@@ -75,7 +75,7 @@ impl WithMemory for Encoder {
     }
 }
 
-impl Saved for Encoder {
+impl HasProfile for Encoder {
     fn read_all() -> InterbusJob {
         InterbusJob::Save { programs: true }
     }
@@ -100,7 +100,7 @@ impl Saved for Encoder {
         }
         let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
         let profile = InterbusProfile { names: base.names.clone(), ..profile };
-        let remarks = without_edits(self.staged.count()).into_iter().collect();
+        let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

@@ -14,7 +14,7 @@ use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::cams::Chart;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{card, empty, enabled_button, paragraph, two_columns};
+use crate::ui::controls::{card, empty_placeholder, enabled_button, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -42,7 +42,7 @@ pub(super) fn page_ui(
     let program = view.shown();
     view.program = Some(program);
     bar::bar_ui(ui, theme, encoder, program, view, actions);
-    import::pasted_table(ui, encoder, program, actions);
+    import::import_pasted_table(ui, encoder, program, actions);
     if let Some(table) = &encoder.import {
         ui.add_space(theme.space.between);
         import::card_ui(ui, theme, encoder, table, actions);
@@ -70,10 +70,10 @@ fn unread_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumb
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;
         if encoder.staged.wanted().is_none() {
-            empty(ui, theme, &say(theme, "ib_set.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "ib_set.nothing"), None);
             return;
         }
-        empty(ui, theme, &say(theme, "ib_cams.unread"), None);
+        empty_placeholder(ui, theme, &say(theme, "ib_cams.unread"), None);
         let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
         paragraph(ui, RichText::new(theme.words(&cost)).color(theme.palette.warn));
         let ready = encoder.session.is_ready() && encoder.is_stopped();

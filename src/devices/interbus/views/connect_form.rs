@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::Connect as Dialog;
+use crate::app::connect::ConnectDialog as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusLinkKind};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
@@ -56,7 +56,7 @@ impl TypedConnectForm for InterbusConnectForm {
             if form.kind == InterbusLinkKind::Virtual {
                 registers_ui(ui, theme, form);
             }
-            let (_, rest) = InterbusForm::of_the_link();
+            let (_, rest) = InterbusForm::link_entries();
             typed(ui, theme, say, rest, &mut form.typed);
         }
     }
@@ -64,7 +64,7 @@ impl TypedConnectForm for InterbusConnectForm {
 
 /// Draws the settings that locate the words in the gateway.
 fn registers_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
-    let (registers, _) = InterbusForm::of_the_link();
+    let (registers, _) = InterbusForm::link_entries();
     typed(ui, theme, say, registers, &mut form.typed);
     order_ui(ui, theme, form);
 }

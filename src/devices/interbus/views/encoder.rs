@@ -8,7 +8,7 @@ use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
-    card, card_with, choice, empty, enabled_button, encoder_page, entry, folding_card, paragraph, row,
+    card, card_with, choice, empty_placeholder, enabled_button, encoder_page, entry, folding_card, paragraph, row,
 };
 use crate::ui::{Theme, icons, motor};
 
@@ -72,7 +72,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             let programs = profile.image.known().count();
             row(ui, theme, &say(theme, "ib_card.programs"), programs.to_string());
         } else {
-            empty(ui, theme, &say(theme, "ib_card.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "ib_card.nothing"), None);
         }
     });
 }
@@ -94,7 +94,7 @@ fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
-                empty(ui, theme, &say(theme, "ib_sends.nothing"), None);
+                empty_placeholder(ui, theme, &say(theme, "ib_sends.nothing"), None);
             }
             Some(reading) => {
                 row(ui, theme, &say(theme, "ib_sends.word"), theme.mono(format!("0x{:08X}", reading.word)));

@@ -8,7 +8,7 @@ use crate::devices::interbus::protocol::StartupMode;
 use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{dot, row};
+use crate::ui::controls::{connection_dot, row};
 use crate::ui::panels::live::{LOW, mark, raw_row};
 
 /// Width required for eight output indicators side by side.
@@ -63,7 +63,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
                 ui.horizontal(|ui| {
                     for cam in first..first + beside {
                         let on = output.outputs >> cam & 1 == 1;
-                        dot(ui, on, if on { palette.good } else { palette.muted });
+                        connection_dot(ui, on, if on { palette.good } else { palette.muted });
                         ui.label(theme.caption(cam.to_string()));
                     }
                 });

@@ -14,8 +14,8 @@ use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
 use crate::ui::controls::{
-    card, choice, committed_entry, empty, enabled_button, entry, paragraph, problem, problem_below, problem_beside,
-    row, two_columns,
+    card, choice, committed_entry, empty_placeholder, enabled_button, entry, paragraph, problem, row, show_error_below,
+    show_error_beside, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -70,7 +70,7 @@ fn table_ui(
 ) {
     card(ui, theme, TEXTS.text("ib_set.title"), |ui| {
         let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.wanted()) else {
-            empty(ui, theme, &say(theme, "ib_set.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "ib_set.nothing"), None);
             return;
         };
         let id = encoder.session.id;
@@ -98,7 +98,7 @@ fn table_ui(
                 }
                 let refused = view.drafts.get(parameter.name()).and_then(|draft| draft.as_ref()?.1.as_ref());
                 if refused.is_some() {
-                    problem_beside(ui, theme, refused);
+                    show_error_beside(ui, theme, refused);
                 } else if before != now {
                     let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
                     ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
@@ -161,7 +161,7 @@ fn preset_ui(
                 }
             }
         });
-        problem_below(ui, theme, view.preset_problem.as_ref());
+        show_error_below(ui, theme, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
             row(ui, theme, &say(theme, "ib_preset.now"), theme.mono(position.to_string()));
         }

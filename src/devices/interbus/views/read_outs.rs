@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::devices::interbus::protocol::{READ_OUTS, ReadOut};
+use crate::devices::interbus::protocol::{READ_OUTS, ReadOutNumber};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, folding_card, icon_button, paragraph};
@@ -49,7 +49,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
     folding_card(ui, theme, TEXTS.text("ib_values.chip"), |ui| {
         paragraph(ui, theme.caption(say(theme, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
-            for what in (0..16).filter_map(ReadOut::chip_register) {
+            for what in (0..16).filter_map(ReadOutNumber::chip_register) {
                 let name = theme.words(&explain::read_out(what));
                 let number = what.register().unwrap_or_default();
                 let value = encoder.read_out(what).map_or_else(|| "–".to_owned(), |own| format!("0x{:X}", own.get()));

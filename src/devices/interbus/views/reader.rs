@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::devices::interbus::protocol::{Mode, READ_OUTS, WindowShift};
+use crate::devices::interbus::protocol::{EncoderMode, READ_OUTS, WindowShift};
 use crate::devices::interbus::state::reader::{Reading, WordSource};
 use crate::devices::interbus::state::{TEXTS, explain, words};
 use crate::devices::interbus::views::say;
@@ -33,17 +33,22 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
         if reading.source.has_mode() {
             let word = say(theme, "ib_reader.mode");
             entry(ui, theme, &word, |ui| {
-                choice(ui, &word, &mut reading.mode, Mode::ALL.map(|mode| (mode, theme.words(&words::mode(mode)))));
+                choice(
+                    ui,
+                    &word,
+                    &mut reading.mode,
+                    EncoderMode::ALL.map(|mode| (mode, theme.words(&words::mode(mode)))),
+                );
             });
         }
-        if reading.source == WordSource::In && reading.mode == Mode::Cam {
+        if reading.source == WordSource::In && reading.mode == EncoderMode::Cam {
             let word = say(theme, "ib_cams.shift");
             entry(ui, theme, &word, |ui| {
                 let shifts = (0..=25).filter_map(WindowShift::new);
                 choice(ui, &word, &mut reading.shift, shifts.map(|own| (own, own.get().to_string())));
             });
         }
-        if reading.source == WordSource::In && reading.mode == Mode::ReadOut {
+        if reading.source == WordSource::In && reading.mode == EncoderMode::ReadOut {
             let word = say(theme, "ib_reader.read_out");
             entry(ui, theme, &word, |ui| {
                 let all =

@@ -7,16 +7,16 @@ use clap::{Args, Subcommand, ValueEnum};
 #[derive(Subcommand)]
 pub(crate) enum Ssi {
     /// Decode frames.
-    Decode(SsiDecode),
+    Decode(SsiDecodeArgs),
     /// Encode a position as a frame.
-    Encode(SsiEncode),
+    Encode(SsiEncodeArgs),
     /// Find layouts that fit recorded frames, best first.
     ///
     /// The shaft has to turn during the recording. Each layout is printed as a SPEC for --layout.
-    Find(SsiFind),
+    Find(SsiFindArgs),
     /// Export a decoder or a table for other programs, a picture, or a profile.
     #[command(after_long_help = PROFILE)]
-    Export(SsiExport),
+    Export(SsiExportArgs),
 }
 
 /// The entries of a profile, documented for those who write one by hand.
@@ -45,9 +45,9 @@ Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 
   reading: (clock_hz: 400000, pause_us: 200, cable_metres: 20, synchronous: true)";
 
 #[derive(Args)]
-pub(crate) struct SsiDecode {
+pub(crate) struct SsiDecodeArgs {
     #[command(flatten)]
-    pub(crate) layout: SsiLayout,
+    pub(crate) layout: SsiLayoutArgs,
     /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable. @FILE: the frames of a
     /// file, as `ssi find` reads it. -: the same from standard input.
     #[arg(required = true, value_name = "FRAME")]
@@ -55,7 +55,7 @@ pub(crate) struct SsiDecode {
 }
 
 #[derive(Args)]
-pub(crate) struct SsiFind {
+pub(crate) struct SsiFindArgs {
     /// File with one frame per line, in the order of reading: bits in clock order, or 0x…, right-justified. Further
     /// columns are ignored. Or a table of `position ssi --csv`, or clock and data of a logic analyser: the CSV of
     /// Saleae Logic or sigrok. -: standard input.
@@ -67,9 +67,9 @@ pub(crate) struct SsiFind {
 }
 
 #[derive(Args)]
-pub(crate) struct SsiEncode {
+pub(crate) struct SsiEncodeArgs {
     #[command(flatten)]
-    pub(crate) layout: SsiLayout,
+    pub(crate) layout: SsiLayoutArgs,
     /// Turns and steps as one number. If given together with --turns and --steps, they have to agree.
     #[arg(long, value_name = "N", required_unless_present = "steps", allow_negative_numbers = true)]
     pub(crate) position: Option<String>,
@@ -85,9 +85,9 @@ pub(crate) struct SsiEncode {
 }
 
 #[derive(Args)]
-pub(crate) struct SsiExport {
+pub(crate) struct SsiExportArgs {
     #[command(flatten)]
-    pub(crate) layout: SsiLayout,
+    pub(crate) layout: SsiLayoutArgs,
     /// Format to write.
     #[arg(long, value_enum)]
     pub(crate) format: SsiFormat,
@@ -116,7 +116,7 @@ pub(super) struct LayoutOption {
 }
 
 #[derive(Args)]
-pub(crate) struct SsiLayout {
+pub(crate) struct SsiLayoutArgs {
     /// Profile of an SSI encoder, or a family with settings, such as ahm36,code=gray,st=12. Settings that are left out
     /// have the factory value and the largest resolution.
     ///
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn every_built_in_family_is_in_the_help_and_has_a_profile() {
-        let command = SsiLayout::augment_args(clap::Command::new("test"));
+        let command = SsiLayoutArgs::augment_args(clap::Command::new("test"));
         let option = command.get_arguments().find(|option| option.get_id() == "spec").unwrap();
         let help = option.get_long_help().unwrap().to_string();
         let (_, families) = help.split_once("Families: ").unwrap();

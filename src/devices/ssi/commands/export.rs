@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::args::{SsiExport, SsiFormat};
+use super::args::{SsiExportArgs, SsiFormat};
 use super::layout::{Chosen, choose};
 use super::profiles::{document, write};
 use crate::cli::output::Output;
@@ -16,8 +16,8 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
-pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
-    let SsiExport { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
+pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
+    let SsiExportArgs { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
     let is_timed = clock.is_some() || pause.is_some() || cable.is_some() || *synchronous;
     if is_timed && *format != SsiFormat::Timing {
         return Err(Failure::Usage("--clock, --pause, --cable and --synchronous are for --format timing".to_owned()));

@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::args::SsiFind;
+use super::args::SsiFindArgs;
 use super::layout::families;
 use super::source;
 use crate::cli::output::{Lines, Output, count};
@@ -15,7 +15,7 @@ use crate::devices::ssi::state::explain as words;
 /// Maximum bit count, assumed for hexadecimal frames if the count is not specified.
 const MOST_CLOCKS: u8 = 64;
 
-pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Result {
+pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) -> Result {
     let families = families(output)?;
     let Frames { clocks: read, frames, are_numbers, .. } = source::read(output, file, clocks.unwrap_or(MOST_CLOCKS))?;
     let clocks = match clocks {

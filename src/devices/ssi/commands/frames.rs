@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::args::{SsiDecode, SsiEncode};
+use super::args::{SsiDecodeArgs, SsiEncodeArgs};
 use super::layout::choose;
 use super::source::named;
 use crate::cli::number::{out_of_range, parse_number};
@@ -11,7 +11,7 @@ use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{Flags, FrameFinding, FrameReading, Layout, Location, Meaning, Role, frame_bits};
 use crate::devices::ssi::state::explain as words;
 
-pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
+pub(super) fn decode(output: &Output, SsiDecodeArgs { layout: spec, frames }: &SsiDecodeArgs) -> Result {
     let layout = choose(output, spec)?.layout;
     // All are checked before any is printed.
     let frames: Vec<Vec<u64>> = frames.iter().map(|text| named(output, &layout, text)).collect::<Result<_>>()?;
@@ -88,7 +88,7 @@ impl<'a> DecodedFrame<'a> {
             }
         }
         let findings = self.layout.findings(self.reading);
-        let told = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
+        let told = findings.iter().map(|finding| format!("{}\n", words::finding_text(finding).terminal()));
         lines.text() + &told.collect::<String>()
     }
 }
@@ -127,7 +127,7 @@ pub(super) fn name(finding: &FrameFinding) -> String {
     }
 }
 
-pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
+pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
     let layout = choose(output, &arguments.layout)?.layout;
     let position = position(&layout, arguments)?;
     let errors = &layout.descriptor().errors;
@@ -155,10 +155,10 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
 }
 
 /// Returns the position from `--position`, or from `--turns` and `--steps`; if both forms are given, they must agree.
-fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
+fn position(layout: &Layout, arguments: &SsiEncodeArgs) -> Result<u64> {
     let last = layout.coding().last();
     let range = layout.descriptor().range;
-    let SsiEncode { position, turns, steps, .. } = arguments;
+    let SsiEncodeArgs { position, turns, steps, .. } = arguments;
     let named = position.as_deref().map(|text| number("position", text, last)).transpose()?;
     let of_shaft = turns.is_some() || steps.is_some();
     match (named, range.place(named.unwrap_or(last))) {

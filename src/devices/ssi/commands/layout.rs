@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use super::args::SsiLayout;
-use crate::app::{Kinds, explain};
+use super::args::SsiLayoutArgs;
+use crate::app::{KindRegistry, explain};
 use crate::cli::output::Output;
 use crate::cli::profiles::load;
 use crate::cli::runner::failed;
@@ -26,7 +26,7 @@ pub(crate) struct Chosen {
 }
 
 /// Returns the layout of `--layout`, and prints points that the manual leaves open as remarks.
-pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
+pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<Chosen> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
         let profile = SsiProfile::new(layout.descriptor().clone());
@@ -67,7 +67,7 @@ fn choose_frame_layout(spec: &str, frame: std::result::Result<Descriptor, SpecEr
 
 fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
-    let failure = |error| failed(&explain::profile(path, &error, Kinds::NONE));
+    let failure = |error| failed(&explain::profile(path, &error, KindRegistry::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
@@ -88,7 +88,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
 
 /// Prints how a hand-written frame differs from its family.
 fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
-    let settings = family.settings_of(&profile.descriptor);
+    let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
         Some(resolved) => print_advice(output, &resolved),
         None => output.remark(&format!(
@@ -100,7 +100,7 @@ fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiP
 
 fn print_advice(output: &Output, resolved: &ResolvedFrame) {
     for advice in &resolved.advice {
-        output.remark(&words::advice(advice).terminal());
+        output.remark(&words::advice_text(advice).terminal());
     }
 }
 

@@ -2,17 +2,17 @@
 
 use serde_json::{Value as Json, json};
 
-use super::args::{LayoutOption, SsiLayout};
+use super::args::{LayoutOption, SsiLayoutArgs};
 use super::frames::{DecodedFrame, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
-use crate::analysis::Time;
-use crate::cli::args::{Common, Position, Status};
+use crate::analysis::SampleTime;
+use crate::cli::args::{CommonArgs, Position, Status};
 use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::jobs::SsiJob;
-use crate::devices::ssi::protocol::{FrameFinding, Layout, Location, Meaning, Tally};
+use crate::devices::ssi::protocol::{FindingCounts, FrameFinding, Layout, Location, Meaning};
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
@@ -22,25 +22,25 @@ fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
         return Err(Failure::Usage(format!("{command} {why}")));
     };
-    choose(output, &SsiLayout { spec })
+    choose(output, &SsiLayoutArgs { spec })
 }
 
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let chosen = layout(output, "position", &position.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
     }
-    let mut tally = Tally::default();
+    let mut tally = FindingCounts::default();
     let mut first = None;
     let job = || SsiJob::Read;
     let ended = readings(&mut runner, position, job, |came| {
         for (at, word) in words(came)?.timed() {
             let decoded = DecodedFrame::new(&chosen.layout, word);
-            let first = *first.get_or_insert(Time::from(at));
+            let first = *first.get_or_insert(SampleTime::from(at));
             let begun = tally.note(&chosen.layout, decoded.reading, at.into());
             for finding in begun.iter().filter(|one| is_reported(one, first == at.into())) {
-                say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
+                say(&format!("{}: {}\n", seconds(at.into()), explained::finding_text(finding).terminal()));
             }
             if position.csv {
                 output.print(&row(at, &decoded))?;
@@ -63,8 +63,8 @@ fn is_reported(finding: &FrameFinding, is_first: bool) -> bool {
     is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
 
-fn seconds(at: Time) -> String {
-    format!("{:.3} s", at.seconds_since(Time::ORIGIN))
+fn seconds(at: SampleTime) -> String {
+    format!("{:.3} s", at.seconds_since(SampleTime::ORIGIN))
 }
 
 /// Columns of a reading: turns, steps and degrees for a shaft, steps and millimetres for a scale.
@@ -136,7 +136,7 @@ fn row(at: Moment, decoded: &DecodedFrame<'_>) -> String {
     )
 }
 
-pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Result {
+pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> Result {
     let chosen = layout(output, "status", &status.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
@@ -159,7 +159,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
         lines.add("", "This frame has no error bits.");
     }
     lines.add("position", place(&decoded));
-    let finding_lines = findings.iter().map(|finding| format!("{}\n", explained::finding(finding).terminal()));
+    let finding_lines = findings.iter().map(|finding| format!("{}\n", explained::finding_text(finding).terminal()));
     output.show(&json, &(lines.text() + &finding_lines.collect::<String>()))?;
     Ok(Done::Well)
 }

@@ -12,10 +12,10 @@ mod source;
 
 use clap::{Arg, ArgMatches, Subcommand};
 
-use self::args::{LayoutOption, Ssi, SsiLayout};
+use self::args::{LayoutOption, Ssi, SsiLayoutArgs};
 use crate::buses::bridge::sim::{Adapter, AttachableKind};
-use crate::cli::args::{Command, Common, Restore, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, ProfileCommands, options_of, parse};
+use crate::cli::args::{Command, CommonArgs, Restore, SimulateArgs};
+use crate::cli::commands::{CliCommand, CommandId, DeviceCommands, ProfileCommands, options_of, parse};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -57,11 +57,11 @@ impl DeviceCommands for SsiCommands {
         is_own.then(|| format!("{option} is for {KIND} devices; other devices report their own"))
     }
 
-    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+    fn extra_commands(&self) -> &'static [&'static dyn CliCommand] {
         &[&SsiCommand]
     }
 
-    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+    fn run(&self, common: &CommonArgs, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
             Command::Identify(_) => refuse("identify", "see its type label for the identity"),
             Command::Status(status) => live::status(common, output, status),
@@ -75,17 +75,17 @@ impl DeviceCommands for SsiCommands {
         })
     }
 
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    fn simulated(&self, output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
     }
 }
 
 impl ProfileCommands for SsiCommands {
-    fn restore(&self, _: &Common, _: &Output, _: &Restore, _: Body) -> Result {
+    fn restore(&self, _: &CommonArgs, _: &Output, _: &Restore, _: Body) -> Result {
         refuse("restore", SET)
     }
 
-    fn present(&self, _: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
+    fn present(&self, _: &CommonArgs, _: &Output, _: Option<&Body>) -> Result<Body> {
         refuse("reading a profile from a link", "compare two files with diff FILE FILE")
     }
 }
@@ -95,7 +95,7 @@ const SET: &str = "configure it with the manufacturer's tool";
 /// Command `ssi`, which works on frames without an encoder.
 struct SsiCommand;
 
-impl OwnCommand for SsiCommand {
+impl CliCommand for SsiCommand {
     fn command(&self) -> clap::Command {
         Ssi::augment_subcommands(clap::Command::new(KIND))
             .about("Decode, encode and analyse SSI frames, and export decoders")
@@ -103,7 +103,7 @@ impl OwnCommand for SsiCommand {
             .arg_required_else_help(true)
     }
 
-    fn run(&self, _: &Common, output: &Output, matches: &ArgMatches) -> Result {
+    fn run(&self, _: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
         match parse(matches)? {
             Ssi::Decode(arguments) => frames::decode(output, &arguments),
             Ssi::Encode(arguments) => frames::encode(output, &arguments),
@@ -114,7 +114,7 @@ impl OwnCommand for SsiCommand {
 }
 
 /// Returns the adapter before a virtual encoder that sends the frames of `--layout`.
-fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;
     let encoder = match layout {
@@ -122,7 +122,7 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
             return Err(Failure::Usage("--layout and --set ssi= set the same value: use only one of them".to_owned()));
         }
         Some(spec) => {
-            let chosen = layout::choose(&output.as_text(), &SsiLayout { spec })?;
+            let chosen = layout::choose(&output.as_text(), &SsiLayoutArgs { spec })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
             AtAdapter::sending(Encoder { layout: chosen.layout, direction, preset })
         }

@@ -4,18 +4,18 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::{LayoutOption, SsiLayout};
+use super::args::{LayoutOption, SsiLayoutArgs};
 use super::layout::choose;
 use crate::app::explain;
-use crate::cli::args::{Common, Save};
+use crate::cli::args::{CommonArgs, SaveArgs};
 use crate::cli::output::{Output, count};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::profile::SsiProfile;
-use crate::profile::{Body, Document};
+use crate::profile::{Body, ProfileDocument};
 use crate::store::write_atomically;
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let LayoutOption { layout: Some(spec) } = save.own.read()? else {
         let why = "save ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
         return Err(Failure::Usage(why.to_owned()));
@@ -23,7 +23,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     if common.link.is_some() {
         return Err(Failure::Usage("save ssi saves the layout of --layout without a device: remove --link".to_owned()));
     }
-    let profile = choose(output, &SsiLayout { spec })?.profile;
+    let profile = choose(output, &SsiLayoutArgs { spec })?.profile;
     let clocks = profile.descriptor.clocks;
     write(&save.file, &document(profile).emit())?;
     let json = json!({"file": save.file, "clocks": clocks});
@@ -32,8 +32,8 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 /// Creates the document of a layout, without a time because the layout was not read from a device.
-pub(super) fn document(profile: SsiProfile) -> Document {
-    Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
+pub(super) fn document(profile: SsiProfile) -> ProfileDocument {
+    ProfileDocument { saved: None, ..ProfileDocument::new(String::new(), Body::new(profile)) }
 }
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {

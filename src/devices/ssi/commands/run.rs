@@ -4,12 +4,12 @@ use super::SsiCommands;
 use super::layout::Chosen;
 use crate::app::Given;
 use crate::cli::Result;
-use crate::cli::args::Common;
+use crate::cli::args::CommonArgs;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs};
 use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
-use crate::devices::ssi::procedures::{Asking, Words};
+use crate::devices::ssi::procedures::{ClockSettings, Words};
 use crate::devices::ssi::protocol::Reads;
 use crate::devices::ssi::state::explain as words;
 use crate::result_of;
@@ -20,10 +20,10 @@ pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
     /// Settings for reading words, taken from the link unless an option overrides them.
-    type Context = Asking;
+    type Context = ClockSettings;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &Given) -> Asking {
+    fn begin(session: &mut Session<Self>, _given: &Given) -> ClockSettings {
         session.station().asking
     }
 
@@ -34,11 +34,11 @@ impl Runs for Ssi {
 
 /// Opens the link and configures it for the layout. Clock and pause come from the link if specified, otherwise from the
 /// profile; violations of the encoder's timing are printed as remarks.
-pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result<Runner> {
+pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
     let (own, reading) = (runner.kept, chosen.profile.reading);
-    let asking = Asking {
+    let asking = ClockSettings {
         clocks: chosen.layout.clocks(),
         clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
         pause_us: if names("pause") { own.pause_us } else { reading.pause_us },

@@ -11,7 +11,7 @@ pub fn families(store: &Store) -> (Families, Vec<StoreError>) {
     let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
     let broken = broken.into_iter().map(|error| StoreError::Refused(Cause::new(error)));
     let errors = unread.into_iter().map(StoreError::from).chain(broken).collect();
-    (Families::built_in().overlaid_with(own), errors)
+    (Families::built_in().merged_with(own), errors)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub use families::families;
 pub use open::{check, open};
 
 use crate::buses::bridge::procedures::warn_of_supply;
-use crate::devices::ssi::procedures::{Asking, Error, Identity, Master, Station, Words, check};
+use crate::devices::ssi::procedures::{ClockSettings, Error, Identity, Master, Station, Words, check};
 use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
@@ -33,7 +33,7 @@ pub enum SsiJob {
     /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read.
     Hello,
     /// Changes how words are read from now on; a requested stream continues with the new settings.
-    Set(Asking),
+    Set(ClockSettings),
     Read,
     /// Runs the device check, which also compares the words with the layout.
     Check(Box<Layout>),
@@ -76,7 +76,7 @@ impl Ssi {
 
 impl Session<Ssi> {
     /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process.
-    pub fn to_adapter(
+    pub fn for_adapter(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
         station: Station,
@@ -87,7 +87,7 @@ impl Session<Ssi> {
         Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
-    pub fn request_settings(&mut self, asking: Asking) {
+    pub fn request_settings(&mut self, asking: ClockSettings) {
         self.device.station.asking = asking;
     }
 

@@ -7,9 +7,9 @@ use crate::buses::bridge::jobs::FORMAT;
 use crate::buses::bridge::sim::Adapter;
 use crate::devices::ssi::procedures::{LinkParameters, Station};
 use crate::kinds::at_adapter;
-use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{inside, margin, open_bytes, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an SSI encoder without opening it.
@@ -34,16 +34,16 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
         motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))
     })?;
-    Ok(Session::to_adapter(wire, clock, station, store, motor))
+    Ok(Session::for_adapter(wire, clock, station, store, motor))
 }
 
 /// Parses the line settings and the virtual adapter, which matters only for `sim:` links.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
-    if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
+    if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, bridge:, replay:"));
     }
     let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, at_adapter())?;
-    Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))
+    Ok((Station::from_query(&url.query, reply_margin(url.scheme))?, adapter))
 }
 
 #[cfg(test)]

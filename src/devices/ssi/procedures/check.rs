@@ -194,7 +194,7 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
 mod tests {
     use super::*;
     use crate::buses::bridge::protocol::{Capabilities, Hello};
-    use crate::devices::ssi::procedures::{Asking, Supply};
+    use crate::devices::ssi::procedures::{ClockSettings, Supply};
     use crate::devices::ssi::protocol::{Families, Settings};
 
     fn layout(text: &str) -> Layout {
@@ -211,7 +211,7 @@ mod tests {
             name: "bench".to_owned(),
             serial: "7".to_owned(),
         };
-        Identity { hello, asking: Asking::default(), clock_hz, supply }
+        Identity { hello, asking: ClockSettings::default(), clock_hz, supply }
     }
 
     fn verdicts(lines: &[SsiStepResult]) -> Vec<Verdict> {

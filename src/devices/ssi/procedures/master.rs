@@ -8,10 +8,10 @@
 use std::time::Duration;
 
 use super::station::{Identity, Supply};
-use super::{Asking, Error, Station, Words};
-use crate::buses::bridge::procedures::flow::{Flow, Streamed};
+use super::{ClockSettings, Error, Station, Words};
+use crate::buses::bridge::procedures::flow::{SampleStream, Streamed};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
-use crate::buses::bridge::protocol::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
+use crate::buses::bridge::protocol::{Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags, StreamData};
 use crate::link::Ctx;
 use crate::link::line::SerialLine;
 use crate::units::Moment;
@@ -54,7 +54,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// As for [`hello`](Self::hello); the previous settings then stay in effect.
-    pub fn set(&mut self, asking: Asking) -> Result<Identity, Error> {
+    pub fn set(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
             self.station.asked = 0;
@@ -110,7 +110,7 @@ impl<'a> Master<'a> {
                 Err(failure) => return Err(self.stream_failed(failure.into())),
             };
             if let Some(portion) = portion
-                && let Data::Ssi(data) = &portion.data
+                && let StreamData::Ssi(data) = &portion.data
             {
                 return Ok(Words::run(&portion, data, asking, clock_hz, period_us));
             }
@@ -128,7 +128,7 @@ impl<'a> Master<'a> {
         let shielded = self.line.shield(true);
         let ended = flow.end(&mut self.adapter());
         self.line.shield(shielded);
-        match Flow::ended(ended) {
+        match SampleStream::ended(ended) {
             Ok(true) => Ok(()),
             Ok(false) => {
                 self.station.forget_settings();
@@ -176,7 +176,7 @@ impl<'a> Master<'a> {
         if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
             return Ok(clock_hz);
         }
-        let Asking { clocks, clock_hz, pause_us } = asking;
+        let ClockSettings { clocks, clock_hz, pause_us } = asking;
         let clock_hz = clock_hz.min(fastest);
         let request = Request::SsiConfig { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE };
         self.station.set = None;
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
             if std::mem::replace(&mut may_run, true) {
                 master.adapter().ask(&Request::SsiStream { period_us: 0 })?;
             }
-            Flow::begin(&mut master.adapter(), streamed, after)
+            SampleStream::begin(&mut master.adapter(), streamed, after)
         });
         self.station.flow = Some(flow.map_err(|error| self.may_be_reset(error))?);
         Ok(())

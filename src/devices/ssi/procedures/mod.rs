@@ -10,5 +10,5 @@ mod words;
 
 pub use error::Error;
 pub use master::Master;
-pub use station::{Asking, Identity, LinkParameters, Station, Supply};
+pub use station::{ClockSettings, Identity, LinkParameters, Station, Supply};
 pub use words::Words;

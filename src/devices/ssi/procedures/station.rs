@@ -3,14 +3,14 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::analysis::Time;
-use crate::buses::bridge::procedures::flow::Flow;
-use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfter};
+use crate::analysis::SampleTime;
+use crate::buses::bridge::procedures::flow::SampleStream;
+use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfterSession};
 use crate::buses::bridge::protocol::Hello;
 use crate::expected::Quantity;
 use crate::link::line::{LineState, MARGIN};
-use crate::link::{Query, UrlError};
-use crate::parameter::{Maybe, Millivolts, Parameters, Whole};
+use crate::link::{UrlError, UrlQuery};
+use crate::parameter::{Millivolts, OptionalValue, Parameters, Whole};
 use crate::parameters;
 use crate::units::SupplyVoltage;
 
@@ -18,19 +18,19 @@ parameters! {
     /// Link parameters for the line and the encoder's supply.
     pub struct LinkParameters: UrlError {
         /// Additional delay allowed for a reply beyond the protocol's worst case, or `None` for the link's default.
-        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
+        pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         /// Clock in hertz.
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
         /// Minimum pause between two words in microseconds.
         pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
         /// Encoder supply voltage to be provided by the adapter in millivolts, or `None` for no supply.
-        pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE)), "connect.voltage" like "";
-        pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
+        pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE)), "connect.voltage" like "";
+        pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Asking {
+pub struct ClockSettings {
     /// Number of bits per word, 1…64.
     pub clocks: u8,
     /// Clock frequency in hertz; the adapter uses the nearest one that it supports.
@@ -39,12 +39,12 @@ pub struct Asking {
     pub pause_us: u16,
 }
 
-impl Default for Asking {
+impl Default for ClockSettings {
     /// Returns settings for 25-clock words that are slow enough for 50 m of cable (SICK SSI description 2.7), with a
     /// pause after which every family is ready.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
-        Asking { clocks: 25, clock_hz, pause_us }
+        ClockSettings { clocks: 25, clock_hz, pause_us }
     }
 }
 
@@ -52,7 +52,7 @@ impl Default for Asking {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
-    pub asking: Asking,
+    pub asking: ClockSettings,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
     pub supply: Option<Supply>,
@@ -62,14 +62,14 @@ pub struct Identity {
 pub struct Station {
     pub line: LineState,
     pub adapter: AdapterState,
-    pub asking: Asking,
+    pub asking: ClockSettings,
     /// Encoder supply that the adapter should switch, if any.
     pub supply: Option<Supply>,
     /// Settings sent to the adapter and the actual clock in hertz, or `None` if not configured yet or possibly reset.
-    pub(super) set: Option<(Asking, u32)>,
-    pub(super) flow: Option<Flow>,
+    pub(super) set: Option<(ClockSettings, u32)>,
+    pub(super) flow: Option<SampleStream>,
     /// Time of the last word from previous streams.
-    pub(super) streamed_until: Option<Time>,
+    pub(super) streamed_until: Option<SampleTime>,
     /// Number of single requests with the current settings.
     pub(super) asked: u64,
 }
@@ -100,7 +100,7 @@ impl Station {
         Station {
             line: LineState::new(margin),
             adapter: AdapterState::default(),
-            asking: Asking::default(),
+            asking: ClockSettings::default(),
             supply: None,
             set: None,
             flow: None,
@@ -113,7 +113,7 @@ impl Station {
     ///
     /// # Errors
     /// A parameter value is invalid; the error lists the allowed values.
-    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
         (station.asking.clock_hz, station.asking.pause_us) = (link.clock_hz, link.pause_us);
@@ -168,10 +168,13 @@ mod tests {
     #[test]
     fn line_settings_are_parsed_from_parameters() {
         let usual = station("").unwrap();
-        assert_eq!((usual.asking, usual.supply), (Asking { clocks: 25, clock_hz: 400_000, pause_us: 200 }, None));
+        assert_eq!(
+            (usual.asking, usual.supply),
+            (ClockSettings { clocks: 25, clock_hz: 400_000, pause_us: 200 }, None)
+        );
         assert_eq!(usual.line.margin, Duration::from_millis(100));
         let own = station("margin=5&clock=1500000&pause=30&voltage=24").unwrap();
-        assert_eq!(own.asking, Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });
+        assert_eq!(own.asking, ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });
         assert_eq!(own.supply, Some(Supply { millivolt: 24_000, measured: None }));
         assert_eq!(
             (own.line.margin, own.to_string()),

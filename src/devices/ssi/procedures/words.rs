@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::station::Asking;
+use super::station::ClockSettings;
 use crate::buses::bridge::procedures::Portion;
 use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
@@ -30,7 +30,7 @@ pub struct Words {
 }
 
 impl Words {
-    pub(super) fn one(at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
+    pub(super) fn one(at: Moment, word: u64, asking: ClockSettings, clock_hz: u32) -> Self {
         Words {
             first: 0,
             at,
@@ -44,7 +44,7 @@ impl Words {
     }
 
     /// Converts a packet of words that was requested at the interval `wished_us`.
-    pub(super) fn run(portion: &Portion, data: &SsiData, asking: Asking, clock_hz: u32, wished_us: u32) -> Self {
+    pub(super) fn run(portion: &Portion, data: &SsiData, asking: ClockSettings, clock_hz: u32, wished_us: u32) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {
             first,
@@ -78,15 +78,15 @@ impl Words {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Time;
-    use crate::buses::bridge::protocol::Data;
+    use crate::analysis::SampleTime;
+    use crate::buses::bridge::protocol::StreamData;
 
     #[test]
     fn a_packet_yields_a_run_of_timed_words() {
         let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
-        let time = Time::from_nanoseconds(3_000_000);
-        let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: Data::Ssi(data.clone()) };
-        let asking = Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
+        let time = SampleTime::from_nanoseconds(3_000_000);
+        let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };
+        let asking = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
         let run = Words::run(&portion, &data, asking, 1_500_000, 50);
         let at = |us| Moment::after_start(Duration::from_micros(us));
         assert_eq!(run.timed().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);

@@ -8,17 +8,18 @@ use ron::Value;
 
 use super::{EntryError, ReadingSettings, SsiProfile, UnknownEntries};
 use crate::devices::ssi::protocol::{
-    self, Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
+    self, Code, Descriptor, Direction, ErrorBit, Fraction, GrayCoverage, Layout, Parity, Pattern, PositionCode, Range,
+    Repeat, Word,
 };
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-const SMALL: Expected = Expected::between(0, 255);
-const FLAG: Expected = Expected::words(&["true", "false"]);
-const CLOCK_HZ: Expected = Expected::between(1000, 20_000_000);
-const PAUSE_US: Expected = Expected::between(1, 65_535);
-const METRES: Expected = Expected::between(0, 65_535);
+const SMALL: AllowedValues = AllowedValues::between(0, 255);
+const FLAG: AllowedValues = AllowedValues::words(&["true", "false"]);
+const CLOCK_HZ: AllowedValues = AllowedValues::between(1000, 20_000_000);
+const PAUSE_US: AllowedValues = AllowedValues::between(1, 65_535);
+const METRES: AllowedValues = AllowedValues::between(0, 65_535);
 /// Keyword for a frame that consists only of ones.
 const ONES: &str = "ones";
 
@@ -26,16 +27,16 @@ impl Profile for SsiProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
+        let name = entries.optional("name", AllowedValues::Text)?.unwrap_or_default();
         // Keys are in lower case; a user may write the type's name.
-        let family = entries.optional("family", Expected::Text)?.map(|key: String| key.to_ascii_lowercase());
+        let family = entries.optional("family", AllowedValues::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = UnknownEntries::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
         let refused = |error| ProfileError::refused(path, EntryError::Layout(error));
         let layout = Layout::new(descriptor.clone()).map_err(refused)?;
         let direction = word(entries, "direction")?.unwrap_or_default();
-        let preset = entries.optional("preset", Expected::Whole)?.unwrap_or(0);
+        let preset = entries.optional("preset", AllowedValues::Whole)?.unwrap_or(0);
         let last = layout.coding().last();
         if preset > last {
             return Err(ProfileError::refused(entries.path_of("preset"), EntryError::Preset { preset, last }));
@@ -78,10 +79,10 @@ impl SsiProfile {
         if frame.code != Code::Binary {
             writer.text("code", &frame.code.to_string());
         }
-        if frame.coded != Coded::Position {
+        if frame.coded != GrayCoverage::Position {
             writer.text("over", &frame.coded.to_string());
         }
-        if frame.area != usual_area(frame) {
+        if frame.area != default_area_clocks(frame) {
             number(writer, "area", frame.area);
         }
         for (name, zeros) in [("lead", frame.lead), ("between", frame.between)] {
@@ -201,8 +202,8 @@ fn take_unknown_by_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> 
 }
 
 /// Returns the number of clocks the position takes without trailing zeros.
-fn usual_area(frame: &Descriptor) -> u8 {
-    let coding = frame.range.last().ok().and_then(|last| Coding::new(frame.code, last).ok());
+fn default_area_clocks(frame: &Descriptor) -> u8 {
+    let coding = frame.range.last().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
     bits.saturating_add(frame.lead).saturating_add(frame.between)
 }
@@ -212,7 +213,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
         clocks: entries.required("clocks", SMALL)?,
         range: read_range(&mut entries)?,
         code: word(&mut entries, "code")?.unwrap_or(Code::Binary),
-        coded: word(&mut entries, "over")?.unwrap_or(Coded::Position),
+        coded: word(&mut entries, "over")?.unwrap_or(GrayCoverage::Position),
         area: 0,
         lead: entries.optional("lead", SMALL)?.unwrap_or(0),
         between: entries.optional("between", SMALL)?.unwrap_or(0),
@@ -223,7 +224,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
         inverted: entries.optional("inverted", FLAG)?.unwrap_or(false),
         patterns: Vec::new(),
     };
-    frame.area = entries.optional("area", SMALL)?.unwrap_or_else(|| usual_area(&frame));
+    frame.area = entries.optional("area", SMALL)?.unwrap_or_else(|| default_area_clocks(&frame));
     for entries in entries.structures("errors")? {
         let (bit, more) = read_error(entries)?;
         unknown.errors.push((bit.name.clone(), more));
@@ -255,11 +256,11 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
     let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;
-    let steps: Option<u32> = entries.optional("steps", Expected::Whole)?;
-    let turns: Option<u32> = entries.optional("turns", Expected::Whole)?;
+    let steps: Option<u32> = entries.optional("steps", AllowedValues::Whole)?;
+    let turns: Option<u32> = entries.optional("turns", AllowedValues::Whole)?;
     let revolutions = read_revolutions(entries)?;
     let bits: Option<u8> = entries.optional("bits", SMALL)?;
-    let step_nanometres: Option<u32> = entries.optional("step_nanometres", Expected::Whole)?;
+    let step_nanometres: Option<u32> = entries.optional("step_nanometres", AllowedValues::Whole)?;
     let given = [
         ("singleturn", singleturn.is_some()),
         ("multiturn", multiturn.is_some()),
@@ -303,17 +304,17 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
 
 fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileError> {
     let path = entries.path_of("revolutions");
-    let Some(value) = entries.optional::<Value>("revolutions", Expected::Revolutions)? else { return Ok(None) };
+    let Some(value) = entries.optional::<Value>("revolutions", AllowedValues::Revolutions)? else { return Ok(None) };
     let revolutions = match value {
         Value::String(text) => text.parse().ok(),
         value => value.into_rust().ok().map(|numerator| Fraction { numerator, denominator: 1 }),
     };
-    revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: Expected::Revolutions })
+    revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: AllowedValues::Revolutions })
 }
 
 fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError> {
     let bit = ErrorBit {
-        name: entries.required("name", Expected::Text)?,
+        name: entries.required("name", AllowedValues::Text)?,
         clock: entries.required("clock", SMALL)?,
         meaning: required_word(&mut entries, "meaning")?,
         active_low: entries.optional("active_low", FLAG)?.unwrap_or(false),
@@ -323,13 +324,13 @@ fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError>
 }
 
 fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
-    let wrong = |path| ProfileError::Shape { path, expected: Expected::Frame };
+    let wrong = |path| ProfileError::Shape { path, expected: AllowedValues::Frame };
     let path = entries.path_of("word");
-    let word = match entries.required::<Value>("word", Expected::Frame)? {
+    let word = match entries.required::<Value>("word", AllowedValues::Frame)? {
         Value::String(word) if word == ONES => Word::Ones,
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
-    let name = entries.required("name", Expected::Text)?;
+    let name = entries.required("name", AllowedValues::Text)?;
     Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
@@ -350,13 +351,13 @@ fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) ->
 }
 
 /// Parses an entry whose value must be one of a fixed set of keywords.
-fn word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
+fn word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
-    let Some(word) = entries.optional::<String>(name, Expected::Text)? else { return Ok(None) };
+    let Some(word) = entries.optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };
     word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
 }
 
-fn required_word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
+fn required_word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
     word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
 }
 

@@ -32,7 +32,7 @@ pub enum CodeError {
 }
 
 /// Converts a binary number to Gray: `b ^ (b >> 1)`.
-pub const fn gray(word: u64) -> u64 {
+pub const fn to_gray(word: u64) -> u64 {
     word ^ word >> 1
 }
 
@@ -48,7 +48,7 @@ pub const fn gray_to_binary(word: u64) -> u64 {
 
 /// Code for positions from 0 up to a maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Coding {
+pub struct PositionCode {
     code: Code,
     last: u64,
     bits: u8,
@@ -56,8 +56,8 @@ pub struct Coding {
     offset: u64,
 }
 
-impl Coding {
-    pub(super) const BIT: Coding = Coding { code: Code::Binary, last: 1, bits: 1, offset: 0 };
+impl PositionCode {
+    pub(super) const BIT: PositionCode = PositionCode { code: Code::Binary, last: 1, bits: 1, offset: 0 };
 
     /// Creates the coding of the positions 0…`last`.
     ///
@@ -75,7 +75,7 @@ impl Coding {
                 (bits.ok_or(CodeError::Digits(digits))?, 0)
             }
         };
-        Ok(Coding { code, last, bits, offset })
+        Ok(PositionCode { code, last, bits, offset })
     }
 
     /// Returns the code.
@@ -105,8 +105,8 @@ impl Coding {
         }
         Some(match self.code {
             Code::Binary => position,
-            Code::Gray => gray(position),
-            Code::GrayExcess => gray(position + self.offset),
+            Code::Gray => to_gray(position),
+            Code::GrayExcess => to_gray(position + self.offset),
             Code::Bcd => decimal_to_bcd(position),
         })
     }
@@ -176,7 +176,7 @@ mod tests {
             (0xFF_FFFF, 0x80_0000),
         ];
         for (number, word) in pairs {
-            assert_eq!((gray(number), gray_to_binary(word)), (word, number), "{number}");
+            assert_eq!((to_gray(number), gray_to_binary(word)), (word, number), "{number}");
         }
         assert_eq!(gray_to_binary(0xFF_FFFE), 0xAA_AAAB);
     }
@@ -186,7 +186,7 @@ mod tests {
     fn gray_words_match_the_manual() {
         let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
         for (number, word) in table.into_iter().enumerate() {
-            assert_eq!(gray(number as u64), word);
+            assert_eq!(to_gray(number as u64), word);
         }
     }
 
@@ -203,7 +203,7 @@ mod tests {
             (5000, 13, 0x0522, 0x0523, 0x1800, 0x1522),
         ];
         for (steps, bits, first, second, middle, last) in table {
-            let coding = Coding::new(Code::GrayExcess, steps - 1).unwrap();
+            let coding = PositionCode::new(Code::GrayExcess, steps - 1).unwrap();
             assert_eq!(coding.bits(), bits, "{steps}");
             for (position, word) in [(0, first), (1, second), (steps / 2, middle), (steps - 1, last)] {
                 assert_eq!(coding.encode(position), Some(word), "{position} of {steps}");
@@ -216,29 +216,29 @@ mod tests {
     /// Error cases of reference section 8.
     #[test]
     fn words_outside_gray_excess_are_refused() {
-        let coding = Coding::new(Code::GrayExcess, 9).unwrap();
+        let coding = PositionCode::new(Code::GrayExcess, 9).unwrap();
         for word in [0x0, 0x1, 0x3, 0x8, 0x9, 0xB] {
             assert_eq!(coding.decode(word), None, "{word:X}");
         }
         assert_eq!(coding.decode(0xF), Some(7));
-        assert_eq!(Coding::new(Code::GrayExcess, 8), Err(CodeError::Odd(9)));
+        assert_eq!(PositionCode::new(Code::GrayExcess, 8), Err(CodeError::Odd(9)));
     }
 
     #[test]
     fn bcd_digits_encode_and_decode() {
-        let coding = Coding::new(Code::Bcd, 3599).unwrap();
+        let coding = PositionCode::new(Code::Bcd, 3599).unwrap();
         assert_eq!(coding.bits(), 16);
         assert_eq!(coding.encode(3599), Some(0x3599));
         assert_eq!(coding.decode(0x0A00), None);
         assert_eq!(coding.decode(0x3600), None);
-        assert_eq!(Coding::new(Code::Bcd, u64::MAX), Err(CodeError::Digits(20)));
+        assert_eq!(PositionCode::new(Code::Bcd, u64::MAX), Err(CodeError::Digits(20)));
     }
 
     proptest! {
         #[test]
         fn adjacent_words_differ_in_one_bit(last in 1..u64::MAX, at in any::<u64>()) {
             let last = last | 1;
-            let coding = Coding::new(Code::GrayExcess, last).unwrap();
+            let coding = PositionCode::new(Code::GrayExcess, last).unwrap();
             let at = at % last;
             let (here, next) = (coding.encode(at).unwrap(), coding.encode(at + 1).unwrap());
             prop_assert_eq!((here ^ next).count_ones(), 1);

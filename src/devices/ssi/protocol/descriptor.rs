@@ -16,7 +16,7 @@ pub struct Descriptor {
     /// Position code.
     pub code: Code,
     /// Bits that the code word covers.
-    pub coded: Coded,
+    pub coded: GrayCoverage,
     /// Number of clocks, starting with the first, that contain the position and surrounding zeros. Shifting right moves
     /// the bits of these clocks.
     pub area: u8,
@@ -41,7 +41,7 @@ pub struct Descriptor {
 
 /// Bits that a Gray code covers. Binary and BCD codes cover only the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coded {
+pub enum GrayCoverage {
     /// The position bits only, without zeros and error bits.
     Position,
     /// The whole area including zeros (alternative reading of the manual in reference section 2, `U`).
@@ -126,7 +126,7 @@ impl Descriptor {
             clocks: bits,
             range: Range::Bits { multiturn, singleturn },
             code: Code::Binary,
-            coded: Coded::Position,
+            coded: GrayCoverage::Position,
             area: bits,
             lead: 0,
             between: 0,

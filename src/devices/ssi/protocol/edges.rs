@@ -4,7 +4,7 @@
 
 /// Levels of both lines from a point in time onwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Levels {
+pub struct LineLevels {
     /// Time in seconds.
     pub at: f64,
     /// Whether CLOCK+ is high.
@@ -15,7 +15,7 @@ pub struct Levels {
 
 /// Frames extracted from a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Bursts {
+pub struct ExtractedFrames {
     /// Number of bits per frame, 1…64.
     pub clocks: u8,
     /// Right-justified frames in recording order.
@@ -66,7 +66,7 @@ struct Edge {
 ///
 /// # Errors
 /// [`BurstError`] states what is missing.
-pub fn bursts(levels: &[Levels]) -> Result<Bursts, BurstError> {
+pub fn bursts(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
     let edges = edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
     halves.sort_by(f64::total_cmp);
@@ -81,10 +81,10 @@ pub fn bursts(levels: &[Levels]) -> Result<Bursts, BurstError> {
     let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(BurstError::Long { clocks })?;
     let kept = runs.iter().filter(|run| whole(run) && run.len() / 2 == clocks);
     let frames: Vec<u64> = kept.map(|run| frame(levels, run, half)).collect();
-    Ok(Bursts { clocks: bits, left_out: runs.len() - frames.len(), frames })
+    Ok(ExtractedFrames { clocks: bits, left_out: runs.len() - frames.len(), frames })
 }
 
-fn edges(levels: &[Levels]) -> Vec<Edge> {
+fn edges(levels: &[LineLevels]) -> Vec<Edge> {
     let pairs = levels.windows(2).zip(1..);
     let changes = pairs.filter_map(|(two, row)| {
         let (before, now) = (two.first()?, two.last()?);
@@ -94,7 +94,7 @@ fn edges(levels: &[Levels]) -> Vec<Edge> {
 }
 
 /// Returns whether the clock rests high, judged by the level it holds longest overall; `None` if it never rests.
-fn idles_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
+fn idles_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
     let ends = edges.iter().map(|edge| edge.at).chain(std::iter::once(last.at));
@@ -116,7 +116,7 @@ fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
 }
 
 /// Returns the bits of a complete burst.
-fn frame(levels: &[Levels], run: &[Edge], half: f64) -> u64 {
+fn frame(levels: &[LineLevels], run: &[Edge], half: f64) -> u64 {
     let sampled = run.chunks(2).skip(1).filter_map(|clock| levels.get(clock.first()?.row - 1));
     let bits = sampled.fold(0, |bits, before| bits << 1 | u64::from(before.data));
     // The half periods of this burst tell how long the last bit stays.
@@ -135,8 +135,8 @@ mod tests {
 
     /// Appends the levels of both lines during a transfer of the given bits, as in reference section 1. Returns the end
     /// of the transfer; `half` is the half period in µs.
-    fn transfer(levels: &mut Vec<Levels>, begins: f64, bits: &str, half: f64) -> f64 {
-        let mut put = |at: f64, clock, data| levels.push(Levels { at: at * 1e-6, clock, data });
+    fn transfer(levels: &mut Vec<LineLevels>, begins: f64, bits: &str, half: f64) -> f64 {
+        let mut put = |at: f64, clock, data| levels.push(LineLevels { at: at * 1e-6, clock, data });
         let mut data = true;
         let mut at = begins;
         for bit in bits.chars() {
@@ -153,8 +153,8 @@ mod tests {
         at + 20.0
     }
 
-    fn recording(frames: &[&str], half: f64, pause: f64) -> Vec<Levels> {
-        let mut levels = vec![Levels { at: 0.0, clock: true, data: true }];
+    fn recording(frames: &[&str], half: f64, pause: f64) -> Vec<LineLevels> {
+        let mut levels = vec![LineLevels { at: 0.0, clock: true, data: true }];
         let mut at = 50.0;
         for frame in frames {
             at = transfer(&mut levels, at, frame, half) + pause;
@@ -171,7 +171,10 @@ mod tests {
         // 400 kHz, 2 MHz, and 25 kHz, where half a period is longer than tm.
         for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
             let found = bursts(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
-            assert_eq!(found, Bursts { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 });
+            assert_eq!(
+                found,
+                ExtractedFrames { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 }
+            );
         }
         // The last bit is 1 and the line falls half a period later; one clock alone.
         assert_eq!(bursts(&recording(&["1", "0", "1"], 1.0, 30.0)).unwrap().frames, [1, 0, 1]);
@@ -196,13 +199,13 @@ mod tests {
 
     #[test]
     fn what_is_no_transfer_says_why() {
-        let row = |at: f64, clock| Levels { at: at * 1e-6, clock, data: false };
+        let row = |at: f64, clock| LineLevels { at: at * 1e-6, clock, data: false };
         assert_eq!(bursts(&[]), Err(BurstError::NoClock));
         assert_eq!(bursts(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));
-        let runs: Vec<Levels> = (0..200).map(|at| row(f64::from(at), at % 2 == 0)).collect();
+        let runs: Vec<LineLevels> = (0..200).map(|at| row(f64::from(at), at % 2 == 0)).collect();
         assert_eq!(bursts(&runs), Err(BurstError::NoPause));
-        let late = runs.iter().map(|own| Levels { at: own.at + 50e-6, ..*own });
-        let long: Vec<Levels> = std::iter::once(row(0.0, true)).chain(late).collect();
+        let late = runs.iter().map(|own| LineLevels { at: own.at + 50e-6, ..*own });
+        let long: Vec<LineLevels> = std::iter::once(row(0.0, true)).chain(late).collect();
         let whole = &long[..=200];
         assert_eq!(bursts(whole), Err(BurstError::Incomplete), "it ends low");
         assert_eq!(bursts(&[whole, &[row(250.0, true)]].concat()), Err(BurstError::Long { clocks: 100 }));

@@ -17,7 +17,7 @@ mod text;
 pub use c::c99;
 pub use halves::{TooWideError, scl, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
-pub use picture::{PathStep, Picture, PictureLabel, PictureLength, PictureShape};
+pub use picture::{Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_picture, timing_picture};

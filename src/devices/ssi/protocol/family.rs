@@ -272,7 +272,7 @@ impl Families {
 
     /// Returns these families combined with `others`, which replace families with the same key.
     #[must_use]
-    pub fn overlaid_with(self, others: Families) -> Self {
+    pub fn merged_with(self, others: Families) -> Self {
         let mut all = others.0;
         for family in self.0 {
             if all.iter().all(|known| known.key != family.key) {

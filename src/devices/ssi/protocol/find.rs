@@ -19,9 +19,9 @@ mod verdict;
 use std::collections::HashSet;
 
 use frame_set::FrameSet;
-use members::{Member, group_members};
+use members::{LayoutCandidate, group_members};
 use motion::Motion;
-use probe::Probe;
+use probe::LayoutProbe;
 use reading::{Read, readings};
 
 use super::family::{Families, Settings};
@@ -99,7 +99,7 @@ impl Proposal {
     pub fn spec(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
-            let settings = families.named(key)?.settings_of(descriptor)?;
+            let settings = families.named(key)?.settings_for_frame(descriptor)?;
             Some(settings.emit(key))
         });
         named.unwrap_or_else(|| descriptor.spec())
@@ -164,7 +164,7 @@ pub enum Open {
 /// Reading of the frames, with all layouts that yield this reading.
 struct Group {
     read: Read,
-    members: Vec<Member>,
+    members: Vec<LayoutCandidate>,
     bits: f64,
 }
 
@@ -172,7 +172,7 @@ struct Group {
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
     let seen = FrameSet::new(newest, clocks);
-    let different = seen.different();
+    let different = seen.distinct_count();
     let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
     if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
         return search(Some(Uncertainty::Stuck { high }), Vec::new());
@@ -191,7 +191,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         // Families are searched if the motion may be right.
         let near = groups.first().is_none_or(|best| read.bits < best.bits + NEAR_BITS || known == Some(0));
         let best = known.and_then(|known| groups.get(known)).map_or(&read, |group| &group.read);
-        let probe = Probe::new(&seen, &words, repeat, best);
+        let probe = LayoutProbe::new(&seen, &words, repeat, best);
         let mut members = group_members(&probe, &read, &words, repeat, near.then_some(families));
         match known.and_then(|known| groups.get_mut(known)) {
             Some(group) => {

@@ -2,10 +2,10 @@
 //! and patterns require a profile.
 
 use super::code::Code;
-use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
+use super::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
 use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// Keyword that starts a frame specification.
 const KEY: &str = "frame";
@@ -95,7 +95,7 @@ impl Descriptor {
 }
 
 fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecError> {
-    let mut frame = Descriptor { code: Code::Binary, coded: Coded::Position, ..Descriptor::plain(0, 0) };
+    let mut frame = Descriptor { code: Code::Binary, coded: GrayCoverage::Position, ..Descriptor::plain(0, 0) };
     let (mut bits, mut steps, mut length) = ((None, None), (None, None, None), (None, None));
     let (mut clocks, mut area) = (None, None);
     for setting in Setting::all(words, NAMES)? {
@@ -117,13 +117,13 @@ fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecErr
             "between" => frame.between = setting.small()?,
             "shift" => frame.shift_right = setting.switch()?,
             "inverted" => frame.inverted = setting.switch()?,
-            "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong(Expected::ParityBit))?),
-            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong(Expected::Repetition))?),
+            "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong(AllowedValues::ParityBit))?),
+            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong(AllowedValues::Repetition))?),
             _ => {
                 let (_, called, active_low) =
                     LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown())?;
                 for clock in value.split('+') {
-                    let clock = clock.parse().map_err(|_| wrong(Expected::Clocks))?;
+                    let clock = clock.parse().map_err(|_| wrong(AllowedValues::Clocks))?;
                     frame.errors.push(ErrorBit {
                         name: format!("{called}{clock}"),
                         clock,

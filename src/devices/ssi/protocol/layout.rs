@@ -9,14 +9,14 @@ pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
 #[cfg(test)]
 pub(crate) use tests::layouts as any_layouts;
 
-use super::code::{Coding, gray, gray_to_binary, ones};
-use super::descriptor::{Coded, Descriptor};
+use super::code::{PositionCode, gray_to_binary, ones, to_gray};
+use super::descriptor::{Descriptor, GrayCoverage};
 
 /// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub(super) descriptor: Descriptor,
-    pub(super) coding: Coding,
+    pub(super) coding: PositionCode,
     /// Upper and lower part of the code word.
     pub(super) parts: [Part; 2],
     /// Whether the lowest bit of the code word is shifted out.
@@ -111,7 +111,7 @@ impl Default for Layout {
     fn default() -> Self {
         Layout {
             descriptor: Descriptor::plain(0, 1),
-            coding: Coding::BIT,
+            coding: PositionCode::BIT,
             parts: [Part::default(), Part { in_word: 0, in_code: 0, mask: 1 }],
             lost: false,
             behind_area: 0,
@@ -141,7 +141,7 @@ impl Layout {
     }
 
     /// Returns the coding of the positions, which is binary if the Gray code covers more than the position.
-    pub const fn coding(&self) -> &Coding {
+    pub const fn coding(&self) -> &PositionCode {
         &self.coding
     }
 
@@ -166,8 +166,8 @@ impl Layout {
         let code = self.coding.encode(position)?;
         let mut word =
             self.parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word);
-        if self.descriptor.coded == Coded::Area {
-            word = self.over(word, gray);
+        if self.descriptor.coded == GrayCoverage::Area {
+            word = self.over(word, to_gray);
         }
         if self.descriptor.shift_right {
             word = word >> self.behind_area >> 1 << self.behind_area;
@@ -176,8 +176,8 @@ impl Layout {
             word |= if flags.has(Flags::error(index)) { *bit } else { 0 };
         }
         word ^= self.low;
-        if self.descriptor.coded == Coded::AreaAndErrors {
-            word = self.over(word, gray);
+        if self.descriptor.coded == GrayCoverage::AreaAndErrors {
+            word = self.over(word, to_gray);
         }
         let (bit, before) = self.parity;
         let even = (word & before).count_ones().is_multiple_of(2);
@@ -205,7 +205,7 @@ impl Layout {
         flags = flags.with(Flags::PARITY.when(bit != 0 && ones_in_all.is_multiple_of(2) != self.even()));
 
         let mut word =
-            if self.descriptor.coded == Coded::AreaAndErrors { self.over(sent, gray_to_binary) } else { sent };
+            if self.descriptor.coded == GrayCoverage::AreaAndErrors { self.over(sent, gray_to_binary) } else { sent };
         for (index, bit) in self.errors.iter().enumerate() {
             flags = flags.with(Flags::error(index).when((word ^ self.low) & bit != 0));
         }
@@ -215,7 +215,7 @@ impl Layout {
             let back = area << 1 & ones(self.descriptor.area);
             word = word & ones(self.behind_area) | back << self.behind_area;
         }
-        if self.descriptor.coded == Coded::Area {
+        if self.descriptor.coded == GrayCoverage::Area {
             word = self.over(word, gray_to_binary);
             if self.descriptor.shift_right {
                 word &= !(1 << self.behind_area);

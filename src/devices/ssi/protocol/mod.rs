@@ -23,12 +23,12 @@ mod timing;
 /// Keyword for this kind of device on the command line, in profiles and in stored data.
 pub const KIND: &str = "ssi";
 
-pub use code::{Code, CodeError, Coding, gray, gray_to_binary};
-pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
-pub use edges::{BurstError, Bursts, Levels, bursts};
+pub use code::{Code, CodeError, PositionCode, gray_to_binary, to_gray};
+pub use descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Pattern, Repeat, Word};
+pub use edges::{BurstError, ExtractedFrames, LineLevels, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    ExportText, FormatError, ModuleObstacle, PathStep, Picture, PictureLabel, PictureLength, PictureShape, Say,
+    ExportText, FormatError, ModuleObstacle, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment, Say,
     SettingMeaning, TooWideError, UnsupportedProperty, bit_table, c99, english, frame_picture, from_linuxcnc, scl,
     settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
@@ -43,5 +43,5 @@ pub(crate) use layout::any_layouts;
 pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPart, WordOperation};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
-pub use tally::{CountedFinding, Tally};
+pub use tally::{CountedFinding, FindingCounts};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::code::{bits_of, ones};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// Range of positions from 0 up to a maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,13 +188,13 @@ impl Range {
     /// Returns the position of a shaft that has turned by `raw` steps from its zero, with `per_turn` steps per turn, at
     /// least 1; positions start again after the last one (reference section 5: "position = floor(…)"). For a length,
     /// `raw` counts its steps.
-    pub fn of_shaft(&self, raw: u64, per_turn: u64) -> u64 {
+    pub fn position_from_shaft(&self, raw: u64, per_turn: u64) -> u64 {
         self.counted(raw, per_turn, Direction::Clockwise)
     }
 
     /// Returns the position for a counting direction and a preset, which is the position at the zero of the shaft
     /// (reference section 5: "Direction", "preset"). A preset beyond the last position wraps likewise.
-    pub fn of_shaft_set(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
+    pub fn position_with_preset(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last().unwrap_or(0);
         let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
@@ -251,12 +251,12 @@ impl fmt::Display for Fraction {
 }
 
 impl FromStr for Fraction {
-    type Err = Expected;
+    type Err = AllowedValues;
 
     /// Parses a direction. The error lists the allowed values.
-    fn from_str(text: &str) -> Result<Self, Expected> {
+    fn from_str(text: &str) -> Result<Self, AllowedValues> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
-        let part = |text: &str| text.trim().parse().map_err(|_| Expected::Fraction);
+        let part = |text: &str| text.trim().parse().map_err(|_| AllowedValues::Fraction);
         Ok(Fraction { numerator: part(above)?, denominator: part(below)? })
     }
 }
@@ -278,16 +278,16 @@ mod tests {
     fn positions_convert_to_turns_and_degrees() {
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
         for (raw, position) in [(0, 0), (49152, 48), (102_399, 99), (102_400, 0)] {
-            assert_eq!(axis.of_shaft(raw, 8192), position, "{raw}");
+            assert_eq!(axis.position_from_shaft(raw, 8192), position, "{raw}");
         }
-        assert_eq!(Range::Steps { per_turn: 3600, turns: 1 }.of_shaft(4096, 8192), 1800);
+        assert_eq!(Range::Steps { per_turn: 3600, turns: 1 }.position_from_shaft(4096, 8192), 1800);
         // Turn 1234h and 270° of 2^17: the lowest 12 bits of the turns, three quarters of 2^13.
         let bits = Range::Bits { multiturn: 12, singleturn: 13 };
-        assert_eq!(bits.of_shaft(0x1234 << 17 | 0x18000, 1 << 17), 0x234 << 13 | 0x1800);
-        assert_eq!(Range::Bits { multiturn: 0, singleturn: 18 }.of_shaft(0x18000, 1 << 17), 0x30000);
-        assert_eq!(Range::Length { bits: 24, step_nanometres: 1000 }.of_shaft(0x100_0007, 1 << 17), 7);
+        assert_eq!(bits.position_from_shaft(0x1234 << 17 | 0x18000, 1 << 17), 0x234 << 13 | 0x1800);
+        assert_eq!(Range::Bits { multiturn: 0, singleturn: 18 }.position_from_shaft(0x18000, 1 << 17), 0x30000);
+        assert_eq!(Range::Length { bits: 24, step_nanometres: 1000 }.position_from_shaft(0x100_0007, 1 << 17), 7);
         let most = Range::Bits { multiturn: 32, singleturn: 32 };
-        assert_eq!(most.of_shaft(u64::MAX, 1 << 32), u64::MAX);
+        assert_eq!(most.position_from_shaft(u64::MAX, 1 << 32), u64::MAX);
     }
 
     /// Expected values calculated by hand for 360 steps on a shaft with 4096, and for the round axis of the reference.
@@ -316,7 +316,7 @@ mod tests {
             ("64 bits", all, u64::MAX, 1, Clockwise, 2, 1),
         ];
         for (what, range, raw, per_turn, direction, preset, position) in cases {
-            assert_eq!(range.of_shaft_set(raw, per_turn, direction, preset), position, "{what}, {direction:?}");
+            assert_eq!(range.position_with_preset(raw, per_turn, direction, preset), position, "{what}, {direction:?}");
         }
     }
 }

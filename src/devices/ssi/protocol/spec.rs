@@ -1,6 +1,6 @@
 //! Layouts given as one word, `KEY,name=value,…`: the parts common to family settings and arbitrary frames.
 
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 /// The reason why a string is not a layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,7 +27,7 @@ pub enum SpecError {
         /// Name of the setting.
         name: String,
         /// The expected value.
-        expected: Expected,
+        expected: AllowedValues,
         /// The invalid value.
         value: String,
     },
@@ -65,22 +65,22 @@ impl<'t> Setting<'t> {
     }
 
     pub(super) fn small(self) -> Result<u8, SpecError> {
-        self.value.parse().map_err(|_| self.wrong(Expected::between(0, 255)))
+        self.value.parse().map_err(|_| self.wrong(AllowedValues::between(0, 255)))
     }
 
     pub(super) fn number(self) -> Result<u32, SpecError> {
-        self.value.parse().map_err(|_| self.wrong(Expected::Whole))
+        self.value.parse().map_err(|_| self.wrong(AllowedValues::Whole))
     }
 
     pub(super) fn switch(self) -> Result<bool, SpecError> {
         match self.value {
             "0" => Ok(false),
             "1" => Ok(true),
-            _ => Err(self.wrong(Expected::words(&["0", "1"]))),
+            _ => Err(self.wrong(AllowedValues::words(&["0", "1"]))),
         }
     }
 
-    pub(super) fn wrong(self, expected: Expected) -> SpecError {
+    pub(super) fn wrong(self, expected: AllowedValues) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }
 

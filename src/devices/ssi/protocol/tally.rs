@@ -3,11 +3,11 @@
 
 use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 
 /// Counts of the findings in consecutive frames.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct FindingCounts {
     noted: Vec<CountedFinding>,
     /// Flags of the previous frame, and their indices in `noted`.
     before: (Flags, Vec<usize>),
@@ -22,17 +22,17 @@ pub struct CountedFinding {
     /// each frame, lasting ones each time they begin.
     pub count: u64,
     /// Time of the first frame with the finding.
-    pub first: Time,
+    pub first: SampleTime,
     /// Time of the last frame with the finding.
-    pub last: Time,
+    pub last: SampleTime,
     /// Whether the newest frame has the finding.
     pub stands: bool,
 }
 
-impl Tally {
+impl FindingCounts {
     /// Counts the findings of a frame; returns those that the previous frame did not have. `layout` must be the layout
     /// of all frames since the last [`reset`](Self::reset).
-    pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: Time) -> Vec<FrameFinding> {
+    pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: SampleTime) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
             for index in same {
@@ -85,7 +85,7 @@ impl Tally {
 
     /// Resets all counts; lasting findings are counted again with the next frame.
     pub fn reset(&mut self) {
-        *self = Tally::default();
+        *self = FindingCounts::default();
     }
 }
 
@@ -107,18 +107,18 @@ mod tests {
         settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
     }
 
-    fn at(milliseconds: i64) -> Time {
-        Time::from_nanoseconds(milliseconds * 1_000_000)
+    fn at(milliseconds: i64) -> SampleTime {
+        SampleTime::from_nanoseconds(milliseconds * 1_000_000)
     }
 
     /// Returns the name, the count, the times of the first and last frame in milliseconds, and whether the finding
     /// lasts.
-    fn rows(tally: &Tally) -> Vec<(String, u64, i64, i64, bool)> {
+    fn rows(tally: &FindingCounts) -> Vec<(String, u64, i64, i64, bool)> {
         let name = |finding: &FrameFinding| match finding {
             FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
             other => format!("{other:?}"),
         };
-        let milliseconds = |time: Time| time.nanoseconds() / 1_000_000;
+        let milliseconds = |time: SampleTime| time.nanoseconds() / 1_000_000;
         let row = |noted: &CountedFinding| {
             (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
         };
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn cleared_errors_count_per_frame_and_static_ones_once() {
         let layout = layout("afs60");
-        let mut tally = Tally::default();
+        let mut tally = FindingCounts::default();
         let good = 0x15_5E68;
         let frames = [good, good | 1, good | 1, good | 3, good | 2, good, good | 2];
         let begun: Vec<usize> = (0..)
@@ -148,14 +148,14 @@ mod tests {
     #[test]
     fn fault_patterns_and_padding_errors_are_counted() {
         let kh53 = layout("kh53");
-        let mut tally = Tally::default();
+        let mut tally = FindingCounts::default();
         for (number, frame) in (0..).zip([5, 0xFF_FFFE, 0xFF_FFFE, 5, 0xFF_FFFE]) {
             tally.note(&kh53, kh53.decode(frame), at(number));
         }
         assert_eq!(rows(&tally), [("overspeed or gap".to_owned(), 2, 1, 4, true)]);
         // ATM60 with 8 of 12 bits of turns in tree format: the zeros before them are ones.
         let tree = layout("atm60,mt=8,st=8");
-        let mut tally = Tally::default();
+        let mut tally = FindingCounts::default();
         tally.note(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));
         assert_eq!(rows(&tally), [("Padding".to_owned(), 1, 0, 0, true)]);
     }

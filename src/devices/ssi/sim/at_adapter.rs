@@ -3,8 +3,8 @@
 use super::encoder::{Encoder, FrameSender};
 use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice};
-use crate::expected::Expected;
-use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
+use crate::expected::AllowedValues;
+use crate::parameter::{ANY, Checked, OptionalValue, Parameters, Refused};
 use crate::parameters;
 use crate::sim::ConfigError;
 
@@ -15,7 +15,7 @@ parameters! {
         /// Family and settings of the encoder. A host that clocks a different number of bits receives a truncated
         /// frame, or zeros after the frame.
         encoder: Option<Encoder> = None,
-            "ssi" => Maybe(Checked(Expected::Family, Encoder::named)),
+            "ssi" => OptionalValue(Checked(AllowedValues::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
         /// Active error bits, and words sent instead of the frame, each with its interval in seconds
         /// (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`).
@@ -55,8 +55,8 @@ impl AttachableKind for AtAdapter {
 
 fn parse_faults(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, Refused> {
     let allowed = || match InjectedFault::names(&encoder.layout) {
-        own if own.is_empty() => Expected::NoErrorBits,
-        own => Expected::ErrorBits(own),
+        own if own.is_empty() => AllowedValues::NoErrorBits,
+        own => AllowedValues::ErrorBits(own),
     };
     let troubles = InjectedFault::read(value, &encoder.layout);
     troubles.ok_or_else(|| Refused::new("ssi-error", value, allowed()))

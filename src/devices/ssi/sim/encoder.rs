@@ -38,13 +38,13 @@ impl FrameSender {
             return word;
         }
         let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
-        let position = layout.descriptor().range.of_shaft_set(raw, per_turn, *direction, *preset);
+        let position = layout.descriptor().range.position_with_preset(raw, per_turn, *direction, *preset);
         layout.encode(position, flags).unwrap_or(0)
     }
 }
 
 impl SsiDevice for FrameSender {
-    fn another(&self) -> Box<dyn SsiDevice> {
+    fn duplicate(&self) -> Box<dyn SsiDevice> {
         Box::new(self.clone())
     }
 

@@ -41,7 +41,7 @@ fn words_follow_code_preset_and_direction() {
         host.ask(Request::SsiStream { period_us: 100 });
         let packets = host.stream(100);
         let mut words = packets.iter().flat_map(|data| match data {
-            Data::Ssi(data) => data.values.clone(),
+            StreamData::Ssi(data) => data.values.clone(),
             other => panic!("{other:?}"),
         });
         assert!(words.clone().count() > 900 && words.all(|raw| raw == word << 1), "{query}");

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::action::{SsiAction, Try};
+use super::action::{SsiAction, TrialInput};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::families::families;
@@ -11,22 +11,22 @@ use super::search::{Frames, MOST, Origin, SearchState, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, SessionEvents, Source};
-use crate::app::{ActContext, DeviceCommand, DeviceFile, DeviceModel, FileQuestion, Text};
+use crate::app::session::{HasDraft, SessionEvents, Source};
+use crate::app::{ActionContext, DeviceCommand, DeviceFile, DeviceModel, FileQuestion, Text};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};
 use crate::devices::ssi::state::TEXTS;
 use crate::store::write_atomically;
 
 impl Encoder {
-    pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
+    pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
         let services = &mut *context.services;
         match action {
             SsiAction::SendLayout => {
                 let Some(url) = self.link_to_send() else { return };
                 // The draft belongs to the encoder of the previous link.
                 self.leave_draft(services);
-                self.take_link(&url);
+                self.switch_link(&url);
                 self.session.source = Source::Link(url);
                 context.then(DeviceCommand::Reconnect);
             }
@@ -67,10 +67,11 @@ impl Encoder {
             SsiAction::Take(class, member) => self.apply_search_result(class, member),
             SsiAction::ForgetErrors => self.record.forget_tally(),
             SsiAction::AskExport(format, language) => {
-                let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
+                let suggested = self.suggested(format.file_extensions().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
                 let export = move |path, _| SsiAction::Export(format, language, path);
-                let file = DeviceFile::write_question(self.session.id, words, format.endings(), suggested, export);
+                let file =
+                    DeviceFile::write_question(self.session.id, words, format.file_extensions(), suggested, export);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::Export(format, language, path) => match self.designer.export(format, language) {
@@ -101,7 +102,7 @@ impl Encoder {
         }
     }
 
-    fn start_trial(&mut self, with: Try) {
+    fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
         // The trial starts from the word that was read, if one is shown.
         if self.is_following()
@@ -109,13 +110,13 @@ impl Encoder {
         {
             self.trial.set(word);
         }
-        self.follows = with == Try::Live;
+        self.follows = with == TrialInput::Live;
         match with {
-            Try::Position(position) => self.trial.set_position(layout, position),
-            Try::Place(turns, steps) => self.trial.set_place(layout, turns, steps),
-            Try::Bits(text) => self.trial.set_text(layout, &text),
-            Try::Toggle(clock) => self.trial.toggle(layout, clock),
-            Try::Live => {}
+            TrialInput::Position(position) => self.trial.set_position(layout, position),
+            TrialInput::Place(turns, steps) => self.trial.set_turn_and_step(layout, turns, steps),
+            TrialInput::Bits(text) => self.trial.set_text(layout, &text),
+            TrialInput::Toggle(clock) => self.trial.toggle(layout, clock),
+            TrialInput::Live => {}
         }
     }
 

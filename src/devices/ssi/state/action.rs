@@ -3,20 +3,20 @@
 use std::path::PathBuf;
 
 use super::design::Edit;
-use super::export::Format;
-use super::form::{Field, Input};
+use super::export::ExportFormat;
+use super::form::{Field, FieldInput};
 use super::strip::Handle;
 use crate::app::{DeviceAction, Language};
 
 pub enum SsiAction {
     Check,
     Edit(Box<Edit>),
-    Enter(Field, Input),
+    Enter(Field, FieldInput),
     /// Moves a part of the frame to a clock, or as close to it as possible.
     Move(Handle, u8),
     AddErrorBit,
     RemoveErrorBit(usize),
-    Try(Try),
+    Try(TrialInput),
     /// Sets the number of clocks per word for a search, or restores that of the layout with `None`.
     SetClocks(Option<u8>),
     Find,
@@ -27,8 +27,8 @@ pub enum SsiAction {
     /// Adopts a layout from the search result, given the index of its class and its index within that class.
     Take(usize, usize),
     ForgetErrors,
-    AskExport(Format, Language),
-    Export(Format, Language, PathBuf),
+    AskExport(ExportFormat, Language),
+    Export(ExportFormat, Language, PathBuf),
     AskSaveFrames,
     SaveFrames(PathBuf),
     SendLayout,
@@ -37,7 +37,7 @@ pub enum SsiAction {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Try {
+pub enum TrialInput {
     Position(u64),
     /// Sets the frame for a turn and a step within that turn.
     Place(u64, u64),

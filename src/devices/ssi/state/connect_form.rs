@@ -2,15 +2,15 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, split_target, to_adapter};
-use crate::buses::bridge::procedures::SupplyAfter;
+use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, for_adapter, split_target};
+use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::sim::Settings;
 use crate::kinds::at_adapter;
-use crate::link::{LinkUrl, Scheme};
+use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,11 +53,13 @@ impl FormModel for SsiForm {
         let mut form = SsiForm::default();
         let target = url.target.as_str();
         form.kind = match url.scheme {
-            Scheme::Sim => SsiLinkKind::Virtual,
-            Scheme::Replay => SsiLinkKind::Replay,
-            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => SsiLinkKind::Adapter,
+            LinkScheme::Sim => SsiLinkKind::Virtual,
+            LinkScheme::Replay => SsiLinkKind::Replay,
+            LinkScheme::Bridge | LinkScheme::Serial | LinkScheme::Tcp | LinkScheme::Modbus | LinkScheme::Enip => {
+                SsiLinkKind::Adapter
+            }
         };
-        if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
+        if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == LinkScheme::Bridge) {
             form.network = true;
             (form.host, form.tcp_port) = split_target(network);
         } else if form.kind == SsiLinkKind::Replay {
@@ -65,7 +67,7 @@ impl FormModel for SsiForm {
         } else {
             form.port = target.to_owned();
         }
-        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form.rest = parameters_without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -95,25 +97,25 @@ impl SsiForm {
     }
 
     /// Returns the entry for the encoder supply, and the remaining link entries.
-    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+    pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }
 
     /// Fills in the entry of a parameter. Returns `false` if the parameter has no entry.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        if name == SupplyAfter::LEFT_ON.0 {
-            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
+        if name == SupplyAfterSession::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
             return self.leave_supply;
         }
         self.typed.take(&self.entries(), name, value)
     }
 
-    fn target(&self) -> Result<(Scheme, String), Text> {
+    fn target(&self) -> Result<(LinkScheme, String), Text> {
         Ok(match self.kind {
-            SsiLinkKind::Virtual => (Scheme::Sim, String::new()),
-            SsiLinkKind::Adapter if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
-            SsiLinkKind::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
-            SsiLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            SsiLinkKind::Virtual => (LinkScheme::Sim, String::new()),
+            SsiLinkKind::Adapter if self.network => (LinkScheme::Bridge, for_adapter(&self.host, &self.tcp_port)?),
+            SsiLinkKind::Adapter => (LinkScheme::Bridge, entered(&self.port, "form.port_missing")?),
+            SsiLinkKind::Replay => (LinkScheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
@@ -122,9 +124,9 @@ impl SsiForm {
         let mut parameters = Parameters::default();
         parameters.typed(&self.entries(), &self.typed);
         if self.leave_supply {
-            parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
+            parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
         }
-        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
+        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
         parameters
     }
 }

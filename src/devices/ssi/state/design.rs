@@ -15,7 +15,7 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::sim::DELIVERED;
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
-use crate::link::{LinkUrl, Scheme};
+use crate::link::{LinkScheme, LinkUrl};
 
 const TO_BEGIN_WITH: &str = "ahm36";
 
@@ -51,7 +51,7 @@ pub enum Edit {
 }
 
 #[derive(Clone, Debug)]
-pub struct Designer {
+pub struct LayoutDesigner {
     families: Arc<Families>,
     now: Design,
     saved: SsiProfile,
@@ -73,7 +73,7 @@ impl Design {
         };
         let settings = family.and_then(|family| {
             let requested = requested.filter(|requested| sends(family, requested));
-            requested.cloned().or_else(|| family.settings_of(&profile.descriptor))
+            requested.cloned().or_else(|| family.settings_for_frame(&profile.descriptor))
         });
         let resolved = family.zip(settings.as_ref()).and_then(|(family, settings)| settings.resolve(family).ok());
         let advice = resolved.map(|resolved| resolved.advice).unwrap_or_default();
@@ -89,26 +89,26 @@ impl Default for Design {
     }
 }
 
-impl Designer {
+impl LayoutDesigner {
     /// Creates the design of a saved layout. An impossible layout, which no file contains, is replaced by the default.
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
-        Designer { families, now, saved, history: History::default(), problem: None }
+        LayoutDesigner { families, now, saved, history: History::default(), problem: None }
     }
 
     /// Creates the design of a family's factory layout.
-    pub(super) fn delivered(families: Arc<Families>) -> Self {
+    pub(super) fn factory_default(families: Arc<Families>) -> Self {
         let profile = parse_profile(TO_BEGIN_WITH, &families);
-        Designer::with(profile, families)
+        LayoutDesigner::with(profile, families)
     }
 
     /// Creates the design for a link. The layout is known only if the link leads to a virtual encoder.
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
-        let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
+        let sent = url.query.get("ssi").filter(|_| url.scheme == LinkScheme::Sim);
         let mut profile = parse_profile(sent.unwrap_or(DELIVERED), &families);
         profile.reading = reading_for_link(profile.reading, url, |_| true);
-        Designer::with(profile, families)
+        LayoutDesigner::with(profile, families)
     }
 
     /// Returns the reading settings after the link to the encoder was replaced. Parameters that differ between the
@@ -123,7 +123,7 @@ impl Designer {
     }
 
     pub(super) fn open(&mut self, profile: SsiProfile) {
-        *self = Designer::with(profile, self.families.clone());
+        *self = LayoutDesigner::with(profile, self.families.clone());
     }
 
     pub fn design(&self) -> &Design {
@@ -258,7 +258,7 @@ impl Designer {
     }
 }
 
-impl PendingEdits for Designer {
+impl PendingEdits for LayoutDesigner {
     fn count(&self) -> usize {
         usize::from(self.is_dirty())
     }

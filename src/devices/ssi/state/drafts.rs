@@ -3,12 +3,12 @@
 
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Session, Source};
+use crate::app::session::{HasDraft, HasSession, ProfileFile, Session, Source};
 use crate::app::{DeviceModel, PendingEdits};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::TEXTS;
-use crate::profile::{Body, Change, Document, Profile};
+use crate::profile::{Body, Change, Profile, ProfileDocument};
 use crate::store::DeviceKey;
 
 /// Changes to the layout, one per entry; empty if the layout is as saved. Earlier versions stored the whole layout as
@@ -27,7 +27,7 @@ impl HasSession for Encoder {
     }
 }
 
-impl Drafted for Encoder {
+impl HasDraft for Encoder {
     /// Returns `None`, because an SSI encoder does not report its identity.
     fn key(&self) -> Option<DeviceKey> {
         None
@@ -51,8 +51,9 @@ impl Drafted for Encoder {
     }
 
     fn take_edits(&mut self, edits: Drafts) {
-        let mut profiles =
-            edits.iter().filter_map(|text| Document::parse(text, SsiProfile::FORMATS).ok()?.body.into_profile().ok());
+        let mut profiles = edits
+            .iter()
+            .filter_map(|text| ProfileDocument::parse(text, SsiProfile::FORMATS).ok()?.body.into_profile().ok());
         let whole = profiles.next_back().or_else(|| {
             let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
             let all = changes.len() == edits.len();
@@ -80,7 +81,7 @@ impl Drafted for Encoder {
         DeviceModel::step(self, |edits| edits.revert());
     }
 
-    fn take_document(&mut self, file: ProfileFile, document: Document) {
+    fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
         // Undo steps are kept unless the file has changed: then the edits remain edits.
@@ -92,10 +93,10 @@ impl Drafted for Encoder {
             self.take_edits(edits);
         }
         self.follow_layout(&before);
-        self.session.take_document(file, document);
+        self.session.apply_document(file, document);
     }
 
-    fn note_profile_saved(&mut self, document: Document) {
+    fn note_profile_saved(&mut self, document: ProfileDocument) {
         if let Ok(profile) = document.body.into_profile() {
             self.designer.mark_saved(profile);
         }
@@ -103,6 +104,6 @@ impl Drafted for Encoder {
 }
 
 /// Creates a document for a layout that is not stored in a file.
-fn document_of(profile: &SsiProfile) -> Document {
-    Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
+fn document_of(profile: &SsiProfile) -> ProfileDocument {
+    ProfileDocument { saved: None, ..ProfileDocument::new(String::new(), Body::new(profile.clone())) }
 }

@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
-use super::design::{Design, Designer, Edit};
-use super::record::{ReadWord, Record, Streamed};
+use super::design::{Design, Edit, LayoutDesigner};
+use super::record::{ReceivedWord, Record, Streamed};
 use super::search::SearchState;
 use super::trial::{Decoded, Trial};
 use crate::app::check::CheckLine;
 use crate::app::session::{Phase, Session, Source};
 use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
-use crate::devices::ssi::procedures::{Asking, Identity};
+use crate::devices::ssi::procedures::{ClockSettings, Identity};
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{Families, Layout, Reads, Times, Timing};
 use crate::link::LinkUrl;
@@ -19,7 +19,7 @@ use crate::sim::Motor;
 
 pub struct Encoder {
     pub session: Session<Ssi>,
-    pub designer: Designer,
+    pub designer: LayoutDesigner,
     pub trial: Trial,
     /// Whether the trial frame follows the most recently read word.
     pub(super) follows: bool,
@@ -32,11 +32,11 @@ pub struct Encoder {
     pub motor: Option<Motor>,
     pub(super) clocks: Option<u8>,
     /// Reading settings last sent to the adapter, if any.
-    pub(super) requested: Option<Asking>,
+    pub(super) requested: Option<ClockSettings>,
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Ssi>, designer: Designer) -> Self {
+    pub(super) fn with(session: Session<Ssi>, designer: LayoutDesigner) -> Self {
         let mut trial = Trial::default();
         // A position whose bits can be distinguished.
         trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
@@ -72,7 +72,7 @@ impl Encoder {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
 
-    pub fn last(&self) -> Option<&ReadWord> {
+    pub fn last(&self) -> Option<&ReceivedWord> {
         self.record.last()
     }
 
@@ -91,9 +91,9 @@ impl Encoder {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
 
-    pub(crate) fn asking(&self) -> Asking {
+    pub(crate) fn query_settings(&self) -> ClockSettings {
         let reading = &self.design().profile.reading;
-        Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
+        ClockSettings { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
     pub fn is_dirty(&self) -> bool {
@@ -157,7 +157,7 @@ impl Encoder {
     }
 }
 
-impl Designer {
+impl LayoutDesigner {
     /// Returns the times of the family, or else the general SSI times from the manual.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)

@@ -6,7 +6,7 @@ use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
 use crate::app::Explained;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::{JobState, Services};
 use crate::app::session::{Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::buses::bridge::procedures::AdapterError;
@@ -59,7 +59,7 @@ impl Kind for Ssi {
 impl Encoder {
     /// Sends the reading settings to the adapter if they differ from those last sent.
     fn send_reading_settings(&mut self, services: &mut Services) {
-        let asking = self.asking();
+        let asking = self.query_settings();
         // Once it is identified, and nothing else runs; a refused setting is not sent again.
         if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
             self.requested = Some(asking);
@@ -68,7 +68,7 @@ impl Encoder {
     }
 
     /// Reads a single word for display, unless words are already being polled.
-    fn see_a_word(&mut self, services: &mut Services) {
+    fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(SsiJob::Read, services);
         }
@@ -112,11 +112,11 @@ impl SessionEvents for Encoder {
             SsiOutput::Hello(identity) => {
                 self.requested = Some(identity.asking);
                 self.accept_identity(*identity, services);
-                self.see_a_word(services);
+                self.refresh_word(services);
             }
             SsiOutput::Set(identity) => {
                 self.identity = Some(*identity);
-                self.see_a_word(services);
+                self.refresh_word(services);
             }
             SsiOutput::Read(words) => self.record.add(vec![words], 0),
             SsiOutput::Check(lines) => self.check = Some(explained::check(&lines)),
@@ -132,7 +132,7 @@ impl SessionEvents for Encoder {
     }
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        services.end_job(self.session.id, id, JobEnd::Cancelled);
+        services.end_job(self.session.id, id, JobState::Cancelled);
         services.notify(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
     }
 }

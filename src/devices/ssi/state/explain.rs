@@ -12,7 +12,8 @@ use crate::app::explain::link;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, Code, Coded, CountedFinding, Evidence, FrameFinding, Layout, Meaning, Open, Range, Uncertainty, Warning,
+    Advice, Code, CountedFinding, Evidence, FrameFinding, GrayCoverage, Layout, Meaning, Open, Range, Uncertainty,
+    Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -38,7 +39,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-pub fn finding(finding: &FrameFinding) -> Text {
+pub fn finding_text(finding: &FrameFinding) -> Text {
     match finding {
         FrameFinding::Error { name, meaning, cleared_by_transfer } => {
             let id = match (meaning, cleared_by_transfer) {
@@ -64,7 +65,7 @@ pub fn finding(finding: &FrameFinding) -> Text {
 }
 
 /// Returns the text about an accepted setting that the manual does not describe.
-pub fn advice(advice: &Advice) -> Text {
+pub fn advice_text(advice: &Advice) -> Text {
     match advice {
         Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
         Advice::Clocks { bits, clocks } => TEXTS.text("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
@@ -132,7 +133,7 @@ pub fn frame(layout: &Layout) -> Text {
 fn unusual_step_cost(layout: &Layout) -> Vec<Text> {
     let descriptor = layout.descriptor();
     let between = (descriptor.between > 0).then(|| TEXTS.text("ssi.frame_between").with("zeros", descriptor.between));
-    let over = (descriptor.coded != Coded::Position).then(|| TEXTS.text("ssi.frame_over"));
+    let over = (descriptor.coded != GrayCoverage::Position).then(|| TEXTS.text("ssi.frame_over"));
     let parity = descriptor.parity.map(|parity| {
         TEXTS.text(if parity.even { "ssi.frame_even" } else { "ssi.frame_odd" }).with("clock", parity.clock)
     });
@@ -189,7 +190,7 @@ pub fn evidence_for(evidence: &Evidence) -> Text {
 
 /// Returns how often and when a finding occurred.
 pub fn noted(noted: &CountedFinding) -> Text {
-    let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
+    let seconds = |time: crate::analysis::SampleTime| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
     TEXTS.text(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
         "last",

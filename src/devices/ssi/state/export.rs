@@ -1,6 +1,6 @@
 //! Export of a layout for other programs.
 
-use super::design::Designer;
+use super::design::LayoutDesigner;
 use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
     ExportText, Picture, bit_table, c99, frame_picture, scl, settings_sheet, structured_text, structured_text_32,
@@ -10,7 +10,7 @@ use crate::devices::ssi::state::explain as words;
 
 /// Export format of a layout; profiles are exported separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
+pub enum ExportFormat {
     C,
     /// IEC 61131-3 structured text function block.
     StructuredText,
@@ -24,65 +24,65 @@ pub enum Format {
     Timing,
 }
 
-impl Format {
-    pub const ALL: [Format; 9] = [
-        Format::C,
-        Format::StructuredText,
-        Format::StructuredText32,
-        Format::Scl,
-        Format::LinuxCnc,
-        Format::Sheet,
-        Format::Table,
-        Format::Frame,
-        Format::Timing,
+impl ExportFormat {
+    pub const ALL: [ExportFormat; 9] = [
+        ExportFormat::C,
+        ExportFormat::StructuredText,
+        ExportFormat::StructuredText32,
+        ExportFormat::Scl,
+        ExportFormat::LinuxCnc,
+        ExportFormat::Sheet,
+        ExportFormat::Table,
+        ExportFormat::Frame,
+        ExportFormat::Timing,
     ];
 
     pub const fn word(self) -> &'static str {
         match self {
-            Format::C => "ssi_export.c",
-            Format::StructuredText => "ssi_export.st",
-            Format::StructuredText32 => "ssi_export.st_32",
-            Format::Scl => "ssi_export.scl",
-            Format::LinuxCnc => "ssi_export.linuxcnc",
-            Format::Sheet => "ssi_export.sheet",
-            Format::Table => "ssi_export.table",
-            Format::Frame => "ssi_export.frame",
-            Format::Timing => "ssi_export.timing",
+            ExportFormat::C => "ssi_export.c",
+            ExportFormat::StructuredText => "ssi_export.st",
+            ExportFormat::StructuredText32 => "ssi_export.st_32",
+            ExportFormat::Scl => "ssi_export.scl",
+            ExportFormat::LinuxCnc => "ssi_export.linuxcnc",
+            ExportFormat::Sheet => "ssi_export.sheet",
+            ExportFormat::Table => "ssi_export.table",
+            ExportFormat::Frame => "ssi_export.frame",
+            ExportFormat::Timing => "ssi_export.timing",
         }
     }
 
     pub const fn hint(self) -> &'static str {
         match self {
-            Format::C => "ssi_export.c_hint",
-            Format::StructuredText => "ssi_export.st_hint",
-            Format::StructuredText32 => "ssi_export.st_32_hint",
-            Format::Scl => "ssi_export.scl_hint",
-            Format::LinuxCnc => "ssi_export.linuxcnc_hint",
-            Format::Sheet => "ssi_export.sheet_hint",
-            Format::Table => "ssi_export.table_hint",
-            Format::Frame => "ssi_export.frame_hint",
-            Format::Timing => "ssi_export.timing_hint",
+            ExportFormat::C => "ssi_export.c_hint",
+            ExportFormat::StructuredText => "ssi_export.st_hint",
+            ExportFormat::StructuredText32 => "ssi_export.st_32_hint",
+            ExportFormat::Scl => "ssi_export.scl_hint",
+            ExportFormat::LinuxCnc => "ssi_export.linuxcnc_hint",
+            ExportFormat::Sheet => "ssi_export.sheet_hint",
+            ExportFormat::Table => "ssi_export.table_hint",
+            ExportFormat::Frame => "ssi_export.frame_hint",
+            ExportFormat::Timing => "ssi_export.timing_hint",
         }
     }
 
-    pub const fn endings(self) -> &'static [&'static str] {
+    pub const fn file_extensions(self) -> &'static [&'static str] {
         match self {
-            Format::C => &["c"],
-            Format::StructuredText | Format::StructuredText32 => &["st"],
-            Format::Scl => &["scl"],
-            Format::LinuxCnc | Format::Sheet => &["txt"],
-            Format::Table => &["csv"],
-            Format::Frame | Format::Timing => &["svg"],
+            ExportFormat::C => &["c"],
+            ExportFormat::StructuredText | ExportFormat::StructuredText32 => &["st"],
+            ExportFormat::Scl => &["scl"],
+            ExportFormat::LinuxCnc | ExportFormat::Sheet => &["txt"],
+            ExportFormat::Table => &["csv"],
+            ExportFormat::Frame | ExportFormat::Timing => &["svg"],
         }
     }
 }
 
-impl Designer {
+impl LayoutDesigner {
     /// Returns the layout in the given format. The language applies to prose; program code is in English.
     ///
     /// # Errors
     /// The part of the layout that the format cannot represent.
-    pub fn export(&self, format: Format, language: Language) -> Result<String, Text> {
+    pub fn export(&self, format: ExportFormat, language: Language) -> Result<String, Text> {
         if let Some(picture) = self.picture(format, language) {
             return Ok(picture.svg());
         }
@@ -90,23 +90,23 @@ impl Designer {
         let title = self.title();
         let say = |text: &ExportText| words::export(text).words(language);
         Ok(match format {
-            Format::C => c99(layout, &title),
-            Format::StructuredText => structured_text(layout, &title),
-            Format::StructuredText32 => structured_text_32(layout, &title).map_err(words::wide)?,
-            Format::Scl => scl(layout, &title).map_err(words::wide)?,
-            Format::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format(&error))? + "\n",
-            Format::Sheet => settings_sheet(layout, self.times(), &title, &say),
-            Format::Table | Format::Frame | Format::Timing => bit_table(layout, &say),
+            ExportFormat::C => c99(layout, &title),
+            ExportFormat::StructuredText => structured_text(layout, &title),
+            ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(words::wide)?,
+            ExportFormat::Scl => scl(layout, &title).map_err(words::wide)?,
+            ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format(&error))? + "\n",
+            ExportFormat::Sheet => settings_sheet(layout, self.times(), &title, &say),
+            ExportFormat::Table | ExportFormat::Frame | ExportFormat::Timing => bit_table(layout, &say),
         })
     }
 
     /// Returns the layout as a picture, or `None` if the format is plain text.
-    pub fn picture(&self, format: Format, language: Language) -> Option<Picture> {
+    pub fn picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| words::export(text).words(language);
         match format {
-            Format::Frame => Some(frame_picture(layout, None, &title, &say)),
-            Format::Timing => Some(timing_picture(layout, &self.applicable_times(), &self.reads(), &title, &say)),
+            ExportFormat::Frame => Some(frame_picture(layout, None, &title, &say)),
+            ExportFormat::Timing => Some(timing_picture(layout, &self.applicable_times(), &self.reads(), &title, &say)),
             _ => None,
         }
     }

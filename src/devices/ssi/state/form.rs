@@ -4,9 +4,9 @@
 mod family;
 mod free;
 
-use super::design::{Designer, Edit};
+use super::design::{Edit, LayoutDesigner};
 use crate::app::{Text, explain};
-use crate::devices::ssi::protocol::{Code, Coded, Descriptor, Direction, Fraction, Range};
+use crate::devices::ssi::protocol::{Code, Descriptor, Direction, Fraction, GrayCoverage, Range};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
@@ -36,7 +36,7 @@ pub enum Entry {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Input {
+pub enum FieldInput {
     Number(u64),
     Choice(usize),
     Switch(bool),
@@ -116,7 +116,7 @@ impl Group {
     }
 
     /// Returns whether the group folds in a low window: all but the position, which is used most, and the error bits.
-    pub fn folds(&self) -> bool {
+    pub fn is_foldable(&self) -> bool {
         matches!(self.title, "ssi_form.frame" | "ssi_form.counting")
     }
 }
@@ -148,7 +148,7 @@ impl Row {
     }
 }
 
-impl Designer {
+impl LayoutDesigner {
     pub fn form(&self) -> Vec<Group> {
         let mut groups = match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => family::groups(self, family, settings),
@@ -184,12 +184,12 @@ impl Designer {
     ///
     /// # Errors
     /// The reason why the entry was refused.
-    pub(super) fn entered(&self, field: Field, input: &Input) -> Result<Edit, Text> {
+    pub(super) fn entered(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
-            (Field::Direction, Input::Choice(0)) => return Ok(Edit::Direction(Direction::Clockwise)),
-            (Field::Direction, Input::Choice(_)) => return Ok(Edit::Direction(Direction::CounterClockwise)),
-            (Field::Preset, Input::Number(preset)) => return Ok(Edit::Preset(*preset)),
+            (Field::Direction, FieldInput::Choice(0)) => return Ok(Edit::Direction(Direction::Clockwise)),
+            (Field::Direction, FieldInput::Choice(_)) => return Ok(Edit::Direction(Direction::CounterClockwise)),
+            (Field::Preset, FieldInput::Number(preset)) => return Ok(Edit::Preset(*preset)),
             (Field::ClockRate | Field::Pause | Field::Cable | Field::Synchronous, input) => {
                 return self.apply_reading_input(field, input).ok_or_else(wrong);
             }
@@ -204,24 +204,26 @@ impl Designer {
         }
     }
 
-    fn apply_reading_input(&self, field: Field, input: &Input) -> Option<Edit> {
+    fn apply_reading_input(&self, field: Field, input: &FieldInput) -> Option<Edit> {
         let mut reading = self.design().profile.reading;
         match (field, input) {
-            (Field::ClockRate, Input::Number(hz)) => {
+            (Field::ClockRate, FieldInput::Number(hz)) => {
                 reading.clock_hz = u32::try_from(*hz).ok().filter(|hz| (1_000..=20_000_000).contains(hz))?;
             }
-            (Field::Pause, Input::Number(us)) => reading.pause_us = u16::try_from(*us).ok().filter(|us| *us > 0)?,
-            (Field::Cable, Input::Number(metres)) => {
+            (Field::Pause, FieldInput::Number(us)) => {
+                reading.pause_us = u16::try_from(*us).ok().filter(|us| *us > 0)?
+            }
+            (Field::Cable, FieldInput::Number(metres)) => {
                 reading.cable_metres = Some(u16::try_from(*metres).ok()?).filter(|metres| *metres > 0);
             }
-            (Field::Synchronous, Input::Switch(is_on)) => reading.synchronous = *is_on,
+            (Field::Synchronous, FieldInput::Switch(is_on)) => reading.synchronous = *is_on,
             _ => return None,
         }
         Some(Edit::Reading(reading))
     }
 }
 
-fn counting(designer: &Designer) -> Group {
+fn counting(designer: &LayoutDesigner) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
     let words = |direction| {
@@ -244,19 +246,19 @@ fn counting(designer: &Designer) -> Group {
 }
 
 const CODES: [Code; 4] = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd];
-const OVER: [Coded; 3] = [Coded::Position, Coded::Area, Coded::AreaAndErrors];
+const OVER: [GrayCoverage; 3] = [GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors];
 
 fn code_row(own: Code) -> Row {
     let all = CODES.map(|code| (code, words::code(code)));
     Row::choice(Field::Code, "ssi_form.code", &all, &own)
 }
 
-fn over_row(own: Coded) -> Row {
+fn coded_range_row(own: GrayCoverage) -> Row {
     let words = |coded| {
         TEXTS.text(match coded {
-            Coded::Position => "ssi_form.over_position",
-            Coded::Area => "ssi_form.over_area",
-            Coded::AreaAndErrors => "ssi_form.over_errors",
+            GrayCoverage::Position => "ssi_form.over_position",
+            GrayCoverage::Area => "ssi_form.over_area",
+            GrayCoverage::AreaAndErrors => "ssi_form.over_errors",
         })
     };
     Row::choice(Field::Over, "ssi_form.over", &OVER.map(|coded| (coded, words(coded))), &own)
@@ -321,7 +323,7 @@ fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) 
     }
     rows.push(code_row(descriptor.code));
     if descriptor.code == Code::Gray {
-        rows.push(over_row(descriptor.coded));
+        rows.push(coded_range_row(descriptor.coded));
     }
     rows
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::design::Designer;
+use super::design::LayoutDesigner;
 use super::families::families;
 use super::{Encoder, SsiForm};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Session, Source};
+use crate::app::session::{HasDraft, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{DeviceType, Text};
 use crate::devices::ssi::jobs::{Ssi, check};
@@ -39,8 +39,8 @@ impl DeviceType for Encoder {
     fn begin(session: Session<Ssi>, profile: Option<(&SsiProfile, ())>, services: &mut Services) -> Self {
         let families = families(services);
         let mut designer = match &session.source {
-            Source::Link(url) => Designer::at_link(url, families),
-            Source::File { .. } | Source::New { .. } => Designer::delivered(families),
+            Source::Link(url) => LayoutDesigner::at_link(url, families),
+            Source::File { .. } | Source::New { .. } => LayoutDesigner::factory_default(families),
         };
         if let Some((profile, ())) = profile {
             designer.open(profile.clone());
@@ -53,7 +53,7 @@ impl DeviceType for Encoder {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
         let suggested = names.find(|name| !is_taken(name))?;
-        let mut encoder = Self::begin(Session::of_nothing(id, suggested), None, services);
+        let mut encoder = Self::begin(Session::new_unsaved(id, suggested), None, services);
         encoder.load_draft(services);
         Some(encoder)
     }

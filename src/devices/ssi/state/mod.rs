@@ -27,13 +27,13 @@ mod words;
 
 pub use texts::TEXTS;
 
-pub use action::{SsiAction, Try};
+pub use action::{SsiAction, TrialInput};
 pub use connect_form::{SsiForm, SsiLinkKind};
-pub use design::{Design, Designer, Edit};
+pub use design::{Design, Edit, LayoutDesigner};
 pub use encoder::Encoder;
-pub use export::Format;
-pub use form::{Entry, Field, Group, Input, Row, whole};
-pub use record::{ReadWord, Record, Streamed};
+pub use export::ExportFormat;
+pub use form::{Entry, Field, FieldInput, Group, Row, whole};
+pub use record::{ReceivedWord, Record, Streamed};
 pub use search::{Frames, Origin, SearchState, frames_of, read_clocks, read_frames};
 pub use trial::{Decoded, Trial};
 

@@ -6,14 +6,14 @@ use super::design::Edit;
 use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
 use crate::app::action::Opened;
 use crate::app::documents::{document_of, read_only_reason};
-use crate::app::services::{Environment, JobEnd, Services};
-use crate::app::session::{Drafted, SessionEvents, Source};
+use crate::app::services::{Environment, JobState, Services};
+use crate::app::session::{HasDraft, SessionEvents, Source};
 use crate::app::{
-    ActContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
+    ActionContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
 };
 use crate::devices::ssi::jobs::{Ssi, SsiJob};
 use crate::link::LinkUrl;
-use crate::profile::{Body, Document, ProfileError};
+use crate::profile::{Body, ProfileDocument, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Ssi");
@@ -21,12 +21,12 @@ impl DeviceModel for Encoder {
     type Done = Done;
 
     fn prepare(&self, _world: &Environment) -> Prepare<Ssi> {
-        let asking = self.asking();
+        let asking = self.query_settings();
         Box::new(move |session| session.request_settings(asking))
     }
 
     fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
+        self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.requested = None;
@@ -37,7 +37,7 @@ impl DeviceModel for Encoder {
         self.submit(SsiJob::Hello, services);
     }
 
-    fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: SsiAction, context: &mut ActionContext<'_>) {
         Encoder::act(self, action, context);
     }
 
@@ -72,7 +72,7 @@ impl DeviceModel for Encoder {
         }
         let body = Body::new(self.wanted_profile());
         let document = match &self.session.source {
-            Source::File { document, .. } => Document { body, ..(**document).clone() },
+            Source::File { document, .. } => ProfileDocument { body, ..(**document).clone() },
             Source::Link(_) | Source::New { .. } => document_of(body),
         };
         self.session.write_document(path, document, Vec::new(), services);
@@ -126,7 +126,7 @@ impl DeviceModel for Encoder {
         true
     }
 
-    fn take_link(&mut self, url: &LinkUrl) {
+    fn switch_link(&mut self, url: &LinkUrl) {
         if let Source::Link(before) = &self.session.source {
             self.edit(Edit::Reading(self.designer.reading_after_link_change(before, url)));
         }

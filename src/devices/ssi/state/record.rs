@@ -8,12 +8,12 @@ use std::time::Duration;
 use jiff::Zoned;
 
 use super::trial::Decoded;
-use crate::analysis::Time;
+use crate::analysis::SampleTime;
 use crate::app::Recording;
 use crate::app::recorder::Recorder;
-use crate::app::track::{Meaning, PositionSample, Track};
+use crate::app::track::{DeviceRecorder, Meaning, PositionSample};
 use crate::devices::ssi::procedures::Words;
-use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
+use crate::devices::ssi::protocol::{Descriptor, FindingCounts, Flags, Layout, Meaning as Says, Range};
 use crate::units::Moment;
 
 /// Number of raw words kept, for decoding with another layout and for searches.
@@ -21,22 +21,22 @@ const KEPT: usize = 40_000;
 
 /// Words read from an encoder, decoded with its layout.
 pub struct Record {
-    track: Track<Infallible>,
+    track: DeviceRecorder<Infallible>,
     layout: Layout,
     meaning: Meaning,
     kept: VecDeque<Words>,
     /// Total number of words in `kept`.
     held: usize,
-    tally: Tally,
+    tally: FindingCounts,
     /// Time up to which findings are hidden, if any.
     forgotten: Option<Moment>,
-    last: Option<ReadWord>,
+    last: Option<ReceivedWord>,
     stream: Option<Streamed>,
     lost: u64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReadWord {
+pub struct ReceivedWord {
     pub at: Moment,
     pub clocks: u8,
     /// Decoded word, or `None` if the layout has a different number of clocks.
@@ -53,7 +53,7 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    pub fn hz(&self) -> f64 {
+    pub fn frame_rate_hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
 
@@ -66,9 +66,9 @@ impl Streamed {
 impl Record {
     pub(super) fn new(layout: Layout) -> Self {
         Record {
-            track: Track::default(),
+            track: DeviceRecorder::default(),
             meaning: meaning(&layout),
-            tally: Tally::default(),
+            tally: FindingCounts::default(),
             forgotten: None,
             layout,
             kept: VecDeque::new(),
@@ -90,12 +90,12 @@ impl Record {
         match self.stream {
             // Even if words were dropped, their numbers show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.note_dropped(dropped),
+            _ => self.track.record_dropped(dropped),
         }
         for run in runs {
             self.follow(&run);
             self.see(&run);
-            self.buffer(run);
+            self.buffer_run(run);
         }
     }
 
@@ -122,7 +122,7 @@ impl Record {
             }
             let reading = self.layout.decode(word);
             if self.forgotten.is_none_or(|until| at > until) {
-                self.tally.note(&self.layout, reading, Time::from(at));
+                self.tally.note(&self.layout, reading, SampleTime::from(at));
             }
             let is_bad = !self.layout.is_valid(reading);
             let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
@@ -133,12 +133,16 @@ impl Record {
         }
         self.track.add(&sightings, &self.meaning);
         if let Some((at, word)) = run.timed().last() {
-            self.last =
-                Some(ReadWord { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
+            self.last = Some(ReceivedWord {
+                at,
+                clocks: run.clocks,
+                decoded: fits.then(|| Decoded::of(&self.layout, word)),
+                word,
+            });
         }
     }
 
-    fn buffer(&mut self, run: Words) {
+    fn buffer_run(&mut self, run: Words) {
         self.held += run.words.len();
         self.kept.push_back(run);
         while self.held > KEPT && self.kept.len() > 1 {
@@ -152,7 +156,7 @@ impl Record {
             return;
         }
         let before = std::mem::replace(&mut self.layout, layout.clone());
-        if without_names(&before) == without_names(layout) {
+        if unnamed_descriptor(&before) == unnamed_descriptor(layout) {
             self.tally.rename();
             if let Some(last) = self.last.as_mut() {
                 last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
@@ -161,7 +165,7 @@ impl Record {
         }
         self.meaning = meaning(layout);
         self.tally.reset();
-        self.track.restart_line(self.held);
+        self.track.restart_decoding(self.held);
         let kept = std::mem::take(&mut self.kept);
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {
@@ -196,7 +200,7 @@ impl Record {
         })
     }
 
-    pub fn tally(&self) -> &Tally {
+    pub fn tally(&self) -> &FindingCounts {
         &self.tally
     }
 
@@ -206,7 +210,7 @@ impl Record {
         self.forgotten = self.last.as_ref().map(|last| last.at);
     }
 
-    pub fn last(&self) -> Option<&ReadWord> {
+    pub fn last(&self) -> Option<&ReceivedWord> {
         self.last.as_ref()
     }
 
@@ -230,8 +234,8 @@ impl Recording for Record {
     }
 
     // Words that an adapter could not send are included.
-    fn dropped(&self) -> u64 {
-        self.track.dropped().saturating_add(self.lost)
+    fn dropped_count(&self) -> u64 {
+        self.track.dropped_count().saturating_add(self.lost)
     }
 
     fn poll(&mut self, interval: Option<Duration>, begins: bool) {
@@ -243,7 +247,7 @@ impl Recording for Record {
 }
 
 /// Returns the part of the layout that determines positions and verdicts.
-fn without_names(layout: &Layout) -> Descriptor {
+fn unnamed_descriptor(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
     descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
     descriptor.patterns.iter_mut().for_each(|pattern| pattern.name.clear());
@@ -255,13 +259,13 @@ fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
     match range {
-        Range::Bits { singleturn, .. } => Meaning::of_turns(all, f64::from(singleturn).exp2()),
-        Range::Steps { per_turn, .. } => Meaning::of_turns(all, per_turn.into()),
+        Range::Bits { singleturn, .. } => Meaning::for_turns(all, f64::from(singleturn).exp2()),
+        Range::Steps { per_turn, .. } => Meaning::for_turns(all, per_turn.into()),
         Range::RoundAxis { steps, revolutions } => {
             let around = f64::from(steps) * f64::from(revolutions.denominator);
-            Meaning::of_turns(all, around / f64::from(revolutions.numerator))
+            Meaning::for_turns(all, around / f64::from(revolutions.numerator))
         }
-        Range::Length { step_nanometres, .. } => Meaning::of_millimetres(f64::from(step_nanometres) * 1e-6),
+        Range::Length { step_nanometres, .. } => Meaning::for_millimetres(f64::from(step_nanometres) * 1e-6),
     }
 }
 

@@ -8,10 +8,10 @@ use std::path::Path;
 
 use super::form::whole;
 use crate::app::{Text, explain};
-use crate::devices::ssi::protocol::{Bursts, FrameTextError, Search, bursts, parse_frame};
+use crate::devices::ssi::protocol::{ExtractedFrames, FrameTextError, Search, bursts, parse_frame};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
-use crate::store::{FileError, FileProblem, read_file};
+use crate::store::{FileError, FileErrorKind, read_file};
 
 /// Maximum number of frames searched, counted from the newest.
 pub(super) const MOST: usize = 8_000;
@@ -90,7 +90,7 @@ pub fn frames_of(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
 
 fn file(error: &FileError) -> Text {
     match &error.problem {
-        FileProblem::TooLarge { limit } => {
+        FileErrorKind::TooLarge { limit } => {
             let path = error.path.display();
             TEXTS.text("ssi_capture.too_large").with("path", path).with("megabytes", limit >> 20)
         }
@@ -98,8 +98,8 @@ fn file(error: &FileError) -> Text {
     }
 }
 
-fn of_bursts(bursts: Bursts) -> Frames {
-    let Bursts { clocks, frames, left_out } = bursts;
+fn of_bursts(bursts: ExtractedFrames) -> Frames {
+    let ExtractedFrames { clocks, frames, left_out } = bursts;
     Frames { origin: Origin::Live, clocks, frames, left_out, are_numbers: false }
 }
 

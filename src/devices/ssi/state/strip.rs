@@ -9,7 +9,7 @@ mod words;
 pub use moving::moved;
 pub use words::{bare, cell, clocks, field, handle, hint, name, reach_text, short, value};
 
-use crate::devices::ssi::protocol::{Coded, Flags, Layout, Meaning, Range, Role, Word};
+use crate::devices::ssi::protocol::{Flags, GrayCoverage, Layout, Meaning, Range, Role, Word};
 
 /// Frame divided into cells and fields.
 #[derive(Clone, Debug, PartialEq)]
@@ -186,7 +186,7 @@ impl Strip {
                         descriptor.errors.get(index).map(|bit| bit.meaning)
                     }
                     // Elsewhere a zero may carry the Gray code of its neighbours.
-                    Role::Zero if descriptor.coded == Coded::Position && cell.bit != descriptor.inverted => {
+                    Role::Zero if descriptor.coded == GrayCoverage::Position && cell.bit != descriptor.inverted => {
                         Some(Meaning::Warning)
                     }
                     Role::Parity if flags.has(Flags::PARITY) => Some(Meaning::Invalid),

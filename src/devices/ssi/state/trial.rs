@@ -63,7 +63,7 @@ impl Trial {
     }
 
     /// Sets the frame to the given turn and step within the turn.
-    pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
+    pub(super) fn set_turn_and_step(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
             None => self.problem = Some(TEXTS.text("ssi_trial.place").with("turns", turns).with("steps", steps)),

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::Connect as Dialog;
+use crate::app::connect::ConnectDialog as Dialog;
 use crate::devices::ssi::state::{SsiForm, SsiLinkKind};
 use crate::devices::ssi::views::say;
 use crate::parameter::Entry;
@@ -49,7 +49,7 @@ impl TypedConnectForm for SsiConnectForm {
             SsiLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
         if form.kind != SsiLinkKind::Replay && expandable_ui(ui, theme, more) {
-            let (supply, rest) = SsiForm::of_the_link();
+            let (supply, rest) = SsiForm::link_entries();
             let none = say(theme, "connect.voltage_none");
             typed(ui, theme, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);
             paragraph(ui, theme.caption(say(theme, "connect.voltage_words")));

@@ -9,7 +9,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card_with, empty_placeholder, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -46,7 +46,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     };
     card_with(ui, theme, TEXTS.text("ssi_adapter.title"), read, |ui| {
         let Some(identity) = &encoder.identity else {
-            empty(ui, theme, &say(theme, "ssi_adapter.nothing"), None);
+            empty_placeholder(ui, theme, &say(theme, "ssi_adapter.nothing"), None);
             return;
         };
         let hello = &identity.hello;
@@ -101,7 +101,7 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(colour));
                 ui.vertical(|ui| {
-                    paragraph(ui, theme.words(&words::finding(&own.finding)));
+                    paragraph(ui, theme.words(&words::finding_text(&own.finding)));
                     paragraph(ui, theme.caption(theme.words(&words::noted(own))));
                 });
             });

@@ -4,14 +4,14 @@ use egui::{ScrollArea, Ui};
 
 use super::picture::picture_ui;
 use crate::app::{Action, DeviceCommand};
-use crate::devices::ssi::state::{Encoder, Format, SsiAction as Ssi, TEXTS};
+use crate::devices::ssi::state::{Encoder, ExportFormat, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{button, card, card_with, enabled_button, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct ExportUiState {
-    format: Option<Format>,
+    format: Option<ExportFormat>,
 }
 
 pub(super) fn page_ui(
@@ -22,9 +22,9 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     let id = encoder.session.id;
-    let own = view.format.unwrap_or(Format::Sheet);
+    let own = view.format.unwrap_or(ExportFormat::Sheet);
     ui.horizontal_wrapped(|ui| {
-        for format in Format::ALL {
+        for format in ExportFormat::ALL {
             let word = say(theme, format.word());
             let response = ui.add(egui::Button::selectable(own == format, &word));
             if name(response, true, &word).on_hover_text(say(theme, format.hint())).clicked() {

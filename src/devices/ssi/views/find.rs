@@ -10,7 +10,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary, problem_below, row,
+    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary, row, show_error_below,
     spinner,
 };
 use crate::ui::{Theme, icons};
@@ -81,7 +81,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
                 ask(Ssi::SetClocks(None));
             }
         });
-        problem_below(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
+        show_error_below(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
         row(ui, theme, &say(theme, "ssi_find.read"), theme.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {
@@ -196,7 +196,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) 
     let family = encoder.designer.families().named(key);
     // With the fewest settings; exchanged wires are not one of them.
     let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
-    let fewest = family.and_then(|family| family.settings_of(&frame));
+    let fewest = family.and_then(|family| family.settings_for_frame(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(name).font(theme.strong(theme.sizes.body)));

@@ -8,9 +8,9 @@ use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
-use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
+use crate::devices::ssi::state::{Encoder, Entry, Field, FieldInput, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
-use crate::ui::controls::{choice, committed_entry, entry, label_width, problem_beside};
+use crate::ui::controls::{choice, committed_entry, entry, label_width, show_error_beside};
 
 #[derive(Default)]
 pub(super) struct LayoutFormUiState {
@@ -38,7 +38,7 @@ pub(super) fn rows_ui(
                     ui.add_space(label_width(ui) + ui.spacing().item_spacing.x);
                     let response = ui.checkbox(&mut is_on, &word);
                     if response.changed() {
-                        put(Input::Switch(is_on));
+                        put(FieldInput::Switch(is_on));
                     }
                     response
                 })
@@ -50,7 +50,7 @@ pub(super) fn rows_ui(
                 let inner = ui.scope(|ui| {
                     entry(ui, theme, &word, |ui| {
                         if choice(ui, &word, &mut own, all) {
-                            put(Input::Choice(own));
+                            put(FieldInput::Choice(own));
                         }
                     });
                 });
@@ -60,7 +60,7 @@ pub(super) fn rows_ui(
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
                     let response = committed_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
-                        put(Input::Number(whole(text)?));
+                        put(FieldInput::Number(whole(text)?));
                         Ok(())
                     });
                     // The arrow keys count.
@@ -69,13 +69,13 @@ pub(super) fn rows_ui(
                             ui.input(|input| (input.key_pressed(Key::ArrowUp), input.key_pressed(Key::ArrowDown)));
                         if up || down {
                             *draft = None;
-                            put(Input::Number(if up { value.saturating_add(1) } else { value.saturating_sub(1) }));
+                            put(FieldInput::Number(if up { value.saturating_add(1) } else { value.saturating_sub(1) }));
                         }
                     }
                     if let Some(unit) = unit {
                         ui.label(theme.label(theme.words(unit)));
                     }
-                    problem_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, refusal(draft));
                     response
                 })
             }
@@ -84,10 +84,10 @@ pub(super) fn rows_ui(
                 let shown = theme.words(&frequency((*hertz).into()));
                 entry(ui, theme, &word, |ui| {
                     let response = committed_entry(ui, draft, &shown, NUMBER, &word, |text| {
-                        put(Input::Number(read_frequency(text)?.into()));
+                        put(FieldInput::Number(read_frequency(text)?.into()));
                         Ok(())
                     });
-                    problem_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, refusal(draft));
                     response
                 })
             }
@@ -95,10 +95,10 @@ pub(super) fn rows_ui(
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
                     let response = committed_entry(ui, draft, words, NAME, &word, |text| {
-                        put(Input::Words(text.to_owned()));
+                        put(FieldInput::Words(text.to_owned()));
                         Ok(())
                     });
-                    problem_beside(ui, theme, refusal(draft));
+                    show_error_beside(ui, theme, refusal(draft));
                     response
                 })
             }

@@ -9,12 +9,12 @@ use crate::app::{Action, AnyDevice, DeviceCommand, DeviceModel, PendingEdits, St
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
-use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, Try};
+use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, TrialInput};
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
     button, card_with, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph, primary,
-    problem_below, two_columns,
+    show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -92,11 +92,11 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
                 }
             });
         }
-        problem_below(ui, theme, designer.problem());
+        show_error_below(ui, theme, designer.problem());
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
-                paragraph(ui, theme.caption(theme.words(&words::advice(advice))));
+                paragraph(ui, theme.caption(theme.words(&words::advice_text(advice))));
             });
         }
         if designer.layout().loses_lowest_bit() {
@@ -190,7 +190,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
         Some(StripEvent::Selected(clock)) => view.selected = Some(clock),
         Some(StripEvent::Toggled(clock)) => {
             view.selected = Some(clock);
-            actions.push(Action::device(id, Ssi::Try(Try::Toggle(clock))));
+            actions.push(Action::device(id, Ssi::Try(TrialInput::Toggle(clock))));
         }
         // The strip shows the resulting frame by itself.
         Some(StripEvent::Preview(..)) | None => {}
@@ -229,7 +229,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
             }
         };
         let title = TEXTS.text(group.title);
-        if group.folds() {
+        if group.is_foldable() {
             folding_card(ui, theme, title, content);
         } else {
             card_with(ui, theme, title, aside, content);

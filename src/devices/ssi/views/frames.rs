@@ -4,7 +4,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, Rgb};
 use crate::devices::ssi::protocol::Location;
-use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try};
+use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput};
 use crate::devices::ssi::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph};
@@ -45,7 +45,7 @@ pub(super) fn card_ui(
                 let text = RichText::new(words).monospace().color(colour);
                 if ui.add(egui::Button::new(text).frame(false)).clicked() {
                     let bits = format!("0x{frame:X}");
-                    actions.push(Action::device(encoder.session.id, Ssi::Try(Try::Bits(bits))));
+                    actions.push(Action::device(encoder.session.id, Ssi::Try(TrialInput::Bits(bits))));
                 }
             }
         });

@@ -58,7 +58,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     if let Some(stream) = encoder.streamed() {
         let clock_hz = encoder.identity.as_ref().map_or(0, |identity| identity.clock_hz);
         let text = TEXTS.text(if stream.is_limited() { "live.streamed_all" } else { "live.streamed" });
-        let text = text.with_number("count", stream.hz(), 0).with_number("clock", f64::from(clock_hz) / 1e6, 1);
+        let text =
+            text.with_number("count", stream.frame_rate_hz(), 0).with_number("clock", f64::from(clock_hz) / 1e6, 1);
         ui.add(egui::Label::new(theme.caption(theme.words(&text))).wrap())
             .on_hover_text(theme.say("live.streamed_hint"));
     }

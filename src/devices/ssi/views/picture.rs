@@ -5,7 +5,7 @@ use egui::{
     Align2, Color32, FontId, Pos2, Rect, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
 };
 
-use crate::devices::ssi::protocol::{PathStep, Picture, PictureLabel, PictureShape};
+use crate::devices::ssi::protocol::{Picture, PictureLabel, PictureShape, PolylineSegment};
 use crate::ui::Theme;
 
 /// Minimum scale at which the numbers are legible; below this scale, the picture scrolls.
@@ -66,18 +66,18 @@ impl DiagramCanvas<'_> {
         }
     }
 
-    fn line(&self, path: &[PathStep], colour: Color32) {
+    fn line(&self, path: &[PolylineSegment], colour: Color32) {
         let stroke = Stroke::new(self.scale, colour);
         let mut runs: Vec<Vec<Pos2>> = Vec::new();
         for step in path {
             let last = runs.last().and_then(|run| run.last()).copied().unwrap_or(self.origin);
             let next = match step {
-                PathStep::Move(x, y) => {
+                PolylineSegment::Move(x, y) => {
                     runs.push(vec![self.at(x.units(), *y)]);
                     continue;
                 }
-                PathStep::Across(x) => pos2(self.at(x.units(), 0).x, last.y),
-                PathStep::Down(y) => pos2(last.x, self.at(0.0, *y).y),
+                PolylineSegment::Across(x) => pos2(self.at(x.units(), 0).x, last.y),
+                PolylineSegment::Down(y) => pos2(last.x, self.at(0.0, *y).y),
             };
             if let Some(run) = runs.last_mut() {
                 run.push(next);

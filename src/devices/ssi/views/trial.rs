@@ -5,10 +5,11 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Location, Meaning, frame_bits};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try, whole};
+use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput, whole};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card_with, committed_entry, entry, icon_button, mono_entry, name, paragraph, problem_below, problem_beside, row,
+    card_with, committed_entry, entry, icon_button, mono_entry, name, paragraph, row, show_error_below,
+    show_error_beside,
 };
 use crate::ui::{Theme, icons};
 
@@ -49,14 +50,14 @@ pub(super) fn card_ui(
             let response =
                 ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(theme, "ssi_trial.live_hint"));
             if name(response, true, &word).clicked() && !is_live {
-                action = Some(Try::Live);
+                action = Some(TrialInput::Live);
             }
         }
     };
     card_with(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
         numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits_ui(ui, theme, encoder, &shown, view, actions);
-        problem_below(ui, theme, encoder.trial.problem());
+        show_error_below(ui, theme, encoder.trial.problem());
         findings_ui(ui, theme, &shown);
     });
     actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
@@ -69,7 +70,7 @@ fn numbers(
     encoder: &Encoder,
     shown: &Decoded,
     view: &mut TrialUiState,
-    put: &mut dyn FnMut(Try),
+    put: &mut dyn FnMut(TrialInput),
 ) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
     let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
@@ -77,7 +78,7 @@ fn numbers(
     let word = say(theme, "ssi_trial.position");
     entry(ui, theme, &word, |ui| {
         committed_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
-            put(Try::Position(whole(text)?));
+            put(TrialInput::Position(whole(text)?));
             Ok(())
         });
         refused_ui(ui, theme, view.position.as_ref());
@@ -87,14 +88,14 @@ fn numbers(
             let (own_turns, own_steps) = (theme.say("live.turns"), theme.say("live.step"));
             entry(ui, theme, &own_turns, |ui| {
                 committed_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
-                    put(Try::Place(whole(text)?, steps));
+                    put(TrialInput::Place(whole(text)?, steps));
                     Ok(())
                 });
                 refused_ui(ui, theme, view.turns.as_ref());
             });
             entry(ui, theme, &own_steps, |ui| {
                 committed_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
-                    put(Try::Place(turns, whole(text)?));
+                    put(TrialInput::Place(turns, whole(text)?));
                     Ok(())
                 });
                 refused_ui(ui, theme, view.steps.as_ref());
@@ -109,7 +110,7 @@ fn numbers(
 }
 
 fn refused_ui(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
-    problem_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
+    show_error_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
 fn bits_ui(
@@ -140,7 +141,7 @@ fn bits_ui(
     if response.has_focus() {
         view.bits = Some(text);
     } else if response.lost_focus() && text.trim() != own {
-        actions.push(Action::device(encoder.session.id, Ssi::Try(Try::Bits(text))));
+        actions.push(Action::device(encoder.session.id, Ssi::Try(TrialInput::Bits(text))));
     }
 }
 
@@ -156,7 +157,7 @@ fn findings_ui(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, theme.words(&words::finding(finding)));
+            paragraph(ui, theme.words(&words::finding_text(finding)));
         });
     }
 }

@@ -6,13 +6,13 @@ use super::*;
 use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
 use crate::app::services::Environment;
-use crate::app::{Kinds, Tool};
-use crate::signals::state::{Judge, SignalsAction};
+use crate::app::{KindRegistry, Tool};
+use crate::signals::state::{DiagnosisSettings, SignalsAction};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(Environment::real(Store::at(folder.path()), Kinds::NONE), Arc::new(|| ())), folder)
+    (Services::new(Environment::real(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())), folder)
 }
 
 fn started(services: &mut Services) -> Signals {
@@ -22,7 +22,7 @@ fn started(services: &mut Services) -> Signals {
     signals
 }
 
-fn measurement(judge: Judge) -> Measurement {
+fn measurement(judge: DiagnosisSettings) -> Measurement {
     let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
     let capture = Capture {
         sine_v: (0..1000).map(|at| 0.42 * angle(at).sin()).collect(),
@@ -55,9 +55,9 @@ fn notice_ids(services: &Services) -> Vec<&'static str> {
 fn a_shortened_window_reports_its_length() {
     let mut source = Source { window_ms: 5_000, ..Source::default() };
     // 500 000 samples at 100 kHz and at 1 MHz.
-    assert_eq!(source.shortened_ms(), None);
+    assert_eq!(source.limited_window_ms(), None);
     source.settings.rate_hz = 1e6;
-    assert_eq!(source.shortened_ms(), Some(500.0));
+    assert_eq!(source.limited_window_ms(), Some(500.0));
 }
 
 #[test]
@@ -92,17 +92,17 @@ fn a_failed_task_is_reported_and_no_longer_awaited() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_mut().unwrap().measuring = true;
-    signals.done(Done::Failed(Failed::Measure(signals.source.runs + 1)), &mut services);
+    signals.done(Done::Failed(FailedTask::Measure(signals.source.runs + 1)), &mut services);
     assert!(signals.source.is_running(), "of an earlier start");
-    signals.done(Done::Failed(Failed::Measure(signals.source.runs)), &mut services);
+    signals.done(Done::Failed(FailedTask::Measure(signals.source.runs)), &mut services);
     assert!(!signals.source.is_running());
     signals.act(SignalsAction::Open("/nowhere/at.all.csv".into()), &mut services);
     let number = signals.reading().unwrap().number;
-    signals.done(Done::Failed(Failed::Read(number + 1)), &mut services);
+    signals.done(Done::Failed(FailedTask::Read(number + 1)), &mut services);
     assert!(signals.reading().is_some(), "of another attempt");
-    signals.done(Done::Failed(Failed::Read(number)), &mut services);
+    signals.done(Done::Failed(FailedTask::Read(number)), &mut services);
     assert!(signals.reading().is_none());
-    signals.done(Done::Failed(Failed::Judge), &mut services);
+    signals.done(Done::Failed(FailedTask::Judge), &mut services);
     let expected = ["signals.measuring_failed", "signals.reading_failed", "signals.judging_failed"];
     let told = notice_ids(&services);
     assert!(told.len() == 3 && expected.iter().all(|id| told.contains(id)), "{told:?}");

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, Typed};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, Typed};
 use crate::app::{Action, explain};
 use crate::link::Echo;
 use crate::parameter::Entry;
@@ -107,7 +107,7 @@ pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIter
 }
 
 /// Draws the parameter entries side by side, each followed by its label.
-pub(crate) fn typed_in_a_row(
+pub(crate) fn entry_row(
     ui: &mut Ui,
     theme: &Theme,
     say: Say,

@@ -5,7 +5,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
+use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use crate::ui::Theme;
 
 pub trait TypedConnectForm: 'static {

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKin
 
 use super::MapField;
 use super::strip::{Strip, widest};
-use crate::ui::widgets::{focus_ring, hatch, series};
+use crate::ui::widgets::{draw_hatching, focus_ring, series};
 use crate::ui::{Theme, icons};
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,7 +39,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
         let strength = if state.hovered { 0.34 } else { 0.22 };
         painter.rect_filled(rect, corners, colour.gamma_multiply(strength));
         if field.unreadable {
-            hatch(painter, theme, rect, colour.gamma_multiply(0.3));
+            draw_hatching(painter, theme, rect, colour.gamma_multiply(0.3));
         }
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left() + strip.block.x;
@@ -58,13 +58,13 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
         }
     }
     if let Some(run) = runs.get(widest(runs)) {
-        inscribe(ui, theme, *run, field);
+        draw_inscription(ui, theme, *run, field);
     }
 }
 
 /// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, the
 /// icons replace the caption.
-fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
+fn draw_inscription(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
     let painter = ui.painter();

@@ -1,7 +1,7 @@
 //! The layout of the fields of a frame: on as few lines as possible, with all bits in cells of one width.
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SpaceNeeded {
+pub(super) struct RequiredSpace {
     pub(super) bits: usize,
     /// Width of the text below the field.
     pub(super) words: f32,
@@ -45,13 +45,13 @@ fn groups(from: usize, to: usize, field_bits: usize) -> usize {
 }
 
 /// Places the fields within a width, separated by `gap`. A field longer than a line is split.
-pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> StripPlacement {
+pub(super) fn place(wants: &[RequiredSpace], width: f32, gap: f32) -> StripPlacement {
     let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
     let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
     fits.unwrap_or_default()
 }
 
-fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> StripPlacement {
+fn with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> StripPlacement {
     let mut placing = StripPlacement { cell, ..StripPlacement::default() };
     let (mut left, mut line) = (0.0, 0);
     for (field, want) in wants.iter().enumerate() {
@@ -89,8 +89,8 @@ mod tests {
     const GAP: f32 = 8.0;
 
     /// Returns the frame of the kit encoder, with its acknowledge, start and control bits.
-    fn kit() -> Vec<SpaceNeeded> {
-        let want = |(bits, words)| SpaceNeeded { bits, words };
+    fn kit() -> Vec<RequiredSpace> {
+        let want = |(bits, words)| RequiredSpace { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]
             .map(want)
             .into_iter()
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_field_longer_than_a_line_is_split_at_bytes() {
-        let wants = [SpaceNeeded { bits: 64, words: 50.0 }];
+        let wants = [RequiredSpace { bits: 64, words: 50.0 }];
         let placing = place(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
         let parts: Vec<(usize, usize)> = placing.pieces.iter().map(|own| (own.first, own.bits)).collect();
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn an_empty_frame_takes_no_space() {
         assert_eq!(place(&[], 100.0, GAP).lines, 0);
-        let none = [SpaceNeeded { bits: 0, words: 10.0 }];
+        let none = [RequiredSpace { bits: 0, words: 10.0 }];
         assert!(place(&none, f32::NAN, GAP).pieces.is_empty());
         assert!(!place(&kit(), 0.0, GAP).pieces.is_empty());
     }

@@ -67,7 +67,7 @@ impl Grid {
         Rect::from_min_size(origin + Vec2::new(left, self.row * line as f32), Vec2::new(width, self.row))
     }
 
-    pub(super) fn hit(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
+    pub(super) fn cell_under_pointer(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
         let (column, at) = self.nearest(origin, pos, Column::Hex, true);
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }

@@ -19,7 +19,7 @@ struct KeyReaction {
 /// cannot leave the widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
-    ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));
+    ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
     if let Some(text) = reaction.copied {
         ui.copy_text(text);
     }
@@ -29,7 +29,7 @@ pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<H
     reaction.edits
 }
 
-fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
+fn handle_input(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     match event {
         Event::Key { pressed: true, .. } | Event::Text(_) | Event::Paste(_) | Event::Copy => view.problem = None,
         _ => return false,
@@ -45,7 +45,7 @@ fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
             walk(*key, *modifiers, model, view) || act(*key, *modifiers, model, view, reaction)
         }
         Event::Copy => {
-            reaction.copied = model.wanted.get(view.selection()).map(|bytes| copy(bytes, view.column));
+            reaction.copied = model.wanted.get(view.selection()).map(|bytes| clipboard_text(bytes, view.column));
             true
         }
         Event::Text(text) => {
@@ -146,7 +146,7 @@ fn change(
     }
 }
 
-fn copy(bytes: &[u8], column: Column) -> String {
+fn clipboard_text(bytes: &[u8], column: Column) -> String {
     match column {
         Column::Hex => bits::hex(bytes),
         Column::Text => bytes.iter().map(|byte| bits::ascii(*byte).unwrap_or(bits::NOT_PRINTABLE)).collect(),

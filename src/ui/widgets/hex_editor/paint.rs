@@ -25,7 +25,7 @@ pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &He
     painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-struct Brush<'a> {
+struct HexPainter<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     grid: &'a Grid,
@@ -48,7 +48,7 @@ pub(super) fn lines(
     hovered: Option<(Column, usize)>,
 ) {
     let hovered = hovered.map(|(_, at)| at);
-    let brush = Brush { ui, theme, grid, origin, model, view, focused: response.has_focus(), hovered };
+    let brush = HexPainter { ui, theme, grid, origin, model, view, focused: response.has_focus(), hovered };
     let seen = ui.clip_rect();
     let line_at = |y: f32| ((y - origin.y) / grid.row).floor().max(0.0) as usize;
     let (first, last) = (line_at(seen.top()), line_at(seen.bottom()) + 1);
@@ -60,7 +60,7 @@ pub(super) fn lines(
     }
 }
 
-impl Brush<'_> {
+impl HexPainter<'_> {
     fn line(&self, line: usize) {
         let start = line * WIDTH;
         let end = (start + WIDTH).min(self.model.wanted.len());

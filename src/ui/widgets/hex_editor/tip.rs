@@ -20,7 +20,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) 
         row(ui, theme.say("widget.hex_tip_address"), theme.mono(address));
         row(ui, theme.say("widget.hex_tip_hex"), theme.mono(format!("{byte:02X}")));
         row(ui, theme.say("widget.hex_tip_decimal"), theme.mono(byte.to_string()));
-        row(ui, theme.say("widget.hex_tip_binary"), theme.mono(bits::binary(byte)));
+        row(ui, theme.say("widget.hex_tip_binary"), theme.mono(bits::binary_text(byte)));
         if let Some(character) = bits::ascii(byte) {
             // In quotes: it may be a blank.
             row(ui, theme.say("widget.hex_tip_character"), theme.mono(format!("'{character}'")));

@@ -3,7 +3,7 @@
 use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
 use super::lines::Lines;
-use super::view::{Edit, Selected};
+use super::view::{Edit, SelectedRow};
 use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
 /// Reserves the arrow keys for the table while it has the keyboard focus.
@@ -161,12 +161,12 @@ fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut Re
         return false;
     }
     match view.selected {
-        Some(Selected::Group(group)) => view.fold(group, !open),
-        Some(Selected::Row(place)) if open => {
+        Some(SelectedRow::Group(group)) => view.fold(group, !open),
+        Some(SelectedRow::Row(place)) if open => {
             view.set_expanded(place, !(table.row)(place).fields.is_empty());
         }
-        Some(Selected::Row(place)) if view.open.contains(&place) => view.set_expanded(place, false),
-        Some(Selected::Row(place)) => view.go(Selected::Group(place.group)),
+        Some(SelectedRow::Row(place)) if view.open.contains(&place) => view.set_expanded(place, false),
+        Some(SelectedRow::Row(place)) => view.go(SelectedRow::Group(place.group)),
         None => {}
     }
     true
@@ -183,9 +183,9 @@ fn edit(
         return false;
     }
     match (key, view.selected) {
-        (Key::Enter | Key::Space, Some(Selected::Group(group))) => view.fold(group, !view.is_folded(group)),
-        (Key::Enter | Key::F2, Some(Selected::Row(_))) => return begin(table, view, None),
-        (Key::Backspace | Key::Delete, Some(Selected::Row(place))) if (table.row)(place).edited => {
+        (Key::Enter | Key::Space, Some(SelectedRow::Group(group))) => view.fold(group, !view.is_folded(group)),
+        (Key::Enter | Key::F2, Some(SelectedRow::Row(_))) => return begin(table, view, None),
+        (Key::Backspace | Key::Delete, Some(SelectedRow::Row(place))) if (table.row)(place).edited => {
             *event = Some(RegisterEvent::Revert(place));
         }
         _ => return false,

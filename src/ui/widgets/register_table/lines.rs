@@ -1,7 +1,7 @@
 //! Lines of a register table: group headings, registers, and the bit fields of unfolded ones. Lines are not stored;
 //! thousands of registers cost no more than their groups.
 
-use super::view::Selected;
+use super::view::SelectedRow;
 use super::{RegisterLocation, RegisterTable, RegisterView};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,10 +71,10 @@ impl Lines {
     }
 
     /// Returns the line of an item, or `None` if the item is not shown.
-    pub(super) fn line_of(&self, what: Selected) -> Option<usize> {
+    pub(super) fn line_of(&self, what: SelectedRow) -> Option<usize> {
         match what {
-            Selected::Group(group) => self.sections.get(group).map(|section| section.start),
-            Selected::Row(place) => {
+            SelectedRow::Group(group) => self.sections.get(group).map(|section| section.start),
+            SelectedRow::Row(place) => {
                 let section = self.sections.get(place.group).filter(|section| place.row < section.rows)?;
                 let above = section.open.iter().take_while(|(row, _)| *row < place.row);
                 Some(section.start + 1 + place.row + above.map(|(_, fields)| fields).sum::<usize>())
@@ -83,10 +83,10 @@ impl Lines {
     }
 
     /// Returns the item that can be selected on a line. For a bit field, this is its register.
-    pub(super) fn selection_at(&self, line: usize) -> Option<Selected> {
+    pub(super) fn selection_at(&self, line: usize) -> Option<SelectedRow> {
         Some(match self.at(line)? {
-            LineKind::Group(group) => Selected::Group(group),
-            LineKind::Row(place) | LineKind::Bits(place, _) => Selected::Row(place),
+            LineKind::Group(group) => SelectedRow::Group(group),
+            LineKind::Row(place) | LineKind::Bits(place, _) => SelectedRow::Row(place),
         })
     }
 }
@@ -140,15 +140,15 @@ mod tests {
         for (line, kind) in expected.into_iter().enumerate() {
             assert_eq!(lines.at(line), Some(kind), "{line}");
             let back = match kind {
-                LineKind::Group(group) => lines.line_of(Selected::Group(group)),
-                LineKind::Row(place) => lines.line_of(Selected::Row(place)),
+                LineKind::Group(group) => lines.line_of(SelectedRow::Group(group)),
+                LineKind::Row(place) => lines.line_of(SelectedRow::Row(place)),
                 LineKind::Bits(..) => Some(line),
             };
             assert_eq!(back, Some(line), "{kind:?}");
         }
         assert_eq!(lines.at(expected.len()), None);
-        assert_eq!(lines.line_of(Selected::Row(place(2, 0))), None, "its group is folded");
-        assert_eq!(lines.selection_at(4), Some(Selected::Row(place(0, 1))));
+        assert_eq!(lines.line_of(SelectedRow::Row(place(2, 0))), None, "its group is folded");
+        assert_eq!(lines.selection_at(4), Some(SelectedRow::Row(place(0, 1))));
         assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).at(0), None);
     }
 }

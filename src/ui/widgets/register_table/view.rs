@@ -10,7 +10,7 @@ use crate::ui::Theme;
 
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
-    pub(super) selected: Option<Selected>,
+    pub(super) selected: Option<SelectedRow>,
     /// Groups of which only the heading is shown.
     pub(super) folded: BTreeSet<usize>,
     /// Registers whose bit fields are visible.
@@ -28,7 +28,7 @@ pub struct RegisterView {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Selected {
+pub(super) enum SelectedRow {
     Group(usize),
     Row(RegisterLocation),
 }
@@ -47,15 +47,15 @@ pub(super) struct Edit {
 impl RegisterView {
     pub fn selected(&self) -> Option<RegisterLocation> {
         match self.selected {
-            Some(Selected::Row(place)) => Some(place),
-            Some(Selected::Group(_)) | None => None,
+            Some(SelectedRow::Row(place)) => Some(place),
+            Some(SelectedRow::Group(_)) | None => None,
         }
     }
 
     pub fn group(&self) -> Option<usize> {
         match self.selected? {
-            Selected::Row(place) => Some(place.group),
-            Selected::Group(group) => Some(group),
+            SelectedRow::Row(place) => Some(place.group),
+            SelectedRow::Group(group) => Some(group),
         }
     }
 
@@ -78,7 +78,7 @@ impl RegisterView {
     /// Selects a register, unfolds its group and scrolls to the register.
     pub fn select(&mut self, place: RegisterLocation) {
         self.folded.remove(&place.group);
-        self.go(Selected::Row(place));
+        self.go(SelectedRow::Row(place));
     }
 
     pub fn fold(&mut self, group: usize, folded: bool) {
@@ -97,7 +97,7 @@ impl RegisterView {
     /// register no longer exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
-            Some(Selected::Row(place)) => now(place).map(Selected::Row),
+            Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),
             group => group,
         };
         self.edit = self.edit.take().and_then(|edit| Some(Edit { place: now(edit.place)?, ..edit }));
@@ -105,7 +105,7 @@ impl RegisterView {
         self.refused = None;
     }
 
-    pub(super) fn go(&mut self, to: Selected) {
+    pub(super) fn go(&mut self, to: SelectedRow) {
         self.selected = Some(to);
         self.reveal = true;
     }

@@ -6,7 +6,7 @@ use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::{Adapter, AttachableKind, AttachedDevice, BissDevice, SsiDevice};
 use crate::parameter::Values as _;
 use crate::sim::setting::pairs;
-use crate::sim::{ByteDevice, ConfigError, Faults, Motor, RPM};
+use crate::sim::{ByteDevice, ConfigError, Motor, RPM, SimulatedFaults};
 use crate::units::Moment;
 
 /// Host of the adapter.
@@ -79,7 +79,7 @@ impl Host {
         }
     }
 
-    pub(crate) fn stream(&mut self, milliseconds: u64) -> Vec<Data> {
+    pub(crate) fn stream(&mut self, milliseconds: u64) -> Vec<StreamData> {
         let messages = self.receive(self.now + Duration::from_millis(milliseconds));
         let data = |(_, message)| match message {
             Message::Data(data) => Some(data),
@@ -140,7 +140,7 @@ impl AttachableKind for DialSettings {
 }
 
 impl BissDevice for Dial {
-    fn another(&self) -> Box<dyn BissDevice> {
+    fn duplicate(&self) -> Box<dyn BissDevice> {
         Box::new(Dial { motor: Motor::at(self.motor.rpm()), ..*self })
     }
 
@@ -161,7 +161,7 @@ impl BissDevice for Dial {
         self.motor.set_rpm(rpm);
     }
 
-    fn set_faults(&mut self, _: &Faults) {}
+    fn set_faults(&mut self, _: &SimulatedFaults) {}
 
     fn disconnect(&mut self) {
         self.ready = None;
@@ -204,7 +204,7 @@ impl AttachableKind for WordGiver {
 }
 
 impl SsiDevice for WordGiver {
-    fn another(&self) -> Box<dyn SsiDevice> {
+    fn duplicate(&self) -> Box<dyn SsiDevice> {
         Box::new(WordGiver)
     }
 

@@ -1,7 +1,7 @@
 //! The adapter's own line with its faults.
 
 use super::*;
-use crate::sim::Faults;
+use crate::sim::SimulatedFaults;
 
 #[test]
 fn line_faults_are_injected() {
@@ -13,7 +13,7 @@ fn line_faults_are_injected() {
     assert!(!host.stream(100).is_empty());
     assert_eq!(host.ask(Request::Hello), None);
     assert_eq!(host.stream(100), [], "what is silent does not stream");
-    host.adapter.set_faults(&Faults::default());
+    host.adapter.set_faults(&SimulatedFaults::default());
     assert!(host.ask(Request::Hello).is_some());
     let mut host = Host::with("fault=delay:50");
     host.send(&Request::Hello);
@@ -22,5 +22,5 @@ fn line_faults_are_injected() {
     host.send(&BISS);
     host.send(&Request::BissStream { period_us: 100 });
     host.stream(2_000);
-    assert!(host.receiver.dropped() > 0);
+    assert!(host.receiver.dropped_count() > 0);
 }

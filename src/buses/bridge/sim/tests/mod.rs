@@ -109,8 +109,8 @@ fn analog_samples_match_the_virtual_encoder() {
     let mut continuity = Continuity::at_start();
     let mut samples = Vec::new();
     for data in packets {
-        assert_eq!(continuity.follow(&data), Gap::None);
-        let Data::Analog(data) = data else { panic!("{data:?}") };
+        assert_eq!(continuity.follow(&data), PacketGap::None);
+        let StreamData::Analog(data) = data else { panic!("{data:?}") };
         samples.extend(data.samples);
     }
     assert!(samples.len() > 101_000);
@@ -167,13 +167,13 @@ fn all_encoders_share_one_shaft() {
     let still = host.stream(50);
     host.adapter.set_rpm(host.now, 6.0);
     let turning = host.stream(200);
-    let moves = |packets: &[Data]| {
+    let moves = |packets: &[StreamData]| {
         let positions = packets.iter().flat_map(|data| match data {
-            Data::Biss(data) => data.values.iter().map(|(_, raw)| raw >> 6).collect::<Vec<_>>(),
+            StreamData::Biss(data) => data.values.iter().map(|(_, raw)| raw >> 6).collect::<Vec<_>>(),
             _ => Vec::new(),
         });
         let sines = packets.iter().flat_map(|data| match data {
-            Data::Analog(data) => data.samples.iter().map(|(sine, _)| *sine).collect::<Vec<_>>(),
+            StreamData::Analog(data) => data.samples.iter().map(|(sine, _)| *sine).collect::<Vec<_>>(),
             _ => Vec::new(),
         });
         let (first, last) = (positions.clone().next().unwrap(), positions.last().unwrap());
@@ -236,10 +236,10 @@ fn unfetched_samples_are_lost_and_reported() {
     host.now = host.now + Duration::from_secs(10);
     let packets = host.stream(0);
     for (is_own, rate) in [
-        ((|data| matches!(data, Data::Biss(_))) as fn(&Data) -> bool, 1_000),
-        (|data| matches!(data, Data::Analog(_)), 10_000),
+        ((|data| matches!(data, StreamData::Biss(_))) as fn(&StreamData) -> bool, 1_000),
+        (|data| matches!(data, StreamData::Analog(_)), 10_000),
     ] {
-        let own: Vec<&Data> = packets.iter().filter(|data| is_own(data)).collect();
+        let own: Vec<&StreamData> = packets.iter().filter(|data| is_own(data)).collect();
         let samples: usize = own.iter().map(|data| data.extent().1).sum();
         assert!((rate * 9 / 10..=rate * 11 / 10).contains(&samples), "{samples}");
         let lost: Vec<u16> = own.iter().map(|data| data.extent().2).filter(|lost| *lost > 0).collect();

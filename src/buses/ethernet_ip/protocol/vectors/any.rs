@@ -8,11 +8,11 @@ use super::{OWNER, SESSION, open};
 /// Runs every parser on arbitrary bytes.
 fn read_all(bytes: &[u8]) {
     let _ = Frame::parse(bytes).map(|frame| frame.body().map(|body| body.emit()));
-    let _ = Items::parse(bytes).map(|items| items.emit());
+    let _ = ItemList::parse(bytes).map(|items| items.emit());
     let _ = Request::parse(bytes).map(|request| request.emit());
     let _ = Reply::parse(bytes).map(|reply| reply.emit());
-    let _ = Path::parse(bytes).map(|path| path.emit());
-    let _ = (ForwardOpen::parse(bytes), ForwardOpened::parse(bytes), ForwardRefused::parse(bytes));
+    let _ = EPath::parse(bytes).map(|path| path.emit());
+    let _ = (ForwardOpen::parse(bytes), ForwardOpened::parse(bytes), ForwardErrorReply::parse(bytes));
     let _ = (ForwardClose::parse(bytes), ForwardClosed::parse(bytes), Identity::parse_all(bytes));
     let _ = (ConfigurationControl::parse(bytes), InterfaceConfiguration::parse(bytes));
     for format in [RealTimeFormat::Header, RealTimeFormat::Modeless] {
@@ -23,7 +23,7 @@ fn read_all(bytes: &[u8]) {
 /// Returns valid packets from which invalid ones are derived.
 fn good() -> Vec<Vec<u8>> {
     let frame = Frame::unconnected(SESSION, [1; 8], open().request().emit());
-    let packet = IoPacket { connection: 1, sequence: 2, count: 3, header: Some(RunIdle::RUN), data: vec![0; 16] };
+    let packet = IoPacket { connection: 1, sequence: 2, count: 3, header: Some(RunIdleHeader::RUN), data: vec![0; 16] };
     vec![frame.emit(), frame.data.clone(), open().request().emit(), open().request().data, packet.emit()]
 }
 
@@ -43,12 +43,12 @@ fn truncated_packets_are_refused() {
 
 proptest! {
     #[test]
-    fn no_bytes_panic(bytes: Vec<u8>) {
+    fn arbitrary_bytes_never_panic(bytes: Vec<u8>) {
         read_all(&bytes);
     }
 
     #[test]
-    fn no_damage_panics(which in 0usize..5, at: prop::sample::Index, byte: u8, end: prop::sample::Index) {
+    fn damaged_bytes_never_panic(which in 0usize..5, at: prop::sample::Index, byte: u8, end: prop::sample::Index) {
         let mut bytes = good().remove(which);
         let length = bytes.len();
         bytes[at.index(length)] = byte;
@@ -68,8 +68,8 @@ proptest! {
     #[test]
     fn every_unknown_item_round_trips(kind in 0x200u16..0x8000, data: Vec<u8>, connection: u32, sequence: u32) {
         let address = Item::SequencedAddress { connection, sequence };
-        let items = Items(vec![Item::Unknown { kind, data: data.clone() }, address, Item::UnconnectedData(data)]);
-        prop_assert_eq!(Items::parse(&items.emit()), Ok(items));
+        let items = ItemList(vec![Item::Unknown { kind, data: data.clone() }, address, Item::UnconnectedData(data)]);
+        prop_assert_eq!(ItemList::parse(&items.emit()), Ok(items));
     }
 
     #[test]
@@ -77,7 +77,7 @@ proptest! {
         code in 0u8..0x80, class: u16, instance: u16, status: u8, extended: Vec<u16>, data: Vec<u8>
     ) {
         let service = Service::new(code).unwrap();
-        let request = Request { service, path: Path::instance(class, instance), data: data.clone() };
+        let request = Request { service, path: EPath::instance(class, instance), data: data.clone() };
         prop_assert_eq!(Request::parse(&request.emit()), Ok(request));
         let reply = Reply { service, status: GeneralStatus::new(status), extended, data };
         prop_assert_eq!(Reply::parse(&reply.emit()), Ok(reply));
@@ -98,7 +98,7 @@ proptest! {
             to_originator_interval_us: intervals[1],
             to_originator: NetworkParameters::of_word(parameters[1]),
             transport: Transport::of_byte(transport),
-            path: Path::assemblies(104, 100, 101),
+            path: EPath::assemblies(104, 100, 101),
         };
         prop_assert_eq!(ForwardOpen::parse(&asked.request().data), Ok(asked.clone()));
         let _ = (asked.timeout.duration(), asked.to_target_timeout());
@@ -106,7 +106,7 @@ proptest! {
 
     #[test]
     fn every_cyclic_packet_round_trips(connection: u32, sequence: u32, count: u16, header: Option<u32>, data: Vec<u8>) {
-        let packet = IoPacket { connection, sequence, count, header: header.map(RunIdle::of_word), data };
+        let packet = IoPacket { connection, sequence, count, header: header.map(RunIdleHeader::of_word), data };
         let format = if header.is_some() { RealTimeFormat::Header } else { RealTimeFormat::Modeless };
         prop_assert_eq!(IoPacket::parse(&packet.emit(), format), Ok(packet));
     }

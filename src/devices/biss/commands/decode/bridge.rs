@@ -5,8 +5,8 @@ use serde_json::Map;
 use super::{form, position};
 use crate::bits::{hex, hex_compact};
 use crate::buses::bridge::protocol::{
-    AnalogData, BissData, BissStatus, BodyError, Capabilities, Data, ErrorCode, Hello, Message, Operation, Packet,
-    PacketError, Reply, Request, SsiData,
+    AnalogData, BissData, BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet,
+    PacketError, Reply, Request, SsiData, StreamData,
 };
 use crate::cli::decode::Explained;
 
@@ -164,7 +164,7 @@ fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> 
     Ok(vec![format!("{t_s:.6} s: {bad} (status {})", status.byte())])
 }
 
-fn streamed(seq: u8, data: &Data) -> Result<Vec<String>, String> {
+fn streamed(seq: u8, data: &StreamData) -> Result<Vec<String>, String> {
     let (first, count, lost) = data.extent();
     let head = |what: &str, t0_us: u64| {
         let lost = if lost > 0 { format!(", {lost} lost before them") } else { String::new() };
@@ -172,19 +172,19 @@ fn streamed(seq: u8, data: &Data) -> Result<Vec<String>, String> {
     };
     let time = |t0_us: u64, period_us: u32, at: u64| seconds(t0_us.saturating_add(at.saturating_mul(period_us.into())));
     Ok(match data {
-        Data::Ssi(SsiData { t0_us, period_us, values, .. }) => {
+        StreamData::Ssi(SsiData { t0_us, period_us, values, .. }) => {
             let words =
                 values.iter().zip(0..).map(|(raw, at)| format!("{:.6} s: 0x{raw:X}", time(*t0_us, *period_us, at)));
             std::iter::once(head("SSI words", *t0_us)).chain(words).collect()
         }
-        Data::Biss(BissData { t0_us, period_us, values, .. }) => {
+        StreamData::Biss(BissData { t0_us, period_us, values, .. }) => {
             let mut lines = vec![head("BiSS frames", *t0_us)];
             for ((status, raw), at) in values.iter().zip(0..) {
                 lines.extend(frame(time(*t0_us, *period_us, at), *status, *raw)?);
             }
             lines
         }
-        Data::Analog(AnalogData { t0_us, samples, .. }) => {
+        StreamData::Analog(AnalogData { t0_us, samples, .. }) => {
             let words = samples.iter().map(|(sine, cosine)| format!("sine {sine}, cosine {cosine}"));
             std::iter::once(head("analogue samples", *t0_us)).chain(words).collect()
         }

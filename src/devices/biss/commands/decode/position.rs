@@ -16,7 +16,7 @@ pub(super) const BYTES: usize = 6;
 pub(super) const WORD_DIGITS: usize = 9;
 
 /// Decodes the bytes of one frame, or returns `None` if the number of bytes is wrong or surplus bits are set.
-pub(super) fn of_bytes(bytes: &[u8]) -> Option<Explained> {
+pub(super) fn decode_bytes(bytes: &[u8]) -> Option<Explained> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
     fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })

@@ -58,13 +58,13 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     let own = Frame { address: NODE, ..*frame };
     lines.push(match Reply::parse(&own, command).map_err(|error| unknown(&error))? {
         Reply::Value(value) => match request.take() {
-            Some(Request::Read { register }) => value_words(register, value),
+            Some(Request::Read { register }) => value_description(register, value),
             _ => format!("value 0x{value:02X}"),
         },
         Reply::Written(Written::Acknowledged) => "written".to_owned(),
         Reply::Written(Written::Refused) => "refused: not written".to_owned(),
         Reply::Written(Written::Unknown(byte)) => format!("neither acknowledged nor refused: 0x{byte:02X}"),
-        Reply::Position(word) => position_words(word),
+        Reply::Position(word) => position_text(word),
     });
     *request = None;
     Ok(lines)
@@ -81,7 +81,7 @@ fn register_words(register: u16) -> String {
     }
 }
 
-fn value_words(register: u16, value: u8) -> String {
+fn value_description(register: u16, value: u8) -> String {
     let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
     match words::register_meaning(address, &[value]) {
         Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_words(register)),
@@ -89,7 +89,7 @@ fn value_words(register: u16, value: u8) -> String {
     }
 }
 
-fn position_words(word: PositionWord) -> String {
+fn position_text(word: PositionWord) -> String {
     let layout = Layout::default();
     match layout.decode_position(word) {
         None => format!("position 0x{:X}, which has more than 33 bits", word.word()),

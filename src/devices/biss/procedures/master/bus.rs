@@ -212,7 +212,7 @@ impl<'a> Master<'a> {
 
     /// Examines more frames after five had wrong checksums and none was ever correct. With mere noise some frames are
     /// correct, with wrong widths none.
-    pub(super) fn read_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
+    pub(super) fn retry_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
         }
@@ -235,12 +235,12 @@ impl<'a> Master<'a> {
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {
-            Ok(Err(ExchangeError::NoFrame(cause))) => self.no_frame(cause, tries),
+            Ok(Err(ExchangeError::NoFrame(cause))) => self.missing_frame_error(cause, tries),
             _ => failed,
         }
     }
 
-    pub(super) fn no_frame(&self, cause: NoFrame, tries: u32) -> Error {
+    pub(super) fn missing_frame_error(&self, cause: NoFrame, tries: u32) -> Error {
         let can_switch = self.station.adapter.hello().is_some_and(|hello| hello.capabilities.has(Capabilities::SUPPLY));
         match cause {
             NoFrame::NoAcknowledge => {

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use super::Master;
 use crate::buses::bridge::procedures::Adapter;
-use crate::buses::bridge::procedures::flow::{Flow, Streamed};
-use crate::buses::bridge::protocol::Data;
+use crate::buses::bridge::procedures::flow::{SampleStream, Streamed};
+use crate::buses::bridge::protocol::StreamData;
 use crate::devices::biss::procedures::frames::{FrameRun, frames};
 use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
@@ -31,7 +31,7 @@ impl Master<'_> {
             // This also checks the wiring and the widths.
             self.position()?;
             let after = self.station.streamed_until;
-            self.station.flow = Some(Flow::begin(&mut self.adapter(), streamed, after)?);
+            self.station.flow = Some(SampleStream::begin(&mut self.adapter(), streamed, after)?);
         }
         loop {
             let until = self.now() + SLICE;
@@ -43,7 +43,7 @@ impl Master<'_> {
                 Err(failure) => return Err(self.stream_failed(failure.into())),
             };
             if let Some(portion) = portion
-                && let Data::Biss(data) = &portion.data
+                && let StreamData::Biss(data) = &portion.data
             {
                 let layout = Arc::new(self.station.frame());
                 let clock_hz = self.station.actual_clock_hz.unwrap_or(self.station.clock_hz);
@@ -61,7 +61,7 @@ impl Master<'_> {
     pub fn end_frames(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        match Flow::ended(self.shielded(|master| flow.end(&mut master.adapter()))) {
+        match SampleStream::ended(self.shielded(|master| flow.end(&mut master.adapter()))) {
             Ok(true) => Ok(()),
             Ok(false) => {
                 self.station.forget_settings();

@@ -51,7 +51,7 @@ impl Master<'_> {
         Ok(match self.exchange(Request::Read { register }, order)? {
             Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
             Ok(Timed { reply, .. }) => {
-                return Err(Error::other_reply(RequestedItem::Read(requested_register(register)), &reply));
+                return Err(Error::unexpected_reply(RequestedItem::Read(requested_register(register)), &reply));
             }
             Err(trouble) => Err(trouble),
         })
@@ -62,7 +62,9 @@ impl Master<'_> {
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
             Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
             Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(WriteReaction::No(None)),
-            Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Write(address, value), &reply)),
+            Ok(Timed { reply, .. }) => {
+                return Err(Error::unexpected_reply(RequestedItem::Write(address, value), &reply));
+            }
             Err(trouble) => Err(trouble),
         })
     }
@@ -70,7 +72,7 @@ impl Master<'_> {
     pub(super) fn read_pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
-            Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Position, &reply)),
+            Ok(Timed { reply, .. }) => return Err(Error::unexpected_reply(RequestedItem::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();

@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use super::guide::{Attended, Guide, RunCourse};
+use super::guide::{Guide, OperatorDecision, RunProgress};
 use super::{Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{
-    CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
+    CalibrationCommand, CalibrationStatus, PositionFilter, Procedure, ProcedureKind, Role, Temperature,
 };
 
 /// Expected duration of a calibration run ("about 5 seconds", manual 6.4).
@@ -32,7 +32,7 @@ impl Guide<'_, '_> {
         {
             let code = self.master.read(filter)?;
             // An old firmware has one filter and reports 0.
-            if code == Filter::Dynamic.byte() {
+            if code == PositionFilter::Dynamic.byte() {
                 return Err(Failure::NotBalanced { code });
             }
         }
@@ -41,13 +41,13 @@ impl Guide<'_, '_> {
             None => None,
         };
         let first = Run::CalibrationCounterclockwise;
-        let Attended::Go(counterclockwise) = self.attend(Task::Turn(first))? else {
+        let OperatorDecision::Go(counterclockwise) = self.attend(Task::Turn(first))? else {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
         self.calibrate_in(first, &procedure)?;
         let second = Run::CalibrationClockwise;
-        let Attended::Go(clockwise) = self.attend(Task::Turn(second))? else {
+        let OperatorDecision::Go(clockwise) = self.attend(Task::Turn(second))? else {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
         self.calibrate_in(second, &procedure)?;
@@ -65,7 +65,7 @@ impl Guide<'_, '_> {
             let (before, done) = (CalibrationStatus::Idle, CalibrationStatus::CounterclockwiseDone);
             (CalibrationCommand::StartCounterclockwise, before, done)
         };
-        let course = RunCourse {
+        let course = RunProgress {
             run,
             command: command.byte(),
             was,

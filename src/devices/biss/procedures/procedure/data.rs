@@ -3,7 +3,7 @@
 //!
 //! [`Master`]: crate::devices::biss::procedures::Master
 
-use super::guide::{Attended, Guide};
+use super::guide::{Guide, OperatorDecision};
 use super::{Activity, Failure, Outcome, ProcedureStep, StepDetail, Task};
 use crate::devices::biss::profile::RegisterChange;
 use crate::devices::biss::protocol::{Area, DataCommand, DataStatus, Procedure, ProcedureKind};
@@ -13,13 +13,13 @@ impl Guide<'_, '_> {
         let procedure = self.procedure(ProcedureKind::DataWrite)?;
         let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         // Manual 6.5: not during motor operation.
-        let Attended::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
+        let OperatorDecision::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
         self.enter(&procedure)?;
         self.step(ProcedureStep::Open);
         self.await_status(&procedure, DataStatus::Closed.byte())?;
         self.command(&procedure, open)?;
         self.await_status(&procedure, DataStatus::Open.byte())?;
-        self.does(Activity::Entered);
+        self.set_activity(Activity::Entered);
         self.step(ProcedureStep::Write);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {

@@ -1,6 +1,6 @@
 //! Reasons why a procedure fails.
 
-use super::{Blocker, Run, Task};
+use super::{Run, StartBlocker, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{CalibrationStatus, DeviceMode, ProcedureKind, WiegandStatus};
 use crate::profile::OperationError;
@@ -36,7 +36,7 @@ pub enum Failure {
     },
     /// The user did not fulfil the task in the time allowed.
     #[error("the conditions are not met: {blockers:?}")]
-    NotReady { task: Task, blockers: Vec<Blocker> },
+    NotReady { task: Task, blockers: Vec<StartBlocker> },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: String, expected: String, got: String },

@@ -2,10 +2,10 @@
 
 use super::guide::Guide;
 use super::{Activity, Failure, Outcome, ProcedureStep};
-use crate::devices::biss::protocol::{Filter, FilterCommand, FilterStatus, ProcedureKind, Role};
+use crate::devices::biss::protocol::{FilterCommand, FilterStatus, PositionFilter, ProcedureKind, Role};
 
 impl Guide<'_, '_> {
-    pub(super) fn select_filter(&mut self, to: Filter) -> Result<Outcome, Failure> {
+    pub(super) fn select_filter(&mut self, to: PositionFilter) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::FilterSelection)?;
         let in_force = self.role(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         self.enter(&procedure)?;
@@ -13,7 +13,7 @@ impl Guide<'_, '_> {
         self.await_status(&procedure, FilterStatus::Closed.byte())?;
         self.command(&procedure, FilterCommand::Open.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForValue.byte())?;
-        self.does(Activity::Entered);
+        self.set_activity(Activity::Entered);
         self.step(ProcedureStep::Write);
         self.command(&procedure, to.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForSave.byte())?;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use super::operator::Measured;
 use super::speed_monitor::SpeedMonitor;
 use super::{
-    Activity, Answer, Demand, Failure, LeftState, Motion, Operator, ProcedureProgress, ProcedureStep, Run, StepDetail,
-    Task,
+    Activity, Answer, Failure, LeftState, Motion, Operator, OperatorPrompt, ProcedureProgress, ProcedureStep, Run,
+    StepDetail, Task,
 };
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
@@ -51,7 +51,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     cycles: u64,
 }
 
-pub(super) struct RunCourse {
+pub(super) struct RunProgress {
     pub(super) run: Run,
     pub(super) command: u8,
     pub(super) was: u8,
@@ -64,7 +64,7 @@ pub(super) struct RunCourse {
 }
 
 /// The operator's answer, with the measurement at that time.
-pub(super) enum Attended {
+pub(super) enum OperatorDecision {
     Go(Option<Motion>),
     Skip,
 }
@@ -127,7 +127,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.cycles += 1;
     }
 
-    pub(super) fn does(&mut self, activity: Activity) {
+    pub(super) fn set_activity(&mut self, activity: Activity) {
         self.standing.activity = activity;
     }
 
@@ -140,7 +140,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         let (master, standing) = (&mut *self.master, &mut self.standing);
         let ended = master.shielded(|master| {
             if matches!(standing.activity, Activity::Running(run) if run.is_calibration()) {
-                return master.with_patience(SILENCE, |master| lead_back(master, &description, lock, standing));
+                return master.with_reply_timeout(SILENCE, |master| lead_back(master, &description, lock, standing));
             }
             lead_back(master, &description, lock, standing)
         });
@@ -178,10 +178,10 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Sends the command that writes the flash, which from then on is considered written until proven otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
-        self.does(Activity::Saving);
+        self.set_activity(Activity::Saving);
         let ended = self.command(procedure, command);
         if let Err(Error::Cancelled | Error::Refused { .. }) = ended {
-            self.does(before);
+            self.set_activity(before);
         } else {
             self.count_write_cycle();
         }
@@ -224,21 +224,21 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// interprets unexpected statuses; the status from before the command is ignored until it changes.
     pub(super) fn run(
         &mut self,
-        course: &RunCourse,
+        course: &RunProgress,
         procedure: &Procedure,
         explain: impl Fn(&mut Self, u8) -> Result<Failure, Error>,
     ) -> Result<(), Failure> {
-        self.does(Activity::Running(course.run));
+        self.set_activity(Activity::Running(course.run));
         let ended = self.command(procedure, course.command);
         if let Err(Error::Cancelled | Error::Refused { .. }) = ended {
-            self.does(Activity::Nothing);
+            self.set_activity(Activity::Nothing);
         }
         ended?;
         let started = self.master.now();
         let mut begun = false;
         loop {
             let requested = self.master.now();
-            let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
+            let status = self.master.with_reply_timeout(SILENCE, |master| master.read(procedure.status))?;
             let elapsed = self.master.now().since(started);
             begun |= status == course.active || status != course.was;
             begun |= course.run.is_calibration() && self.master.now().since(requested) >= BEGUN;
@@ -252,7 +252,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             } else if status == course.done {
                 break;
             } else if status != course.active {
-                self.does(Activity::Nothing);
+                self.set_activity(Activity::Nothing);
                 return Err(explain(self, status)?);
             } else if elapsed >= course.limit {
                 return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
@@ -260,7 +260,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             self.report(StepDetail::Lasts { elapsed, expected: Some(course.expected) });
             self.master.wait(course.every)?;
         }
-        self.does(Activity::Nothing);
+        self.set_activity(Activity::Nothing);
         Ok(())
     }
 
@@ -275,14 +275,14 @@ impl<'g, 'm> Guide<'g, 'm> {
         // The written value is read back, even after cancellation.
         self.master.shielded(|master| {
             master.wait(RESTART)?;
-            master.with_patience(RESTART_PATIENCE, |master| look(master, lock, standing))
+            master.with_reply_timeout(RESTART_PATIENCE, |master| look(master, lock, standing))
         })?;
         Ok(())
     }
 
     /// Gives the operator a task at the motor, and repeats a measurement until it meets the conditions and the operator
     /// confirms.
-    pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
+    pub(super) fn attend(&mut self, task: Task) -> Result<OperatorDecision, Failure> {
         self.step(ProcedureStep::Await(task));
         let begun = self.master.now();
         let mut monitor = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
@@ -294,12 +294,12 @@ impl<'g, 'm> Guide<'g, 'm> {
                 self.operator.on_task_start();
                 is_told = true;
             }
-            let demand = Demand::new(task, measured, self.master.now().since(begun));
+            let demand = OperatorPrompt::new(task, measured, self.master.now().since(begun));
             self.report(StepDetail::Demand(demand.clone()));
             match self.operator.attend(&demand) {
-                Answer::Go if demand.is_ready() => return Ok(Attended::Go(demand.motion)),
+                Answer::Go if demand.is_ready() => return Ok(OperatorDecision::Go(demand.motion)),
                 Answer::Go | Answer::Wait => {}
-                Answer::Skip => return Ok(Attended::Skip),
+                Answer::Skip => return Ok(OperatorDecision::Skip),
                 Answer::Cancel => return Err(Error::Cancelled.into()),
                 Answer::GiveUp => return Err(Failure::NotReady { task, blockers: demand.blockers }),
             }
@@ -313,7 +313,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         loop {
             // Between the runs of a calibration the encoder may still be silent.
             let reading = match task {
-                Task::Turn(Run::CalibrationClockwise) => self.master.with_patience(SILENCE, Master::position),
+                Task::Turn(Run::CalibrationClockwise) => self.master.with_reply_timeout(SILENCE, Master::position),
                 _ => self.master.position(),
             };
             match reading {
@@ -355,13 +355,13 @@ fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result
 
 fn unlock(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.password_at, lock.password);
-    standing.password.becomes(true, &ended);
+    standing.password.record_write(true, &ended);
     ended
 }
 
 fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.mode_at, mode.byte());
-    standing.mode.becomes(mode, &ended);
+    standing.mode.record_write(mode, &ended);
     ended
 }
 
@@ -388,7 +388,7 @@ pub(super) fn lead_back(
     }
     if standing.password.may_be(true) {
         let ended = master.write(lock.password_at, 0);
-        standing.password.becomes(false, &ended);
+        standing.password.record_write(false, &ended);
         ended?;
     }
     let stays = look(master, lock, standing)?;

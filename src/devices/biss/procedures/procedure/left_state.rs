@@ -53,7 +53,7 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
     }
 
     /// Records a write that sets the value to `after`; its result determines the possible values.
-    pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
+    pub(super) fn record_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::known(after),
             // It was not sent, or not accepted.
@@ -99,16 +99,16 @@ mod tests {
     fn an_unanswered_write_leaves_two_possible_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
         let mut mode = PossibleValues::known(0);
-        mode.becomes(1, &Ok(()));
+        mode.record_write(1, &Ok(()));
         assert!(mode.is(1));
-        mode.becomes(0, &Err(Error::Cancelled));
+        mode.record_write(0, &Err(Error::Cancelled));
         assert!(mode.is(1), "it was not sent");
-        mode.becomes(0, &lost());
+        mode.record_write(0, &lost());
         assert_eq!((mode.values(), mode.is(1)), (&[1, 0][..], false));
         assert!(mode.may_be(0) && mode.may_be(1) && !mode.may_be(2));
-        mode.becomes(0, &lost());
+        mode.record_write(0, &lost());
         assert_eq!(mode.values(), [1, 0]);
-        mode.becomes(2, &Ok(()));
+        mode.record_write(2, &Ok(()));
         assert!(mode.is(2));
     }
 

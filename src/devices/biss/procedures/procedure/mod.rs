@@ -28,14 +28,16 @@ pub use calibration::CalibrationReport;
 pub use failure::Failure;
 pub(super) use guide::Guide;
 pub use left_state::{Activity, LeftState, PossibleValues};
-pub use operator::{Advice, Answer, Blocker, Demand, Operator, OperatorChannel, Run, SpeedRange, Task, Unattended};
+pub use operator::{
+    Advice, Answer, Operator, OperatorChannel, OperatorPrompt, Run, SpeedRange, StartBlocker, Task, UnattendedOperator,
+};
 pub use speed_monitor::Motion;
 pub use steps::{ProcedureProgress, ProcedureStep, StepDetail, steps_of};
 pub use wiegand::WiegandReport;
 
 use super::{Error, Master, PositionReading, identify};
 use crate::devices::biss::profile::{Op, PresetParts};
-use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetValue, RegisterAddress};
+use crate::devices::biss::protocol::{Descriptions, DeviceMode, PositionFilter, PresetValue, RegisterAddress};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
@@ -58,7 +60,7 @@ pub enum Outcome {
         from: PositionReading,
         to: PositionReading,
     },
-    FilterSelected(Filter),
+    FilterSelected(PositionFilter),
     Calibrated(CalibrationReport),
     Tested(WiegandReport),
 }
@@ -96,12 +98,12 @@ impl Guide<'_, '_> {
 /// Errors of the exchange, or the encoder does not return to operation.
 pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
-        master.with_patience(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;
+        master.with_reply_timeout(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;
         identify(master, types)?;
     }
     let description = master.description()?;
     let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
     let mut standing = LeftState::in_operation(false);
     let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
-    master.shielded(|master| master.with_patience(guide::SILENCE, back))
+    master.shielded(|master| master.with_reply_timeout(guide::SILENCE, back))
 }

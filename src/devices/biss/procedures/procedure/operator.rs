@@ -65,14 +65,14 @@ impl Run {
 
     /// Returns the allowed speed variation in revolutions per minute (manual 6.4), or `None` for the Wiegand test, for
     /// which the manual only requires a constant speed.
-    pub const fn fluctuation(self) -> Option<f64> {
+    pub const fn max_fluctuation(self) -> Option<f64> {
         if self.is_calibration() { Some(2.0) } else { None }
     }
 
     /// Returns the speed variation that still counts as steady at the given speed, within the limits of the
     /// measurement.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
-        match self.fluctuation() {
+        match self.max_fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
             None => rpm.abs() * Self::UNSTEADY,
         }
@@ -92,7 +92,7 @@ pub enum Task {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Blocker {
+pub enum StartBlocker {
     Measuring,
     NoPosition,
     /// The shaft is at rest but must turn.
@@ -131,20 +131,20 @@ pub enum Advice {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Demand {
+pub struct OperatorPrompt {
     pub task: Task,
     /// Motion of the shaft, or `None` until it has been measured.
     pub motion: Option<Motion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
     /// Conditions that currently prevent the start.
-    pub blockers: Vec<Blocker>,
+    pub blockers: Vec<StartBlocker>,
     pub advice: Vec<Advice>,
     /// Time since the task was given.
     pub waited: Duration,
 }
 
-impl Demand {
+impl OperatorPrompt {
     /// Allowed temperature range for the calibration in degrees Celsius (manual 6.4).
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
     /// Lowest speed considered as turning, in revolutions per minute.
@@ -155,19 +155,19 @@ impl Demand {
         let mut blockers = Vec::new();
         let mut advice = Vec::new();
         match (motion, task) {
-            _ if unreadable => blockers.push(Blocker::NoPosition),
-            (None, _) => blockers.push(Blocker::Measuring),
-            (Some(motion), Task::Turn(run)) => blockers.extend(Self::unfit_reason(run, motion)),
+            _ if unreadable => blockers.push(StartBlocker::NoPosition),
+            (None, _) => blockers.push(StartBlocker::Measuring),
+            (Some(motion), Task::Turn(run)) => blockers.extend(Self::motion_blocker(run, motion)),
             (Some(motion), Task::Stand | Task::StandAtPlace) => {
-                blockers.extend((!motion.is_still()).then_some(Blocker::Turning { rpm: motion.rpm }));
+                blockers.extend((!motion.is_still()).then_some(StartBlocker::Turning { rpm: motion.rpm }));
             }
         }
         if let Some(celsius) = celsius.filter(|celsius| !Self::CELSIUS.contains(celsius)) {
-            blockers.push(Blocker::Temperature { celsius });
+            blockers.push(StartBlocker::Temperature { celsius });
         }
         if let (Task::Turn(run), Some(motion)) = (task, motion) {
             let recommended = run.recommended_range();
-            let wavers = run.fluctuation().is_some_and(|fluctuation| motion.spread > fluctuation);
+            let wavers = run.max_fluctuation().is_some_and(|fluctuation| motion.spread > fluctuation);
             let off = !recommended.contains(motion.rpm.abs()) || wavers;
             advice.extend((run.is_calibration() && off).then_some(Advice::Speed { recommended }));
             advice.extend(marked.then_some(Advice::Marked));
@@ -175,19 +175,19 @@ impl Demand {
         if task == Task::Turn(Run::CalibrationClockwise) {
             advice.push(Advice::TableAtRisk);
         }
-        Demand { task, motion, celsius, blockers, advice, waited }
+        OperatorPrompt { task, motion, celsius, blockers, advice, waited }
     }
 
-    fn unfit_reason(run: Run, motion: Motion) -> Option<Blocker> {
+    fn motion_blocker(run: Run, motion: Motion) -> Option<StartBlocker> {
         let (rpm, allowed) = (motion.rpm.abs(), run.allowed());
         if rpm < Self::SLOWEST {
-            Some(Blocker::Standing)
+            Some(StartBlocker::Standing)
         } else if (motion.rpm > 0.0) != run.is_clockwise() {
-            Some(Blocker::WrongDirection)
+            Some(StartBlocker::WrongDirection)
         } else if !allowed.measured().contains(rpm) {
-            Some(Blocker::Speed { rpm, allowed })
+            Some(StartBlocker::Speed { rpm, allowed })
         } else if motion.spread > run.accepted_fluctuation(rpm) {
-            Some(Blocker::Unsteady { spread: motion.spread })
+            Some(StartBlocker::Unsteady { spread: motion.spread })
         } else {
             None
         }
@@ -225,25 +225,25 @@ pub trait Operator {
     fn on_task_start(&mut self) {}
 
     /// Asks the operator for an answer. Called a few times per second, each time with a new measurement.
-    fn attend(&mut self, demand: &Demand) -> Answer;
+    fn attend(&mut self, demand: &OperatorPrompt) -> Answer;
 }
 
 /// Stand-in for an absent operator that starts as soon as all conditions are met, and gives up after a time limit.
 #[derive(Clone, Copy, Debug)]
-pub struct Unattended {
+pub struct UnattendedOperator {
     pub patience: Duration,
 }
 
-impl Unattended {
+impl UnattendedOperator {
     /// Time after which a missing measurement is no longer expected.
     const MEASURING: Duration = Duration::from_secs(5);
 }
 
-impl Operator for Unattended {
-    fn attend(&mut self, demand: &Demand) -> Answer {
-        let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, Blocker::Temperature { .. }));
+impl Operator for UnattendedOperator {
+    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
+        let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, StartBlocker::Temperature { .. }));
         // So that it ends with an obstacle if there is one.
-        let measures = if demand.blockers == [Blocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
+        let measures = if demand.blockers == [StartBlocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
         if demand.is_ready() {
             Answer::Go
         } else if hopeless || demand.waited >= self.patience.saturating_add(measures) {
@@ -274,7 +274,7 @@ impl Operator for OperatorChannel {
         *self.slot() = None;
     }
 
-    fn attend(&mut self, demand: &Demand) -> Answer {
+    fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
         match self.slot().take() {
             Some((task, answer)) if task == demand.task => answer,
             _ => Answer::Wait,
@@ -291,8 +291,8 @@ mod tests {
         Measured { motion, celsius: Some(30), ..Measured::default() }
     }
 
-    fn demand(task: Task, measured: Measured) -> Demand {
-        Demand::new(task, measured, Duration::ZERO)
+    fn demand(task: Task, measured: Measured) -> OperatorPrompt {
+        OperatorPrompt::new(task, measured, Duration::ZERO)
     }
 
     /// Manual 6.3 and 6.4.
@@ -304,26 +304,26 @@ mod tests {
             (first, -500.0, 0.0, vec![]),
             (first, -300.0, 0.0, vec![]),
             (first, -700.0, 0.0, vec![]),
-            (first, 500.0, 0.0, vec![Blocker::WrongDirection]),
+            (first, 500.0, 0.0, vec![StartBlocker::WrongDirection]),
             (second, 500.0, 0.0, vec![]),
-            (second, -500.0, 0.0, vec![Blocker::WrongDirection]),
-            (first, -290.0, 0.0, vec![Blocker::Speed { rpm: 290.0, allowed }]),
-            (first, -710.0, 0.0, vec![Blocker::Speed { rpm: 710.0, allowed }]),
-            (first, 0.5, 0.0, vec![Blocker::Standing]),
+            (second, -500.0, 0.0, vec![StartBlocker::WrongDirection]),
+            (first, -290.0, 0.0, vec![StartBlocker::Speed { rpm: 290.0, allowed }]),
+            (first, -710.0, 0.0, vec![StartBlocker::Speed { rpm: 710.0, allowed }]),
+            (first, 0.5, 0.0, vec![StartBlocker::Standing]),
             (first, -500.0, 6.9, vec![]),
-            (first, -500.0, 7.1, vec![Blocker::Unsteady { spread: 7.1 }]),
-            (Run::WiegandClockwise, 500.0, 26.0, vec![Blocker::Unsteady { spread: 26.0 }]),
+            (first, -500.0, 7.1, vec![StartBlocker::Unsteady { spread: 7.1 }]),
+            (Run::WiegandClockwise, 500.0, 26.0, vec![StartBlocker::Unsteady { spread: 26.0 }]),
             (Run::WiegandClockwise, 500.0, 20.0, vec![]),
             (Run::WiegandClockwise, 499.96, 0.0, vec![]),
             (Run::WiegandClockwise, 2000.0, 0.0, vec![]),
             (Run::WiegandClockwise, 2000.04, 0.0, vec![]),
             (Run::WiegandCounterclockwise, -1000.0, 0.0, vec![]),
-            (Run::WiegandCounterclockwise, 1000.0, 0.0, vec![Blocker::WrongDirection]),
+            (Run::WiegandCounterclockwise, 1000.0, 0.0, vec![StartBlocker::WrongDirection]),
             (
                 Run::WiegandClockwise,
                 450.0,
                 0.0,
-                vec![Blocker::Speed { rpm: 450.0, allowed: SpeedRange { least: 500.0, greatest: 2000.0 } }],
+                vec![StartBlocker::Speed { rpm: 450.0, allowed: SpeedRange { least: 500.0, greatest: 2000.0 } }],
             ),
         ];
         for (run, rpm, spread, blockers) in cases {
@@ -338,12 +338,12 @@ mod tests {
         let task = Task::Turn(Run::CalibrationCounterclockwise);
         for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
             let measured = Measured { celsius: Some(celsius), ..turning(-500.0, 0.0) };
-            let expected = if fits { vec![] } else { vec![Blocker::Temperature { celsius }] };
+            let expected = if fits { vec![] } else { vec![StartBlocker::Temperature { celsius }] };
             assert_eq!(demand(task, measured).blockers, expected);
         }
-        assert_eq!(demand(task, Measured::default()).blockers, [Blocker::Measuring]);
+        assert_eq!(demand(task, Measured::default()).blockers, [StartBlocker::Measuring]);
         let unreadable = Measured { unreadable: true, ..Measured::default() };
-        assert_eq!(demand(task, unreadable).blockers, [Blocker::NoPosition]);
+        assert_eq!(demand(task, unreadable).blockers, [StartBlocker::NoPosition]);
     }
 
     #[test]
@@ -362,16 +362,17 @@ mod tests {
     #[test]
     fn a_turning_shaft_blocks_a_standstill_step() {
         for task in [Task::Stand, Task::StandAtPlace] {
-            assert_eq!(demand(task, turning(3.0, 0.0)).blockers, [Blocker::Turning { rpm: 3.0 }]);
+            assert_eq!(demand(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
             assert!(demand(task, turning(0.0, 0.0)).is_ready());
         }
     }
 
     #[test]
     fn an_unattended_run_starts_when_ready_and_times_out() {
-        let mut nobody = Unattended { patience: Duration::from_secs(10) };
+        let mut nobody = UnattendedOperator { patience: Duration::from_secs(10) };
         let task = Task::Turn(Run::WiegandClockwise);
-        let mut ask = |measured, seconds| nobody.attend(&Demand::new(task, measured, Duration::from_secs(seconds)));
+        let mut ask =
+            |measured, seconds| nobody.attend(&OperatorPrompt::new(task, measured, Duration::from_secs(seconds)));
         let fits = Measured { celsius: None, ..turning(1000.0, 0.0) };
         let stands = Measured { celsius: None, ..turning(0.0, 0.0) };
         assert_eq!(ask(fits, 0), Answer::Go);

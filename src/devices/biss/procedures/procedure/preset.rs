@@ -1,7 +1,7 @@
 //! Preset (manual 6.7): the value is stored, or becomes the present position of the shaft. The encoder restarts after
 //! either.
 
-use super::guide::{Attended, Guide};
+use super::guide::{Guide, OperatorDecision};
 use super::{Activity, Failure, Outcome, ProcedureStep, Task};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::profile::{PresetParts, RegisterRange};
@@ -20,7 +20,7 @@ impl Guide<'_, '_> {
         self.step(ProcedureStep::Open);
         self.command(&procedure, PresetCommand::Edit.byte())?;
         self.await_status(&procedure, PresetStatus::WaitForValue.byte())?;
-        self.does(Activity::Entered);
+        self.set_activity(Activity::Entered);
         self.step(ProcedureStep::Write);
         for (address, byte) in &registers {
             self.master.write(*address, *byte)?;
@@ -40,7 +40,9 @@ impl Guide<'_, '_> {
 
     pub(super) fn fire_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::Preset)?;
-        let Attended::Go(_) = self.attend(Task::StandAtPlace)? else { return Ok(Outcome::Skipped { after: None }) };
+        let OperatorDecision::Go(_) = self.attend(Task::StandAtPlace)? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
         let from = self.master.position()?;
         self.enter(&procedure)?;
         self.step(ProcedureStep::Fire);
@@ -69,8 +71,8 @@ fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
 
 /// Returns the position of the shaft after the preset as a single number of steps.
 fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
-    let steps = if parts.sets_singleturn() { value.singleturn() } else { from.steps };
-    let turns = if parts.sets_multiturn() { value.multiturn() } else { from.turns };
+    let steps = if parts.includes_singleturn() { value.singleturn() } else { from.steps };
+    let turns = if parts.includes_multiturn() { value.multiturn() } else { from.turns };
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 

@@ -4,17 +4,17 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use crate::analysis::{Time, Unwrap};
+use crate::analysis::{PositionUnwrapper, SampleTime};
 use crate::devices::biss::procedures::PositionReading;
 
 #[derive(Debug)]
 pub(super) struct SpeedMonitor {
     /// Nanoseconds.
     window: i64,
-    unwrap: Option<Unwrap>,
+    unwrap: Option<PositionUnwrapper>,
     steps_per_turn: f64,
     /// Positions of the current and the previous window, oldest first.
-    places: VecDeque<(Time, i64)>,
+    places: VecDeque<(SampleTime, i64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,11 @@ impl SpeedMonitor {
         let bits = u32::from(reading.raw().bits);
         self.steps_per_turn = f64::powi(2.0, reading.singleturn_bits.into());
         let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
-        let unwrap = self.unwrap.get_or_insert_with(|| range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear));
+        let unwrap = self.unwrap.get_or_insert_with(|| {
+            range.and_then(PositionUnwrapper::rotary).unwrap_or_else(PositionUnwrapper::without_wrap)
+        });
         let word = i64::try_from(reading.position()).unwrap_or(i64::MAX);
-        let time = Time::from(reading.at);
+        let time = SampleTime::from(reading.at);
         let Some(place) = unwrap.next(word) else { return };
         if place.broken || self.places.back().is_some_and(|(before, _)| time <= *before) {
             self.places.clear();

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Demand, Run, Task};
+use super::{OperatorPrompt, Run, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::protocol::DeviceMode;
 
@@ -45,7 +45,7 @@ pub enum StepDetail {
         /// Expected duration, if known.
         expected: Option<Duration>,
     },
-    Demand(Demand),
+    Demand(OperatorPrompt),
 }
 
 /// Returns the steps of an operation. A restart needs no separate step to return the encoder to operation.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::guide::{Attended, Guide, RunCourse};
+use super::guide::{Guide, OperatorDecision, RunProgress};
 use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
@@ -20,19 +20,19 @@ impl Guide<'_, '_> {
     pub(super) fn test_wiegand(&mut self, save: bool) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::WiegandTest)?;
         let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
-        let Attended::Go(clockwise) = self.attend(Task::Turn(first))? else {
+        let OperatorDecision::Go(clockwise) = self.attend(Task::Turn(first))? else {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
         self.collect(first, &procedure, clockwise)?;
-        let Attended::Go(counterclockwise) = self.attend(Task::Turn(second))? else {
+        let OperatorDecision::Go(counterclockwise) = self.attend(Task::Turn(second))? else {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
         self.collect(second, &procedure, counterclockwise)?;
         self.step(ProcedureStep::Results);
         let results = procedure.data.and_then(|error| error.plus(1));
         let results = results.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
-        let bytes = self.master.read_run(results, 4)?;
+        let bytes = self.master.read_consecutive(results, 4)?;
         let Ok(bytes) = <[u8; 4]>::try_from(bytes) else {
             return Err(Failure::NotDescribed { kind: procedure.kind });
         };
@@ -56,7 +56,7 @@ impl Guide<'_, '_> {
         // The slowest motor with which a start is allowed takes 62 s.
         let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
         let expected = Duration::from_secs_f64(f64::from(WiegandResult::REVOLUTIONS) / rpm * 60.0);
-        let course = RunCourse {
+        let course = RunProgress {
             run,
             command: command.byte(),
             was,
@@ -81,13 +81,13 @@ impl Guide<'_, '_> {
     /// restart.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Save);
-        self.does(Activity::Saving);
+        self.set_activity(Activity::Saving);
         let ended = self.master.write(procedure.command, WiegandCommand::Save.byte());
         if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
             self.count_write_cycle();
         }
         if ended.as_ref().err().is_none_or(|error| !error.is_lost()) {
-            self.does(Activity::Nothing);
+            self.set_activity(Activity::Nothing);
         }
         Ok(ended?)
     }

@@ -1,7 +1,7 @@
 //! Single changes and guided runs by case.
 
 use super::*;
-use crate::devices::biss::profile::test_profiles::{areas, profile, with_bytes};
+use crate::devices::biss::profile::test_profiles::{areas, profile, set_bank_bytes};
 use crate::devices::biss::protocol::Descriptions;
 use crate::profile::Operation;
 
@@ -77,18 +77,18 @@ fn registers_owned_by_a_procedure_are_not_written_directly() {
 
 #[test]
 fn a_filter_is_selected_if_it_differs() {
-    let plan = plan_filter(&kit(), &device(), Filter::Dynamic).unwrap();
+    let plan = plan_filter(&kit(), &device(), PositionFilter::Dynamic).unwrap();
     assert_eq!(items(&plan), [("0x6E".to_owned(), 1)]);
-    assert_eq!(plan.base.filter, Some(Filter::Balanced));
-    assert!(plan_filter(&kit(), &device(), Filter::Balanced).unwrap().is_empty());
-    let error = plan_filter(&kit(), &device(), Filter::Unknown(9)).unwrap_err();
+    assert_eq!(plan.base.filter, Some(PositionFilter::Balanced));
+    assert!(plan_filter(&kit(), &device(), PositionFilter::Balanced).unwrap().is_empty());
+    let error = plan_filter(&kit(), &device(), PositionFilter::Unknown(9)).unwrap_err();
     assert_eq!(error, PlanError::UnknownFilter { code: 9 });
     let mut old = device();
     (old.identity.firmware, old.filter) = (Some(Firmware::new(1, 0, 9)), None);
-    let error = plan_filter(&kit(), &old, Filter::Dynamic).unwrap_err();
+    let error = plan_filter(&kit(), &old, PositionFilter::Dynamic).unwrap_err();
     assert_eq!(error.to_string(), "firmware 1.1.0 is needed, the encoder has 1.0.9");
     let any = Descriptions::built_in().named("BiSS C encoder").unwrap().clone();
-    let error = plan_filter(&any, &device(), Filter::Dynamic).unwrap_err();
+    let error = plan_filter(&any, &device(), PositionFilter::Dynamic).unwrap_err();
     assert!(matches!(error, PlanError::NoProcedure { kind: ProcedureKind::FilterSelection, .. }), "{error}");
 }
 
@@ -126,8 +126,8 @@ fn a_preset_is_stored_and_executed() {
 #[test]
 fn a_mounting_run_forms_one_plan() {
     let mut data = profile("another");
-    with_bytes(&mut data, 0x24, &[(0, 1), (1, 2)]);
-    let run = MountingRun {
+    set_bank_bytes(&mut data, 0x24, &[(0, 1), (1, 2)]);
+    let run = MountingSteps {
         calibrate: true,
         wiegand: Some(true),
         preset: PresetValue::new(0x8000, 0).map(|value| (value, PresetParts::Both)),
@@ -137,9 +137,9 @@ fn a_mounting_run_forms_one_plan() {
     let names: Vec<String> = plan.ops.iter().map(Op::item).collect();
     assert_eq!(names, ["calibration", "Wiegand test", "0x01:0x02+6", "position", "0x24:0x00+2"]);
     assert_eq!(plan.write_cycles(), 5);
-    assert_eq!((plan.base.filter, plan.base.preset), (Some(Filter::Balanced), Some(PresetValue::default())));
+    assert_eq!((plan.base.filter, plan.base.preset), (Some(PositionFilter::Balanced), Some(PresetValue::default())));
     assert_eq!(plan.base.banks.len(), 1);
-    let unsaved = MountingRun { wiegand: Some(false), ..MountingRun::default() };
+    let unsaved = MountingSteps { wiegand: Some(false), ..MountingSteps::default() };
     assert_eq!(
         items(&plan_mounting(&kit(), &device(), &unsaved, MotorSource::Other).unwrap()),
         [("Wiegand test".to_owned(), 0)]
@@ -148,7 +148,7 @@ fn a_mounting_run_forms_one_plan() {
 
 #[test]
 fn a_motor_that_needs_this_encoder_is_refused() {
-    let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
+    let run = |calibrate, wiegand| MountingSteps { calibrate, wiegand, ..MountingSteps::default() };
     for run in [run(true, None), run(false, Some(false))] {
         let error = plan_mounting(&kit(), &device(), &run, MotorSource::ThisEncoder).unwrap_err();
         assert_eq!(error, PlanError::DrivenByThisEncoder);
@@ -156,7 +156,7 @@ fn a_motor_that_needs_this_encoder_is_refused() {
     // A run without a motor does not ask for one.
     assert!(plan_mounting(&kit(), &device(), &run(false, None), MotorSource::ThisEncoder).is_ok());
     let mut dynamic = device();
-    dynamic.filter = Some(Filter::Dynamic);
+    dynamic.filter = Some(PositionFilter::Dynamic);
     let error = plan_mounting(&kit(), &dynamic, &run(true, None), MotorSource::Other).unwrap_err();
     assert_eq!(error, PlanError::NotBalanced { code: 4 });
     assert!(plan_mounting(&kit(), &dynamic, &run(false, Some(true)), MotorSource::Other).is_ok());

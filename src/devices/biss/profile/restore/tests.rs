@@ -1,9 +1,9 @@
 //! Plans by case.
 
 use super::*;
-use crate::devices::biss::profile::test_profiles::{areas, profile, with_bytes};
+use crate::devices::biss::profile::test_profiles::{areas, profile, set_bank_bytes};
 use crate::devices::biss::profile::{MountingItem, MountingMark, PresetSetting};
-use crate::profile::{Document, Profile};
+use crate::profile::{Profile, ProfileDocument};
 
 fn device(profile: &BissProfile) -> DeviceState {
     DeviceState {
@@ -45,7 +45,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
 fn differences_in_an_area_need_one_save() {
     let now = profile("1");
     let mut wanted = now.clone();
-    with_bytes(&mut wanted, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
+    set_bank_bytes(&mut wanted, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
     let restore = planned(&wanted, &device(&now));
     assert_eq!(ops(&restore), ["OEM data 0x24:0x10:00>01 0x24:0x11:00>02 0x24:0x30:00>03 (1)"]);
     assert_eq!(restore.plan.ops[0].item(), "0x24:0x10+2, 0x24:0x30");
@@ -65,21 +65,21 @@ fn restore_plans_for_each_case() {
         (
             "two areas are two saves, whatever lies between",
             |wanted| {
-                with_bytes(wanted, 0x30, &[(0, 1)]);
-                with_bytes(wanted, 0x05, &[(0, 1)]);
-                with_bytes(wanted, 0x24, &[(0, 1)]);
+                set_bank_bytes(wanted, 0x30, &[(0, 1)]);
+                set_bank_bytes(wanted, 0x05, &[(0, 1)]);
+                set_bank_bytes(wanted, 0x24, &[(0, 1)]);
             },
             &["EDS motor data 0x05:0x00:00>01 (1)", "OEM data 0x24:0x00:00>01 0x30:0x00:00>01 (1)"],
             2,
         ),
-        ("the filter", |wanted| wanted.filter = Some(Filter::Dynamic), &["0x6E (1)"], 1),
+        ("the filter", |wanted| wanted.filter = Some(PositionFilter::Dynamic), &["0x6E (1)"], 1),
         ("the preset value, stored and not carried out", |wanted| with_preset(wanted, 7, 0), &["0x01:0x02+6 (1)"], 1),
         (
             "all of it, what restarts the encoder last",
             |wanted| {
-                wanted.filter = Some(Filter::Dynamic);
+                wanted.filter = Some(PositionFilter::Dynamic);
                 with_preset(wanted, 7, 0);
-                with_bytes(wanted, 0x43, &[(0x3F, 9)]);
+                set_bank_bytes(wanted, 0x43, &[(0x3F, 9)]);
             },
             &["OEM data 0x43:0x3F:00>09 (1)", "0x6E (1)", "0x01:0x02+6 (1)"],
             3,
@@ -99,7 +99,7 @@ fn restore_plans_for_each_case() {
         let mut wanted = now.clone();
         // Banks that the profile does not mention are left alone.
         if label.starts_with("a profile") {
-            with_bytes(&mut now, 0x24, &[(0, 0x55)]);
+            set_bank_bytes(&mut now, 0x24, &[(0, 0x55)]);
         }
         change(&mut wanted);
         let restore = planned(&wanted, &device(&now));
@@ -116,12 +116,12 @@ fn restore_plans_for_each_case() {
 fn a_bank_marked_empty_in_the_profile_is_cleared() {
     let wanted = profile("1");
     let mut now = wanted.clone();
-    with_bytes(&mut now, 0x25, &[(1, 0xAB)]);
+    set_bank_bytes(&mut now, 0x25, &[(1, 0xAB)]);
     assert_eq!(ops(&planned(&wanted, &device(&now))), ["OEM data 0x25:0x01:AB>00 (1)"]);
     assert_eq!(banks_needed(&wanted, &areas()).len(), 64);
     let mut partial = wanted.clone();
     partial.data.iter_mut().for_each(|image| image.empty = None);
-    with_bytes(&mut partial, 0x25, &[(1, 0xAB)]);
+    set_bank_bytes(&mut partial, 0x25, &[(1, 0xAB)]);
     assert_eq!(banks_needed(&partial, &areas()), [0x25]);
 }
 
@@ -129,7 +129,7 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
 #[test]
 fn another_kind_needs_a_separate_permission() {
     let mut wanted = profile("1");
-    with_bytes(&mut wanted, 0x24, &[(0, 1)]);
+    set_bank_bytes(&mut wanted, 0x24, &[(0, 1)]);
     let now = device(&profile("2"));
     let kind_refused = |profile: &BissProfile| {
         let (profile, device) = (Box::new(profile.identity.kind()), Box::new(now.identity.kind()));
@@ -160,7 +160,7 @@ fn another_kind_needs_a_separate_permission() {
 fn another_encoder_keeps_its_mounting() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 0x18000, 3);
-    with_bytes(&mut wanted, 0x24, &[(0, 1), (1, 2), (2, 3)]);
+    set_bank_bytes(&mut wanted, 0x24, &[(0, 1), (1, 2), (2, 3)]);
     let item = MountingItem::Registers("0x24:0x01+2".parse().unwrap());
     wanted.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });
     let now = device(&profile("2"));
@@ -235,7 +235,7 @@ fn another_kind_and_a_missing_serial_number_are_refused() {
 fn values_the_encoder_cannot_have_are_reported_or_refused() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 5, 5);
-    wanted.filter = Some(Filter::Dynamic);
+    wanted.filter = Some(PositionFilter::Dynamic);
     let mut old = device(&profile("1"));
     (old.filter, old.preset) = (None, None);
     let restore = planned(&wanted, &old);
@@ -253,7 +253,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
     with_preset(&mut wanted, (1 << 17) - 1, (1 << 16) - 1);
     assert_eq!(planned(&wanted, &now).plan.write_cycles(), 2);
 
-    wanted.filter = Some(Filter::Unknown(5));
+    wanted.filter = Some(PositionFilter::Unknown(5));
     let error = plan_restore(&wanted, &now, RestoreOptions::default()).unwrap_err();
     assert_eq!(error, PlanError::UnknownFilter { code: 5 });
 
@@ -265,7 +265,7 @@ fn values_the_encoder_cannot_have_are_reported_or_refused() {
     read_only.areas[1].access = crate::devices::biss::protocol::Access::R;
     let mut other = profile("1");
     assert_eq!(planned(&other, &read_only).plan.ops, [], "nothing differs there");
-    with_bytes(&mut other, 0x24, &[(0, 1)]);
+    set_bank_bytes(&mut other, 0x24, &[(0, 1)]);
     let error = plan_restore(&other, &read_only, RestoreOptions::default()).unwrap_err();
     assert_eq!(error, PlanError::NoBank { bank: 0x24 });
 }
@@ -276,7 +276,7 @@ fn an_area_without_a_procedure_is_written_directly() {
     let mut now = device(&profile("1"));
     now.areas[1].open = None;
     let mut wanted = profile("1");
-    with_bytes(&mut wanted, 0x24, &[(0, 1), (1, 2)]);
+    set_bank_bytes(&mut wanted, 0x24, &[(0, 1), (1, 2)]);
     let restore = planned(&wanted, &now);
     assert_eq!(ops(&restore), ["0x24:0x00 (1)", "0x24:0x01 (1)"]);
     assert_eq!(restore.plan.write_cycles(), 2);
@@ -288,7 +288,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/biss").join(name);
         let text = std::fs::read_to_string(path).unwrap();
-        Document::parse(&text, BissProfile::FORMATS).unwrap().body.into_profile().unwrap()
+        ProfileDocument::parse(&text, BissProfile::FORMATS).unwrap().body.into_profile().unwrap()
     };
     let now = device(&profile("7"));
     let other = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };

@@ -3,7 +3,7 @@
 use super::*;
 use crate::devices::biss::protocol::{Access, Area, DeviceMode, RegisterAddress};
 use crate::profile::testing::changed_in_place;
-use crate::profile::{Body, Document};
+use crate::profile::{Body, ProfileDocument};
 
 const SHORT: &str = r#"(
     schema: 1, device: "biss",
@@ -16,7 +16,7 @@ const SHORT: &str = r#"(
 )"#;
 
 fn profile(text: &str) -> BissProfile {
-    Document::parse(text, BissProfile::FORMATS).unwrap().body.into_profile().unwrap()
+    ProfileDocument::parse(text, BissProfile::FORMATS).unwrap().body.into_profile().unwrap()
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn full() -> BissProfile {
     profile.identity.firmware = Some(Firmware::new(1, 6, 0));
     profile.identity.description = "quote \" and \\ and ä".to_owned();
     (profile.identity.multiturn_bits, profile.identity.singleturn_bits) = (Some(16), Some(17));
-    profile.filter = Some(Filter::Dynamic);
+    profile.filter = Some(PositionFilter::Dynamic);
     profile.preset = Some(PresetSetting { value: PresetValue::new(98_304, 7).unwrap(), unknown: Default::default() });
     profile.recorded = Recorded {
         eds: vec![Bank::filled(0x02, 0x17).into()],
@@ -62,10 +62,10 @@ fn full() -> BissProfile {
 
 #[test]
 fn emitted_profiles_parse_back() {
-    let mut document = Document::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full()));
+    let mut document = ProfileDocument::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full()));
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
-    assert_eq!(Document::parse(&text, BissProfile::FORMATS), Ok(document));
+    assert_eq!(ProfileDocument::parse(&text, BissProfile::FORMATS), Ok(document));
     // Lines that a user looks for.
     for line in [
         "    device: \"biss\",",
@@ -94,7 +94,7 @@ fn unknown_fields_are_kept() {
         .replace("bank: 0x25,", "bank: 0x25, label: \"motor\",")
         .replace("data:", "recorded: (place: \"d\", eds: [(bank: 2, bytes: ZEROS, from: \"e\")]), data:");
     let zeros = format!("\"{}\"", "00".repeat(64));
-    let document = Document::parse(&text.replace("ZEROS", &zeros), BissProfile::FORMATS).unwrap();
+    let document = ProfileDocument::parse(&text.replace("ZEROS", &zeros), BissProfile::FORMATS).unwrap();
     let written = document.emit();
     for kept in [
         "extra: {\"owner\": (floors: [1, 2], name: \"CK\")}",
@@ -109,7 +109,10 @@ fn unknown_fields_are_kept() {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
     assert_eq!(document.beyond.len(), 8);
-    assert_eq!(Document::parse(&written, BissProfile::FORMATS), Ok(Document { beyond: Vec::new(), ..document }));
+    assert_eq!(
+        ProfileDocument::parse(&written, BissProfile::FORMATS),
+        Ok(ProfileDocument { beyond: Vec::new(), ..document })
+    );
 }
 
 #[test]
@@ -159,13 +162,14 @@ fn profile_errors_name_their_location() {
     ];
     for (old, new, message) in cases {
         assert!(SHORT.contains(old), "{old}");
-        let error = Document::parse(&SHORT.replacen(old, new, 1), BissProfile::FORMATS).unwrap_err().to_string();
+        let error = ProfileDocument::parse(&SHORT.replacen(old, new, 1), BissProfile::FORMATS).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
     }
     let bank = SHORT.split("listed: [").nth(1).unwrap().split(")])]").next().unwrap();
-    let error = Document::parse(&SHORT.replace("listed: [", &format!("listed: [{bank}), ")), BissProfile::FORMATS)
-        .unwrap_err()
-        .to_string();
+    let error =
+        ProfileDocument::parse(&SHORT.replace("listed: [", &format!("listed: [{bank}), ")), BissProfile::FORMATS)
+            .unwrap_err()
+            .to_string();
     assert_eq!(error, "data[0].listed[1].bank: bank 0x25 appears twice");
 }
 
@@ -211,6 +215,6 @@ fn a_mark_covers_its_registers() {
 #[test]
 fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));
-    let edit = |own: &mut BissProfile| own.filter = Some(Filter::from_byte(0));
+    let edit = |own: &mut BissProfile| own.filter = Some(PositionFilter::from_byte(0));
     changed_in_place(text, edit, "filter: 4", "filter: 0x00");
 }

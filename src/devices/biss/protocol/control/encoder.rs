@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, with_crc};
 
-/// The encoder side of the control channel, driven cycle by cycle. Call [`cds`](Self::cds) at the start of a cycle and
-/// [`cdm`](Self::cdm) at its end.
+/// The encoder side of the control channel, driven cycle by cycle. Call [`next_cds`](Self::next_cds) at the start of a cycle and
+/// [`receive_cdm`](Self::receive_cdm) at its end.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     slave: u8,
@@ -66,7 +66,7 @@ impl Encoder {
     }
 
     /// Returns the CDS bit of the cycle that begins.
-    pub fn cds(&mut self) -> bool {
+    pub fn next_cds(&mut self) -> bool {
         match self.state {
             State::Rest | State::Ignoring | State::Start { access: Access::Read(None), .. } => false,
             State::Head { bits, cycle } => match cycle {
@@ -89,7 +89,7 @@ impl Encoder {
     }
 
     /// Receives the CDM bit of the cycle that ends, and returns the resulting event, if any.
-    pub fn cdm(&mut self, bit: bool) -> Option<Event> {
+    pub fn receive_cdm(&mut self, bit: bool) -> Option<Event> {
         let rested = self.zeros >= REST_CYCLES;
         self.zeros = if bit { 0 } else { self.zeros.saturating_add(1) };
         if self.zeros >= REST_CYCLES {

@@ -77,7 +77,7 @@ impl Line {
     /// Adds another encoder, which has been on the line for long.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
-        (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.cdm(false), None));
+        (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.receive_cdm(false), None));
     }
 
     fn ask(&mut self, request: Request) -> Result<Vec<u8>, ControlError> {
@@ -91,14 +91,14 @@ impl Line {
             }
             pending = pending.map(|(address, cycles)| (address, cycles - 1));
             let cycle = self.cds.len();
-            let cds = self.encoder.cds() ^ (self.flip_cds == Some(cycle));
+            let cds = self.encoder.next_cds() ^ (self.flip_cds == Some(cycle));
             let step = self.host.cycle(cds);
             if step.cdm || !self.cdm.is_empty() {
                 self.cds.push(cds);
                 self.cdm.push(step.cdm);
             }
             let cdm = step.cdm ^ (!self.cdm.is_empty() && self.flip_cdm == Some(cycle));
-            let event = self.encoder.cdm(cdm);
+            let event = self.encoder.receive_cdm(cdm);
             match event {
                 Some(Event::Read { address }) => pending = Some((address, self.processing)),
                 Some(Event::Write { address, value }) => self.registers[usize::from(address)] = value,
@@ -140,15 +140,15 @@ fn published_writes_match() {
 fn published_reply_matches() {
     let (_, cdm) = READS[4];
     let mut encoder = Encoder::new(0);
-    (0..REST_CYCLES).for_each(|_| assert!(!encoder.cds() && encoder.cdm(false).is_none()));
+    (0..REST_CYCLES).for_each(|_| assert!(!encoder.next_cds() && encoder.receive_cdm(false).is_none()));
     let mut cds = Vec::new();
     for bit in bits(cdm) {
-        cds.push(encoder.cds());
-        if encoder.cdm(bit) == Some(Event::Read { address: 0x66 }) {
+        cds.push(encoder.next_cds());
+        if encoder.receive_cdm(bit) == Some(Event::Read { address: 0x66 }) {
             encoder.answer(0x4B);
         }
     }
-    cds.push(encoder.cds());
+    cds.push(encoder.next_cds());
     assert_eq!(text(&cds), CDS_4B);
 
     let mut host = Host::default();
@@ -200,11 +200,11 @@ fn unknown_slaves_and_damaged_requests_get_no_reply() {
 #[test]
 fn a_command_is_ignored() {
     let mut encoder = Encoder::new(0);
-    (0..REST_CYCLES).for_each(|_| assert_eq!(encoder.cdm(false), None));
+    (0..REST_CYCLES).for_each(|_| assert_eq!(encoder.receive_cdm(false), None));
     // S, CTS = 0, CMD 01, CRC4 C; the following bits would read a register, but none is accessed.
     for bit in bits("1000000000011100101000000000000") {
-        encoder.cds();
-        assert_eq!(encoder.cdm(bit), None);
+        encoder.next_cds();
+        assert_eq!(encoder.receive_cdm(bit), None);
     }
 }
 
@@ -214,19 +214,19 @@ fn fourteen_zeros_reset_every_cycle() {
     let (_, _, write) = WRITES[2];
     for cut in 0..=write.len() {
         let mut line = Line::new(0);
-        (0..REST_CYCLES).for_each(|_| assert_eq!(line.encoder.cdm(false), None));
+        (0..REST_CYCLES).for_each(|_| assert_eq!(line.encoder.receive_cdm(false), None));
         for bit in &bits(write)[..cut] {
-            line.encoder.cds();
-            line.encoder.cdm(*bit);
+            line.encoder.next_cds();
+            line.encoder.receive_cdm(*bit);
         }
         // The host aborts there, and repeats the request.
         let read = line.ask(Request::read(0, 0x66, 1).unwrap());
         assert_eq!(read, Ok(vec![0xC3]), "cut at {cut}");
     }
     let mut encoder = Encoder::new(0);
-    (0..REST_CYCLES - 1).for_each(|_| assert_eq!(encoder.cdm(false), None));
-    encoder.cdm(true);
-    assert!(!encoder.cds(), "thirteen are too few");
+    (0..REST_CYCLES - 1).for_each(|_| assert_eq!(encoder.receive_cdm(false), None));
+    encoder.receive_cdm(true);
+    assert!(!encoder.next_cds(), "thirteen are too few");
 }
 
 #[test]
@@ -297,8 +297,8 @@ proptest! {
                 let _ = host.ask(Request::read(0, 0x40, 3).unwrap());
             }
             host.cycle(bit);
-            encoder.cds();
-            if let Some(Event::Read { .. }) = encoder.cdm(bit) {
+            encoder.next_cds();
+            if let Some(Event::Read { .. }) = encoder.receive_cdm(bit) {
                 encoder.answer(7);
             }
         }

@@ -17,7 +17,7 @@ use super::codes::CodeTable;
 use super::flaw::{self, Claim, Flaw};
 use super::german::GermanTexts;
 use super::name::Name;
-use super::register::{Access, Area, Decoding, Register, Role};
+use super::register::{Access, Area, Register, Role, ValueDecoding};
 use super::{Description, Identity, Lock, Procedure};
 use crate::bits::ByteOrder;
 
@@ -70,8 +70,8 @@ impl File {
     fn names(&mut self) -> impl Iterator<Item = &mut Name> {
         let registers = self.registers.0.iter_mut().flat_map(|register| {
             let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {
-                Decoding::Bits(bits) => Box::new(bits.iter_mut().map(|(_, name)| name)),
-                Decoding::Choice(choices) => Box::new(choices.iter_mut().map(|(_, name)| name)),
+                ValueDecoding::Bits(bits) => Box::new(bits.iter_mut().map(|(_, name)| name)),
+                ValueDecoding::Choice(choices) => Box::new(choices.iter_mut().map(|(_, name)| name)),
                 _ => Box::new(std::iter::empty()),
             };
             std::iter::once(&mut register.name).chain(values)
@@ -140,7 +140,7 @@ struct RegisterRow {
     #[serde(default)]
     default: Vec<u8>,
     #[serde(default)]
-    decode: Decoding,
+    decode: ValueDecoding,
     #[serde(default)]
     codes: Option<CodeTable>,
     #[serde(default)]
@@ -253,17 +253,17 @@ impl RegisterRow {
             return Err(Flaw::Default { name: name.to_string(), bytes: self.default.len(), width });
         }
         let decoding = match self.codes {
-            Some(table) => {
-                Decoding::Choice(table.rows().iter().map(|(code, name)| ((*code).into(), Name::new(*name))).collect())
-            }
+            Some(table) => ValueDecoding::Choice(
+                table.rows().iter().map(|(code, name)| ((*code).into(), Name::new(*name))).collect(),
+            ),
             None => self.decode,
         };
-        if let Decoding::Bits(bits) = &decoding
+        if let ValueDecoding::Bits(bits) = &decoding
             && let Some((bit, _)) = bits.iter().find(|(bit, _)| *bit >= width * 8)
         {
             return Err(Flaw::Bit { name: name.to_string(), bit: *bit, width });
         }
-        if let Decoding::Scaled { factor, offset } = decoding
+        if let ValueDecoding::Scaled { factor, offset } = decoding
             && !(factor.is_finite() && offset.is_finite())
         {
             return Err(Flaw::Endless(name.to_string()));

@@ -34,13 +34,13 @@ impl GermanTexts {
         }
         match self.0.into_keys().next() {
             None => Ok(()),
-            Some(english) => Err((place_of(&english, text), Flaw::GermanNeedless(english))),
+            Some(english) => Err((location_of(&english, text), Flaw::GermanNeedless(english))),
         }
     }
 }
 
 /// Returns the position of an entry, counted from 1; the start of the file if the entry is written in an unusual form.
-fn place_of(english: &str, text: &str) -> Position {
+fn location_of(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
     let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(is_behind_key));
     let found = text.lines().enumerate().find_map(|(line, words)| Some((line + 1, words, is_entry(words)?)));

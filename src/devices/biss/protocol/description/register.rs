@@ -23,7 +23,7 @@ pub struct Register {
     /// Factory setting of each byte, or empty if unknown.
     pub default: Vec<u8>,
     /// How the value is decoded.
-    pub decoding: Decoding,
+    pub decoding: ValueDecoding,
     /// Unit symbol, which may be empty.
     pub unit: String,
     /// Values that spend a flash write cycle when written.
@@ -79,7 +79,7 @@ pub enum Access {
 /// The way in which a register value is decoded.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Decoding {
+pub enum ValueDecoding {
     /// Plain number.
     #[default]
     Number,
@@ -183,20 +183,20 @@ impl Register {
     pub fn decode(&self, bytes: &[u8]) -> Option<Decoded<'_>> {
         let number = self.number(bytes)?;
         Some(match &self.decoding {
-            Decoding::Number => Decoded::Number(number),
-            Decoding::Hex => Decoded::Hex(number),
-            Decoding::Scaled { factor, offset } => Decoded::Scaled(number as f64 * factor + offset),
-            Decoding::Bits(names) => {
+            ValueDecoding::Number => Decoded::Number(number),
+            ValueDecoding::Hex => Decoded::Hex(number),
+            ValueDecoding::Scaled { factor, offset } => Decoded::Scaled(number as f64 * factor + offset),
+            ValueDecoding::Bits(names) => {
                 let name = |bit: u8| names.iter().find(|(own, _)| *own == bit).map(|(_, name)| name);
                 let set = (0..self.width * 8).filter(|bit| number >> bit & 1 == 1);
                 Decoded::Bits(set.map(|bit| (bit, name(bit))).collect())
             }
-            Decoding::Choice(names) => {
+            ValueDecoding::Choice(names) => {
                 let name = names.iter().find(|(own, _)| *own == number).map(|(_, name)| name);
                 Decoded::Choice(number, name)
             }
-            Decoding::Version => Decoded::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),
-            Decoding::Text => Decoded::Text(bytes.escape_ascii().to_string()),
+            ValueDecoding::Version => Decoded::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),
+            ValueDecoding::Text => Decoded::Text(bytes.escape_ascii().to_string()),
         })
     }
 

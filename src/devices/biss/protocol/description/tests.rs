@@ -206,7 +206,7 @@ fn an_encoder_finds_its_description() {
     let broken = "(name: 7)";
     let (own, errors) = Descriptions::read([("a.ron", anything), ("b.ron", broken), ("c.ron", own)]);
     assert_eq!(errors.iter().map(|error| error.file.as_str()).collect::<Vec<_>>(), ["b.ron"], "the rest still loads");
-    let all = all.overlaid_with(own);
+    let all = all.merged_with(own);
     assert_eq!(all.find(&kit_identity()).unwrap().name(), "mine");
     assert_eq!(all.find(&other).unwrap().name(), "anything");
     assert!(all.named("BiSS C encoder").is_some());

@@ -45,7 +45,7 @@ fn summed(mut bank: [u8; 64]) -> [u8; 64] {
 #[test]
 fn published_data_sheet_parses() {
     let eds = Eds::parse(EdsBank::Common, common()).unwrap();
-    assert_eq!(Eds::delivered(EdsBank::Common), eds);
+    assert_eq!(Eds::factory_default(EdsBank::Common), eds);
     assert_eq!(eds.emit(), common());
     let values: Vec<_> = eds.values().map(|(field, value)| (field.offset, value)).collect();
     assert_eq!(
@@ -70,7 +70,7 @@ fn published_data_sheet_parses() {
     );
 
     let eds = Eds::parse(EdsBank::Encoder, encoder()).unwrap();
-    assert_eq!(Eds::delivered(EdsBank::Encoder), eds);
+    assert_eq!(Eds::factory_default(EdsBank::Encoder), eds);
     let values: Vec<_> = eds.values().map(|(field, value)| (field.offset, value)).collect();
     assert_eq!(
         values,
@@ -78,8 +78,8 @@ fn published_data_sheet_parses() {
             (0x00, EdsValue::Number(1, "")),
             (0x01, EdsValue::Number(1, "banks")),
             (0x02, EdsValue::Profile(ProfileId::new(0x6129))),
-            (0x04, EdsValue::Feedback(Feedback::Error)),
-            (0x05, EdsValue::Feedback(Feedback::Warning)),
+            (0x04, EdsValue::Feedback(StatusBitMeaning::Error)),
+            (0x05, EdsValue::Feedback(StatusBitMeaning::Warning)),
             (0x06, EdsValue::Number(255, "")),
             (0x08, EdsValue::EncoderType(0)),
             (0x0A, EdsValue::Number(16, "bit")),

@@ -15,7 +15,7 @@ impl Encoder {
         self.update_runs(now);
         let rpm = self.drive.motor().rpm();
         if rpm != self.shaft.rpm() {
-            self.calibration.disturb(now);
+            self.calibration.force_failure(now);
             self.shaft.set_rpm(now, rpm);
             self.update_runs(now);
         }
@@ -30,7 +30,7 @@ impl Encoder {
         }
         self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
         if self.waits_for_direction() && !waited {
-            self.drive.reversed_motor();
+            self.drive.reverse_motor();
         }
     }
 

@@ -73,12 +73,12 @@ fn a_fast_stream_has_no_gap() {
     let layout = Layout::default();
     let (mut continuity, mut count) = (Continuity::at_start(), 0u64);
     let start_us = match &packets[0] {
-        Data::Biss(data) => data.t0_us,
+        StreamData::Biss(data) => data.t0_us,
         other => panic!("{other:?}"),
     };
     for data in &packets {
-        assert_eq!(continuity.follow(data), Gap::None);
-        let Data::Biss(data) = data else { panic!("{data:?}") };
+        assert_eq!(continuity.follow(data), PacketGap::None);
+        let StreamData::Biss(data) = data else { panic!("{data:?}") };
         assert_eq!((data.t0_us, data.period_us, data.width), (start_us + 50 * count, 50, 6));
         for (status, raw) in &data.values {
             let PositionData { multiturn, singleturn, error, .. } = layout.parse(*raw).unwrap();
@@ -101,7 +101,7 @@ fn noise_is_detected_by_the_crc() {
     host.ask(Request::BissStream { period_us: 100 });
     let packets = host.stream(1_000);
     let frames = packets.iter().flat_map(|data| match data {
-        Data::Biss(data) => data.values.clone(),
+        StreamData::Biss(data) => data.values.clone(),
         other => panic!("{other:?}"),
     });
     let bad = frames.clone().filter(|(_, raw)| Layout::default().parse(*raw).is_err()).count();

@@ -1,7 +1,7 @@
 //! Saved values: data, filter, preset; the wear of the flash; and a loss of power during a save.
 
 use super::*;
-use crate::devices::biss::protocol::Filter;
+use crate::devices::biss::protocol::PositionFilter;
 
 /// Reference 5.3.
 #[test]
@@ -81,7 +81,7 @@ fn the_filter_is_selected_as_in_the_reference() {
     for (register, value) in [("0x6E", 0x04), ("0x6A", 0x00), ("0x6B", 0x00)] {
         host.expect(register, value);
     }
-    assert_eq!((host.encoder.flash().filter(), host.encoder.flash().cycles()), (Filter::Dynamic, 1));
+    assert_eq!((host.encoder.flash().filter(), host.encoder.flash().cycles()), (PositionFilter::Dynamic, 1));
 }
 
 /// Reference 5.5: 270°.

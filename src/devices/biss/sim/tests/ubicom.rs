@@ -6,13 +6,13 @@ use crate::sim::ByteDevice;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 struct Line {
-    port: Port,
+    port: UbicomPort,
     now: Moment,
 }
 
 impl Line {
     fn with(query: &str) -> Self {
-        Line { port: Port::new(&config(query)), now: Moment::START }
+        Line { port: UbicomPort::new(&config(query)), now: Moment::START }
     }
 
     /// Returns everything that arrives until nothing more will, and when the last byte did.
@@ -171,7 +171,7 @@ fn line_faults_are_injected() {
     line.expect(READ_TEMPERATURE, TEMPERATURE);
     line.expect(READ_TEMPERATURE, TEMPERATURE);
     line.expect(READ_TEMPERATURE, "");
-    line.port.set_faults(&crate::sim::Faults::default());
+    line.port.set_faults(&crate::sim::SimulatedFaults::default());
     line.expect(READ_TEMPERATURE, TEMPERATURE);
     let noisy = |seed: u64| {
         let mut line = Line::with(&format!("seed={seed}&fault=flip:0.05,drop:0.05,garbage:0.05"));

@@ -11,7 +11,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
 
 pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -27,7 +27,7 @@ fn step(step: CheckStep) -> Text {
     })
 }
 
-fn finding(finding: &CheckFinding) -> Text {
+fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Name(name) => plain(name),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),

@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::FrameError;
 use crate::devices::biss::state::TEXTS;
 
-pub fn damage(damage: &Damage) -> Text {
+pub fn damage_text(damage: &Damage) -> Text {
     let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("biss.damage_no_frame").with("bytes", bytes),
@@ -58,8 +58,8 @@ mod tests {
             Damage::Inconsistent,
         ];
         for found in cases {
-            assert_eq!(damage(&found).words(Language::English), found.to_string());
-            assert_ne!(damage(&found).words(Language::German), found.to_string());
+            assert_eq!(damage_text(&found).words(Language::English), found.to_string());
+            assert_ne!(damage_text(&found).words(Language::German), found.to_string());
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
-    Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, ProcedureStep, Run, SpeedRange, Task, WiegandReport,
+    Advice, CalibrationReport, Motion, OperatorPrompt, Outcome, ProcedureStep, Run, SpeedRange, StartBlocker, Task,
+    WiegandReport,
 };
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage, WiegandResult};
@@ -71,25 +72,25 @@ pub fn task(task: Task) -> Text {
     }
 }
 
-pub fn blocker_text(blocker: Blocker) -> Text {
+pub fn blocker_text(blocker: StartBlocker) -> Text {
     match blocker {
-        Blocker::Measuring => TEXTS.text("guide.measuring"),
-        Blocker::NoPosition => TEXTS.text("guide.no_position"),
-        Blocker::Standing => TEXTS.text("guide.standing"),
-        Blocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
-        Blocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
-        Blocker::Speed { rpm, allowed } => speeds(TEXTS.text("guide.speed"), allowed).with_number("rpm", rpm, 0),
-        Blocker::Unsteady { spread } => TEXTS.text("guide.unsteady").with_number("spread", spread, 1),
-        Blocker::Temperature { celsius } => temperatures(TEXTS.text("guide.temperature").with("celsius", celsius)),
+        StartBlocker::Measuring => TEXTS.text("guide.measuring"),
+        StartBlocker::NoPosition => TEXTS.text("guide.no_position"),
+        StartBlocker::Standing => TEXTS.text("guide.standing"),
+        StartBlocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
+        StartBlocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
+        StartBlocker::Speed { rpm, allowed } => speeds(TEXTS.text("guide.speed"), allowed).with_number("rpm", rpm, 0),
+        StartBlocker::Unsteady { spread } => TEXTS.text("guide.unsteady").with_number("spread", spread, 1),
+        StartBlocker::Temperature { celsius } => temperatures(TEXTS.text("guide.temperature").with("celsius", celsius)),
     }
 }
 
-pub fn advice(advice: Advice) -> Text {
+pub fn advice_text(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {
             let run = Run::CalibrationCounterclockwise;
             let text = speeds(TEXTS.text("guide.recommended"), recommended);
-            text.with_number("fluctuation", run.fluctuation().unwrap_or_default(), 0)
+            text.with_number("fluctuation", run.max_fluctuation().unwrap_or_default(), 0)
         }
         Advice::TableAtRisk => TEXTS.text("guide.table_at_risk"),
         Advice::Marked => TEXTS.text("guide.marked"),
@@ -104,7 +105,7 @@ pub fn calibration_needs() -> Text {
 }
 
 /// Returns the text on what a Wiegand test requires of the motor.
-pub fn wiegand_needs() -> Text {
+pub fn wiegand_requirements() -> Text {
     revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 
@@ -114,7 +115,7 @@ fn revolutions(text: Text) -> Text {
 }
 
 pub(super) fn temperatures(text: Text) -> Text {
-    text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
+    text.with("coldest", OperatorPrompt::CELSIUS.start()).with("warmest", OperatorPrompt::CELSIUS.end())
 }
 
 pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {

@@ -3,19 +3,19 @@
 use std::time::Duration;
 
 use crate::app::explain::{document, in_both_languages, url};
-use crate::app::{DeviceType, Kinds};
+use crate::app::{DeviceType, KindRegistry};
 use crate::devices::biss::procedures::{Station, Transport};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::state::Encoder;
-use crate::link::Query;
-use crate::profile::{Document, Formats, Profile};
+use crate::link::UrlQuery;
+use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn link_errors_are_explained_in_both_languages() {
     for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Transport::Adapter, Duration::ZERO).unwrap_err();
         in_both_languages(&url(&error), &error);
     }
@@ -28,7 +28,7 @@ fn profile_errors_are_explained_in_both_languages() {
         device_id: "01 01 68 11 00 01", manufacturer: "46 72"), recorded: (wiegand_last: [1, 2, 3, 4]),
         mounting: [(item: "calibration")], data: [(banks: (0x24, 0x43), listed: [(bank: 0x25, bytes: "BYTES")])])"#
         .replace("BYTES", &bytes);
-    assert!(Document::parse(&good, BissProfile::FORMATS).is_ok());
+    assert!(ProfileDocument::parse(&good, BissProfile::FORMATS).is_ok());
     let cases = [
         ("0x6129", "0x16129"),
         ("1.6.0", "1.6"),
@@ -42,7 +42,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("data: [", "data: [(banks: (0, 0x24)), "),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
     }
 }

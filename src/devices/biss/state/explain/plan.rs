@@ -7,10 +7,10 @@ use crate::devices::biss::state::TEXTS;
 
 /// Returns the message for a profile that belongs to another type of encoder.
 pub fn other_type(types: &OtherType) -> Text {
-    of_types(types, "biss_review.other_kind", "biss_review.other_width")
+    type_mismatch_text(types, "biss_review.other_kind", "biss_review.other_width")
 }
 
-fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
+fn type_mismatch_text(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
     match types {
         OtherType::Kind { profile, device } => TEXTS.text(kind).with("profile", profile).with("device", device),
         OtherType::Width { profile, device } => TEXTS.text(width).with("profile", profile).with("device", device),
@@ -22,7 +22,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => of_types(types, "biss_plan.other_kind", "biss_plan.other_width"),
+        PlanError::OtherType(types) => type_mismatch_text(types, "biss_plan.other_kind", "biss_plan.other_width"),
         PlanError::NoBank { bank } => TEXTS.text("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
         PlanError::PresetTooWide { value, bits, .. } => {
             let last = (1u64 << bits.min(&63)) - 1;

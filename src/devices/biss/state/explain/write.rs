@@ -45,8 +45,8 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
         Op::FirePreset { parts, value } => {
             let new = match parts {
                 PresetParts::Both => preset(*value, bits),
-                PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, bits),
-                PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, bits),
+                PresetParts::Singleturn => preset_text("biss_op.singleturn", *value, bits),
+                PresetParts::Multiturn => preset_text("biss_op.multiturn", *value, bits),
             };
             OperationTexts::one(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
         }
@@ -81,10 +81,10 @@ fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
 
 /// Returns a preset value as angle, step and turn, for a singleturn position of the given width.
 pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
-    preset_words("biss_op.preset_value", value, singleturn_bits)
+    preset_text("biss_op.preset_value", value, singleturn_bits)
 }
 
-fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Text {
+fn preset_text(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Text {
     let steps = (1_u64 << singleturn_bits) as f64;
     TEXTS
         .text(id)
@@ -107,7 +107,12 @@ pub fn written(written: &Written) -> Text {
 
 /// Returns the messages for an interrupted write, which state the progress, the cause, the state in which the encoder
 /// was left, and the location of the backup.
-pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+pub(super) fn interruption_text(
+    interrupted: &Interrupted,
+    backup: &Path,
+    planned: usize,
+    kind: ChangeKind,
+) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![if interrupted.cause.is_cancelled() {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
@@ -242,7 +247,7 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::devices::biss::procedures::Error;
-    use crate::devices::biss::procedures::procedure::{Blocker, PossibleValues, ProcedureStep, Task};
+    use crate::devices::biss::procedures::procedure::{PossibleValues, ProcedureStep, StartBlocker, Task};
     use crate::devices::biss::procedures::write::EndState;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
@@ -253,7 +258,7 @@ mod tests {
     }
 
     fn interruption_texts(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
-        let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
+        let texts = interruption_text(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
         let words = |language| texts.iter().map(|text| text.words(language)).collect();
         (words(English), words(German))
     }
@@ -263,7 +268,7 @@ mod tests {
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
-            let text = interruption(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
+            let text = interruption_text(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
             assert!(text.terminal().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
             text.terminal()
         };
@@ -309,7 +314,7 @@ mod tests {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
             let last = |left| {
                 let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
-                interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+                interruption_text(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
             };
             let found = last(None);
             let unknown = last(left_state(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
@@ -387,11 +392,11 @@ mod tests {
             (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
             (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
-            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "at rest"),
+            (Failure::NotReady { task: Task::Turn(first), blockers: vec![StartBlocker::Standing] }, "at rest"),
             (
                 Failure::NotReady {
                     task: Task::Stand,
-                    blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
+                    blockers: vec![StartBlocker::Standing, StartBlocker::Temperature { celsius: 20 }],
                 },
                 "is at rest. The encoder temperature is 20 °C",
             ),

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::LinkFigures;
-use crate::buses::ethernet_ip::protocol::{IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdle};
+use super::LinkStatistics;
+use crate::buses::ethernet_ip::protocol::{IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader};
 use crate::devices::hiperdrive::procedures::Opened;
-use crate::devices::hiperdrive::protocol::{InImage, Layout, OutImage};
+use crate::devices::hiperdrive::protocol::{InputImage, Layout, OutputImage};
 use crate::units::Moment;
 
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub struct Connection {
     /// Time without packets after which the target ends the connection.
     timeout: Duration,
     began: bool,
-    figures: LinkFigures,
+    figures: LinkStatistics,
 }
 
 /// Number of intervals without a packet after which no motion may start, and a connection with a moving drive is
@@ -55,11 +55,11 @@ impl Connection {
             awake: now,
             timeout: opened.timeout,
             began: false,
-            figures: LinkFigures { interval: come_interval, ..LinkFigures::default() },
+            figures: LinkStatistics { interval: come_interval, ..LinkStatistics::default() },
         }
     }
 
-    pub const fn figures(&self) -> &LinkFigures {
+    pub const fn figures(&self) -> &LinkStatistics {
         &self.figures
     }
 
@@ -93,7 +93,7 @@ impl Connection {
     }
 
     /// Handles a packet, and returns its data if the packet is valid and new.
-    pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InImage> {
+    pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InputImage> {
         let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
         let packet = packet.filter(|packet| packet.connection == self.to_originator);
         let image = packet.as_ref().and_then(|packet| self.image(&packet.data));
@@ -119,7 +119,7 @@ impl Connection {
     }
 
     /// Returns the packet that is due. After a delay, missed packets are skipped and a single one is returned.
-    pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
+    pub fn packet(&mut self, now: Moment, image: &OutputImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {
             self.next = now + self.send_interval;
@@ -128,13 +128,13 @@ impl Connection {
         self.count = self.count.wrapping_add(1);
         self.figures.sent += 1;
         let data = image.emit(self.layout);
-        let header = Some(RunIdle::RUN);
+        let header = Some(RunIdleHeader::RUN);
         IoPacket { connection: self.to_target, sequence: self.sequence, count: self.count, header, data }.emit()
     }
 
-    fn image(&self, data: &[u8]) -> Option<InImage> {
+    fn image(&self, data: &[u8]) -> Option<InputImage> {
         let bare = data.len().checked_sub(HEADER).filter(|length| *length == self.layout.length());
         let data = if bare.is_some() { data.get(HEADER..)? } else { data };
-        InImage::parse(data, self.layout).ok()
+        InputImage::parse(data, self.layout).ok()
     }
 }

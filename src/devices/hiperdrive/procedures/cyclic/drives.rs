@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::{Connection, CyclicLost, LinkFigures, ParameterReadings, ParameterWords};
+use super::{Connection, ConnectionLoss, LinkStatistics, ParameterReadings, ParameterWords};
 use crate::devices::hiperdrive::procedures::Opened;
-use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Intent, Permit};
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage, ParameterNumber};
+use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, MotionIntent, Permit};
+use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, OutputData, OutputImage, ParameterNumber};
 use crate::units::Moment;
 
 #[derive(Clone, Debug)]
@@ -15,7 +15,7 @@ pub struct Drives {
     /// Parameter words, if the connection has them.
     words: Option<ParameterWords>,
     places: usize,
-    lost: Option<CyclicLost>,
+    lost: Option<ConnectionLoss>,
     ending: Option<Ending>,
 }
 
@@ -23,7 +23,7 @@ pub struct Drives {
 struct ControlledDrive {
     dead_man: DeadMan,
     /// Data received since the last packet.
-    received: Option<Actual>,
+    received: Option<ActualValues>,
 }
 
 /// Shutdown of the connection: the drives are stopped, then switched off, and then nothing more is sent.
@@ -59,7 +59,7 @@ impl Drives {
         self.controlled.iter().map(|man| &man.dead_man)
     }
 
-    pub const fn figures(&self) -> &LinkFigures {
+    pub const fn figures(&self) -> &LinkStatistics {
         self.connection.figures()
     }
 
@@ -76,7 +76,7 @@ impl Drives {
     }
 
     /// Returns why the connection has ended without being closed.
-    pub const fn lost(&self) -> Option<&CyclicLost> {
+    pub const fn lost(&self) -> Option<&ConnectionLoss> {
         self.lost.as_ref()
     }
 
@@ -87,7 +87,7 @@ impl Drives {
     /// Returns whether there is nothing more to send, so that the connection can be closed.
     pub fn is_over(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
-        off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
+        off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))
     }
 
     /// Begins to end the connection. The drives are stopped, then switched off.
@@ -99,7 +99,7 @@ impl Drives {
     }
 
     /// Records that the connection was lost. The drives are still told to stop, since they may receive packets.
-    pub fn connection_lost(&mut self, now: Moment, why: CyclicLost) {
+    pub fn connection_lost(&mut self, now: Moment, why: ConnectionLoss) {
         if self.lost.is_none() && !self.is_over() {
             self.lost = Some(why);
         }
@@ -123,20 +123,25 @@ impl Drives {
     }
 
     /// Returns the packet that is due now, if any. All packets received so far must have been passed on before.
-    pub fn poll(&mut self, now: Moment, intent: &Intent, permit: impl Fn(DriveNumber) -> Permit) -> Option<Vec<u8>> {
+    pub fn poll(
+        &mut self,
+        now: Moment,
+        intent: &MotionIntent,
+        permit: impl Fn(DriveNumber) -> Permit,
+    ) -> Option<Vec<u8>> {
         if now < self.poll_at() || self.is_over() {
             return None;
         }
         let moves = self.dead_man_switches().any(|man| !man.is_idle());
         if let Some(after) = self.connection.silent(now, moves) {
-            self.connection_lost(now, CyclicLost::Silent { after });
+            self.connection_lost(now, ConnectionLoss::Silent { after });
         }
         if self.connection.is_quiet(now) {
             self.controlled.iter_mut().for_each(|man| man.dead_man.contact_lost(now));
         }
-        let rest = Intent::rest(intent.drive, intent.number, now);
+        let rest = MotionIntent::rest(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
-        let mut drives = vec![OutData::default(); self.places];
+        let mut drives = vec![OutputData::default(); self.places];
         for man in &mut self.controlled {
             let number = man.dead_man.drive();
             let setpoint = man.dead_man.next(now, man.received.take(), intent, &permit(number));
@@ -147,15 +152,15 @@ impl Drives {
         self.look_whether_it_ends(now, &mut drives);
         let moving_on = self.dead_man_switches().find(|man| man.gives_up()).map(DeadMan::drive);
         if let Some(number) = moving_on {
-            self.lost.get_or_insert(CyclicLost::DoesNotStand(number));
+            self.lost.get_or_insert(ConnectionLoss::DoesNotStand(number));
             self.close(now);
         }
         let ending = self.is_ending();
         let pkw = self.words.as_mut().filter(|_| !ending).map(|words| words.request(now));
-        Some(self.connection.packet(now, &OutImage { drives, pkw }))
+        Some(self.connection.packet(now, &OutputImage { drives, pkw }))
     }
 
-    fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutData]) {
+    fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutputData]) {
         let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
         if idle || ending.off > 0 || now.since(ending.since) >= LADDER {

@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::LinkError;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LinkFigures {
+pub struct LinkStatistics {
     /// Interval between packets in both directions, as agreed by the target.
     pub interval: Duration,
     pub sent: u64,
@@ -30,7 +30,7 @@ pub struct Histogram {
 
 /// Reason why a cyclic connection ended without being closed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CyclicLost {
+pub enum ConnectionLoss {
     /// No packet has arrived for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent { after: Duration },

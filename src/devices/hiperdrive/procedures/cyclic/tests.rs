@@ -4,11 +4,15 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::{Connection, CyclicLost, Drives};
-use crate::buses::ethernet_ip::protocol::{ForwardClose, Owner, Path, RequestTimeout};
+use super::{Connection, ConnectionLoss, Drives};
+use crate::buses::ethernet_ip::protocol::{EPath, ForwardClose, Owner, RequestTimeout};
 use crate::devices::hiperdrive::procedures::Opened;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Intent, MotionRequest, Permit};
-use crate::devices::hiperdrive::protocol::{ByteOrder, Direction, DriveNumber, Layout, OutData, OutImage, Topology};
+use crate::devices::hiperdrive::procedures::dead_man::{
+    Ended, MotionIntent, MotionRequest, Permit, SpeedTorque, TargetState,
+};
+use crate::devices::hiperdrive::protocol::{
+    ByteOrder, Direction, DriveNumber, Layout, OutputData, OutputImage, Topology,
+};
 use crate::units::Moment;
 
 fn at(ms: u64) -> Moment {
@@ -18,7 +22,7 @@ fn at(ms: u64) -> Moment {
 /// Returns the packets of the reference (section 9): 00020001 in both directions; 10 ms.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
-    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };
+    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::assemblies(104, 100, 101) };
     let interval = Duration::from_millis(10);
     Opened {
         to_target_id: 0x0002_0001,
@@ -54,8 +58,8 @@ fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
 #[test]
 fn packets_match_the_reference() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
-    let out = OutData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
-    let image = OutImage { drives: vec![out], pkw: None };
+    let out = OutputData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
+    let image = OutputImage { drives: vec![out], pkw: None };
     assert_eq!(connection.packet(at(0), &image), hex(TO_TARGET));
     let came = connection.on_packet(at(4), &hex(TO_ORIGINATOR)).unwrap();
     assert_eq!((came.drives[0].status.word(), came.drives[0].position), (0x2A37, 163_840));
@@ -83,9 +87,9 @@ fn the_connection_determines_the_image_layout() {
     ] {
         for (order, word) in [(ByteOrder::Little, [0x01, 0x04]), (ByteOrder::Big, [0x04, 0x01])] {
             let mut connection = Connection::new(&opened(topology, pkw, order), at(0));
-            let mut drives = vec![OutData::default(); topology.drives().into()];
+            let mut drives = vec![OutputData::default(); topology.drives().into()];
             drives.last_mut().unwrap().control = 0x0401;
-            let packet = connection.packet(at(0), &OutImage { drives, pkw: None });
+            let packet = connection.packet(at(0), &OutputImage { drives, pkw: None });
             // 14 bytes of addresses, 4 of the item, 6 of count and header.
             assert_eq!(packet.len(), 24 + data, "{topology:?} {pkw}");
             let place = 24 + 8 * (usize::from(topology.drives()) - 1);
@@ -99,7 +103,7 @@ fn the_connection_determines_the_image_layout() {
 #[test]
 fn deadlines_do_not_drift() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(5));
-    let image = OutImage { drives: vec![OutData::default()], pkw: None };
+    let image = OutputImage { drives: vec![OutputData::default()], pkw: None };
     let mut due = Vec::new();
     for late in [0, 3, 9, 0, 25, 0] {
         let now = connection.poll_at() + Duration::from_millis(late);
@@ -116,7 +120,7 @@ fn permit(_: DriveNumber) -> Permit {
 /// Adapter whose drive follows at once, cycle by cycle.
 struct Bench {
     drives: Drives,
-    intent: Intent,
+    intent: MotionIntent,
     ms: u64,
     sequence: u32,
     status: u16,
@@ -126,12 +130,12 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let drives = Drives::new(&opened(Topology::Adapter, true, ByteOrder::Little), &[DriveNumber::FIRST], 0, at(0));
-        let intent = Intent::rest(DriveNumber::FIRST, 0, at(0));
+        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, at(0));
         Bench { drives, intent, ms: 0, sequence: 0, status: 0x2A30, answers: true }
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { request: wish, number: self.intent.number + 1, ..self.intent };
+        self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
     /// Returns the control word of the interval.
@@ -164,7 +168,7 @@ impl Bench {
 
     fn jogs() -> Self {
         let mut bench = Bench::new();
-        bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+        bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
         assert_eq!(bench.cycles(40).join(" "), "0400 0401 0409 1419 1459");
         bench
     }
@@ -179,13 +183,13 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert_eq!(bench.cycles(3).join(" "), "1459");
     assert!(bench.drives.lost().is_none());
     assert_eq!(bench.cycles(1).join(" "), "1419");
-    assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(40) }));
+    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(40) }));
     assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, Ended::Lost)));
-    bench.act(MotionRequest::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_over());
     bench.answers = true;
-    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
@@ -221,7 +225,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
 #[test]
 fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();
-    bench.act(MotionRequest::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(TargetState::Enabled));
     bench.cycles(20);
     for missing in [3, 5, 7] {
         bench.answers = false;
@@ -233,11 +237,11 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     // No motion starts meanwhile.
     bench.answers = false;
     bench.cycles(4);
-    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
     assert_eq!(bench.cycles(3).join(" "), "0409");
     assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((2, Ended::Deaf)));
     bench.cycles(2);
-    assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
+    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(90) }));
 }
 
 /// Closing: stop, standstill, off three times.
@@ -265,7 +269,7 @@ fn a_drive_that_does_not_stop_ends_the_connection() {
     }
     words.dedup();
     assert_eq!(words, [0x1419, 0x0401, 0x0000]);
-    assert_eq!(bench.drives.lost(), Some(&CyclicLost::DoesNotStand(DriveNumber::FIRST)));
+    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
 }
 
 /// One drive moves at a time: an act for another one stops the first.
@@ -274,13 +278,13 @@ fn only_one_drive_moves_at_a_time() {
     let second = DriveNumber::new(2).unwrap();
     let mut drives =
         Drives::new(&opened(Topology::Hub4, false, ByteOrder::Little), &[DriveNumber::FIRST, second], 0, at(0));
-    let effort = Effort::JOG;
-    let mut intent = Intent::rest(DriveNumber::FIRST, 1, at(0));
+    let effort = SpeedTorque::JOG;
+    let mut intent = MotionIntent::rest(DriveNumber::FIRST, 1, at(0));
     let mut moves = [false; 4];
     for ms in (0..3000).step_by(10) {
         intent = match ms {
-            500 => Intent { request: MotionRequest::Move { target: 9999, effort }, number: 2, ..intent },
-            1500 => Intent { drive: second, number: 3, ..intent },
+            500 => MotionIntent { request: MotionRequest::Move { target: 9999, effort }, number: 2, ..intent },
+            1500 => MotionIntent { drive: second, number: 3, ..intent },
             _ => intent,
         };
         intent.refreshed = at(ms);

@@ -7,12 +7,12 @@ use crate::units::Moment;
 
 /// A motion request to a drive with the time of its last refresh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Intent {
+pub struct MotionIntent {
     pub drive: DriveNumber,
     pub request: MotionRequest,
     /// Number of the user's action, higher than all previous numbers.
     pub number: u64,
-    /// Time of the last refresh. No motion continues after [`Intent::FRESH`].
+    /// Time of the last refresh. No motion continues after [`MotionIntent::FRESH`].
     pub refreshed: Moment,
 }
 
@@ -20,26 +20,26 @@ pub struct Intent {
 pub enum MotionRequest {
     /// No request. A motion stops, and the state of the drive is held.
     Rest,
-    Lead(Goal),
+    Lead(TargetState),
     Acknowledge,
     /// Moves to a position in scaled steps.
     Move {
         target: i32,
-        effort: Effort,
+        effort: SpeedTorque,
     },
     /// Moves by a number of scaled steps from the present position, as a positioning job that a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
-        effort: Effort,
+        effort: SpeedTorque,
     },
     Pause,
     Resume,
     /// Turns while the button is held, at most up to the end of the range.
     Jog {
         direction: Direction,
-        /// Speed and torque; limited to [`Effort::JOG`] if `outward` is set.
-        effort: Effort,
+        /// Speed and torque; limited to [`SpeedTorque::JOG`] if `outward` is set.
+        effort: SpeedTorque,
         /// Whether the motion may lead further out from a position outside the limits, which with a wrong reference can
         /// be the only way back.
         outward: bool,
@@ -47,14 +47,14 @@ pub enum MotionRequest {
     Run {
         direction: Direction,
         end: RunEnd,
-        effort: Effort,
+        effort: SpeedTorque,
     },
     Stop,
 }
 
 /// A state to which a drive can be led.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Goal {
+pub enum TargetState {
     /// Not ready, 0000h.
     Off,
     /// Ready, 0400h.
@@ -66,7 +66,7 @@ pub enum Goal {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Effort {
+pub struct SpeedTorque {
     pub speed: Percent,
     pub torque: Percent,
 }
@@ -103,7 +103,7 @@ pub enum Lock {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     Idle,
-    Leading(Goal),
+    Leading(TargetState),
     Starting(MotionKind),
     Moving(MotionKind),
     Paused { target: i32 },
@@ -213,18 +213,18 @@ pub enum Refusal {
     Absent,
 }
 
-impl Intent {
+impl MotionIntent {
     /// Time for which a refresh is valid. Refreshes must be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
     /// Creates an intent that requests nothing.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
-        Intent { drive, request: MotionRequest::Rest, number, refreshed: now }
+        MotionIntent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
     /// Returns whether the request has not been refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
-        now.since(self.refreshed) > Intent::FRESH
+        now.since(self.refreshed) > MotionIntent::FRESH
     }
 }
 
@@ -242,9 +242,9 @@ impl MotionRequest {
     }
 
     /// Returns speed and torque, or `None` for requests without them, such as a stop.
-    pub fn effort(self) -> Option<Effort> {
+    pub fn effort(self) -> Option<SpeedTorque> {
         match self {
-            MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
+            MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(SpeedTorque::JOG)),
             MotionRequest::Move { effort, .. }
             | MotionRequest::Step { effort, .. }
             | MotionRequest::Jog { effort, .. }
@@ -259,39 +259,40 @@ impl MotionRequest {
     }
 }
 
-impl Goal {
-    pub const ALL: [Goal; 4] = [Goal::Off, Goal::Ready, Goal::Operational, Goal::Enabled];
+impl TargetState {
+    pub const ALL: [TargetState; 4] =
+        [TargetState::Off, TargetState::Ready, TargetState::Operational, TargetState::Enabled];
 
-    pub(super) const fn above(self) -> Goal {
+    pub(super) const fn above(self) -> TargetState {
         match self {
-            Goal::Off => Goal::Ready,
-            Goal::Ready => Goal::Operational,
-            Goal::Operational | Goal::Enabled => Goal::Enabled,
+            TargetState::Off => TargetState::Ready,
+            TargetState::Ready => TargetState::Operational,
+            TargetState::Operational | TargetState::Enabled => TargetState::Enabled,
         }
     }
 
     /// Returns the goal that corresponds to a state. Faults and the switch-on lock rank lowest.
-    pub(super) const fn of(state: State) -> Goal {
+    pub(super) const fn of(state: State) -> TargetState {
         match state {
-            State::NotReady | State::Fault | State::Locked => Goal::Off,
-            State::Ready => Goal::Ready,
-            State::Operational => Goal::Operational,
-            State::Enabled | State::Moving => Goal::Enabled,
+            State::NotReady | State::Fault | State::Locked => TargetState::Off,
+            State::Ready => TargetState::Ready,
+            State::Operational => TargetState::Operational,
+            State::Enabled | State::Moving => TargetState::Enabled,
         }
     }
 }
 
-impl Effort {
+impl SpeedTorque {
     /// Zero speed and torque, which start no motion.
-    pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
+    pub const NONE: SpeedTorque = SpeedTorque { speed: Percent::NONE, torque: Percent::NONE };
     /// Default speed and torque of a jog: 10 % and 25 %.
-    pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
+    pub const JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };
     /// Default speed and torque of a move: a quarter of the speed, which leaves time for STOP after a mistyped target,
     /// and the torque that an axis may require.
-    pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
+    pub const MOVE: SpeedTorque = SpeedTorque { speed: percent(25), torque: Percent::FULL };
 
-    pub fn at_most(self, other: Effort) -> Self {
-        Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
+    pub fn at_most(self, other: SpeedTorque) -> Self {
+        SpeedTorque { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
     }
 
     /// Returns whether speed or torque is 0 %, so that no motion would start.
@@ -332,7 +333,7 @@ impl Permit {
         if let Some(lock) = self.locks.first() {
             return Err(Refusal::Locked(*lock));
         }
-        if request.effort().is_some_and(Effort::is_none) {
+        if request.effort().is_some_and(SpeedTorque::is_none) {
             return Err(Refusal::NoEffort);
         }
         if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {

@@ -1,12 +1,12 @@
 //! Reasons why a running act ends early.
 
-use super::{CONTACT_TIMEOUT, DeadMan, Ended, Intent, Lock, MotionKind, MotionRequest, Permit, Refusal, Stage};
-use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
+use super::{CONTACT_TIMEOUT, DeadMan, Ended, Lock, MotionIntent, MotionKind, MotionRequest, Permit, Refusal, Stage};
+use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
     /// Ends the running motion if there is a reason to.
-    pub(super) fn check_for_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
+    pub(super) fn check_for_end(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         if self.act.is_none() {
             return;
         }
@@ -23,7 +23,7 @@ impl DeadMan {
 
     /// Accepts a pause or resume, which continue the job, only as the next request, because a stop in between may have
     /// been missed.
-    fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
+    fn follow(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
         let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
         let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
@@ -46,14 +46,14 @@ impl DeadMan {
         }
     }
 
-    fn cause(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) -> Option<Ended> {
+    fn cause(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) -> Option<Ended> {
         let act = self.act?;
         let status = actual.status;
         let state = status.state();
         let is_out_of_contact = self.received.is_none_or(|(at, _)| now.since(at) > CONTACT_TIMEOUT);
         let (down, acknowledges) = match (self.stage, act.request) {
             (Stage::Lead(lead), MotionRequest::Lead(_)) => {
-                (lead.only_downwards(state), lead.goal() == super::Goal::Off)
+                (lead.only_removes_torque(state), lead.goal() == super::TargetState::Off)
             }
             (_, MotionRequest::Acknowledge) => (false, true),
             _ => (false, false),
@@ -89,7 +89,13 @@ impl DeadMan {
     }
 
     /// Returns how the motion ends if the intent no longer requests it, or `None` if it still does.
-    fn is_overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
+    fn is_overtaken(
+        &self,
+        number: u64,
+        request: MotionRequest,
+        intent: &MotionIntent,
+        permit: &Permit,
+    ) -> Option<Ended> {
         let rests = matches!(
             intent.request,
             MotionRequest::Rest | MotionRequest::Stop | MotionRequest::Pause | MotionRequest::Resume

@@ -1,64 +1,64 @@
 //! Leading a drive through its states: one control word after another, each until the drive has followed or a time
 //! limit expires (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
 
-use super::{Act, DeadMan, Ended, Goal, Mark, MotionKind, Refusal, SETTLE, STEP, Stage};
-use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
+use super::{Act, DeadMan, Ended, Mark, MotionKind, Refusal, SETTLE, STEP, Stage, TargetState};
+use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lead {
-    goal: Goal,
+pub(super) struct StateSequencer {
+    goal: TargetState,
     acknowledges: bool,
     /// The control word being sent, and the mark at which sending began.
     word: Option<(ControlWord, Mark)>,
 }
 
-enum GoalSequenceStep {
+enum StateSequenceStep {
     By(ControlWord),
     There,
     Lost,
 }
 
-impl Goal {
-    pub(super) const fn of_word(word: ControlWord) -> Goal {
+impl TargetState {
+    pub(super) const fn of_word(word: ControlWord) -> TargetState {
         if !word.has(ControlBit::Control) {
-            Goal::Off
+            TargetState::Off
         } else if !word.has(ControlBit::On) {
-            Goal::Ready
+            TargetState::Ready
         } else if !word.has(ControlBit::Enable) {
-            Goal::Operational
+            TargetState::Operational
         } else {
-            Goal::Enabled
+            TargetState::Enabled
         }
     }
 
     pub(super) const fn word(self) -> ControlWord {
         match self {
-            Goal::Off => ControlWord::OFF,
-            Goal::Ready => ControlWord::READY,
-            Goal::Operational => ControlWord::OPERATIONAL,
-            Goal::Enabled => ControlWord::ENABLED,
+            TargetState::Off => ControlWord::OFF,
+            TargetState::Ready => ControlWord::READY,
+            TargetState::Operational => ControlWord::OPERATIONAL,
+            TargetState::Enabled => ControlWord::ENABLED,
         }
     }
 }
 
-impl Lead {
-    pub(super) const fn to(goal: Goal) -> Self {
-        Lead { goal, acknowledges: false, word: None }
+impl StateSequencer {
+    pub(super) const fn to(goal: TargetState) -> Self {
+        StateSequencer { goal, acknowledges: false, word: None }
     }
 
     /// Creates a lead out of a fault or the switch-on lock, to the ready state.
     const fn out() -> Self {
-        Lead { goal: Goal::Ready, acknowledges: true, word: None }
+        StateSequencer { goal: TargetState::Ready, acknowledges: true, word: None }
     }
 
-    pub(super) const fn goal(&self) -> Goal {
+    pub(super) const fn goal(&self) -> TargetState {
         self.goal
     }
 
     /// Returns whether the lead only removes torque or keeps it off, so that no refresh is required.
-    pub(super) fn only_downwards(&self, state: State) -> bool {
-        self.goal <= Goal::of(state) || self.goal == Goal::Off
+    pub(super) fn only_removes_torque(&self, state: State) -> bool {
+        self.goal <= TargetState::of(state) || self.goal == TargetState::Off
     }
 
     /// Returns the control word being sent, which is zero before the first step.
@@ -66,7 +66,7 @@ impl Lead {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
 
-    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> GoalSequenceStep {
+    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> StateSequenceStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has received a word for long enough to have processed it: the edge that follows must not be missed.
@@ -74,42 +74,42 @@ impl Lead {
             |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
         let state = status.state();
         let word = match (state, self.goal) {
-            (State::Fault | State::Locked, Goal::Off) => return GoalSequenceStep::There,
-            (State::Fault, _) if !self.acknowledges => return GoalSequenceStep::Lost,
+            (State::Fault | State::Locked, TargetState::Off) => return StateSequenceStep::There,
+            (State::Fault, _) if !self.acknowledges => return StateSequenceStep::Lost,
             (State::Fault, _) if seen(W::ACKNOWLEDGE) || sends(W::OPERATIONAL) => W::OPERATIONAL,
             (State::Fault, _) => W::ACKNOWLEDGE,
             (State::Locked, _) if seen(W::OPERATIONAL) || sends(W::READY) => W::READY,
             (State::Locked, _) => W::OPERATIONAL,
             // Below operational the drive forgets the run.
-            (_, goal) if after_run && goal > Goal::Ready => W::READY,
-            (_, goal) => match Goal::of(state) {
+            (_, goal) if after_run && goal > TargetState::Ready => W::READY,
+            (_, goal) => match TargetState::of(state) {
                 level if level > goal => goal.word(),
                 level if level < goal => level.above().word(),
                 // Nothing else starts before it stands still.
                 _ if state == State::Moving => W::ENABLED,
-                _ if after_run && goal == Goal::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
-                _ => return GoalSequenceStep::There,
+                _ if after_run && goal == TargetState::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
+                _ => return StateSequenceStep::There,
             },
         };
         let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.is_past(since, STEP);
-        if self.word.is_some_and(patience) { GoalSequenceStep::Lost } else { GoalSequenceStep::By(word) }
+        if self.word.is_some_and(patience) { StateSequenceStep::Lost } else { StateSequenceStep::By(word) }
     }
 }
 
 impl DeadMan {
     /// Starts to lead the drive to the requested state.
-    pub(super) fn lead(&mut self, now: Moment, actual: Actual, goal: Goal) -> Result<(), Refusal> {
-        if actual.status.has(StatusBit::Fault) && goal != Goal::Off {
+    pub(super) fn lead(&mut self, now: Moment, actual: ActualValues, goal: TargetState) -> Result<(), Refusal> {
+        if actual.status.has(StatusBit::Fault) && goal != TargetState::Off {
             return Err(Refusal::Fault);
         }
-        self.stage = Stage::Lead(Lead::to(goal));
+        self.stage = Stage::Lead(StateSequencer::to(goal));
         self.advance(now, actual);
         Ok(())
     }
 
-    pub(super) fn acknowledge(&mut self, now: Moment, actual: Actual) -> Result<(), Refusal> {
+    pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), Refusal> {
         if matches!(actual.status.state(), State::Fault | State::Locked) {
-            self.stage = Stage::Lead(Lead::out());
+            self.stage = Stage::Lead(StateSequencer::out());
             self.advance(now, actual);
         } else {
             self.end(Ended::Done);
@@ -117,16 +117,16 @@ impl DeadMan {
         Ok(())
     }
 
-    pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
+    pub(super) fn go_on(&mut self, now: Moment, actual: ActualValues, mut lead: StateSequencer) {
         let mark = self.mark(now);
         match lead.next_step(mark, actual.status, self.after_run) {
-            GoalSequenceStep::By(word) => {
+            StateSequenceStep::By(word) => {
                 if lead.word.is_none_or(|(sent, _)| sent != word) {
                     lead.word = Some((word, mark));
                 }
                 self.stage = Stage::Lead(lead);
             }
-            GoalSequenceStep::There => {
+            StateSequenceStep::There => {
                 self.level = lead.goal;
                 self.stage = Stage::Rest { moves: None };
                 match self.act {
@@ -134,7 +134,7 @@ impl DeadMan {
                     _ => self.end(Ended::Done),
                 }
             }
-            GoalSequenceStep::Lost => {
+            StateSequenceStep::Lost => {
                 self.hold_state(actual.status.state());
                 self.end(Ended::NoAnswer(actual.status.state()));
             }
@@ -142,7 +142,7 @@ impl DeadMan {
     }
 
     /// Enters the stage whose control word allows a motion to begin, without starting one.
-    fn arm(&mut self, now: Moment, actual: Actual, kind: MotionKind) {
+    fn arm(&mut self, now: Moment, actual: ActualValues, kind: MotionKind) {
         let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(kind, MotionKind::Run { .. });
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
@@ -150,14 +150,14 @@ impl DeadMan {
 
     /// Holds the present state or a lower one after the lead has been abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
-        let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
+        let highest = if self.after_run { TargetState::Ready } else { TargetState::Enabled };
         self.level = match state {
             // Bit 0 stays set for the acknowledgement.
-            State::Fault | State::Locked => Goal::Operational,
-            state => Goal::of(state),
+            State::Fault | State::Locked => TargetState::Operational,
+            state => TargetState::of(state),
         }
         .min(highest)
-        .min(Goal::of_word(self.sent.control));
+        .min(TargetState::of_word(self.sent.control));
         self.stage = Stage::Rest { moves: None };
     }
 }

@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
-use super::lead::Lead;
-use super::{DeadMan, Effort, Ended, Goal, LEVEL_TIME, Motion, MotionKind, SETTLE, SHORT, START, StopLevel};
-use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
+use super::lead::StateSequencer;
+use super::{
+    DeadMan, Ended, LEVEL_TIME, Motion, MotionKind, SETTLE, SHORT, START, SpeedTorque, StopLevel, TargetState,
+};
+use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +15,7 @@ pub(super) enum Stage {
         /// Time since which the drive has been moving although it should be at rest.
         moves: Option<Moment>,
     },
-    Lead(Lead),
+    Lead(StateSequencer),
     /// The drive has received the setpoints of a motion and the control word from which the motion can start.
     Arm {
         since: Mark,
@@ -80,7 +82,7 @@ impl StopLevel {
 }
 
 impl DeadMan {
-    pub(super) fn advance(&mut self, now: Moment, actual: Actual) {
+    pub(super) fn advance(&mut self, now: Moment, actual: ActualValues) {
         let mark = self.mark(now);
         let has = |bit| actual.status.has(bit);
         let toggled = |acknowledged| has(StatusBit::SetpointAcknowledged) != acknowledged;
@@ -123,7 +125,7 @@ impl DeadMan {
         }
     }
 
-    fn check_motion_end(&mut self, mark: Mark, actual: Actual, stands: Mark) {
+    fn check_motion_end(&mut self, mark: Mark, actual: ActualValues, stands: Mark) {
         let Stage::Go { since, .. } = self.stage else { return };
         // A report from before the start may still say that it stands still, or has reached another target.
         let late = mark.is_past(since, SETTLE);
@@ -157,7 +159,7 @@ impl DeadMan {
 
     /// Escalates the stop while the drive does not stop, and holds its state once it is at rest. After a run, that
     /// state is ready, from which the next motion leads up again.
-    fn raise_stop_level(&mut self, mark: Mark, actual: Actual) {
+    fn raise_stop_level(&mut self, mark: Mark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
             return;
@@ -172,38 +174,38 @@ impl DeadMan {
     }
 
     /// Supervises a drive at rest. The held state follows the drive down, and a moving drive is stopped.
-    fn watch(&mut self, now: Moment, actual: Actual, moves: Option<Moment>) {
+    fn watch(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
         match actual.status.state() {
-            State::Fault | State::Locked => self.level = self.level.min(Goal::Operational),
-            state => self.level = self.level.min(Goal::of(state)),
+            State::Fault | State::Locked => self.level = self.level.min(TargetState::Operational),
+            state => self.level = self.level.min(TargetState::of(state)),
         }
         let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
         self.stage = Stage::Rest { moves };
         if moves.is_some_and(|since| now.since(since) >= LEVEL_TIME) {
             let level = match self.level {
-                Goal::Enabled => StopLevel::Operational,
-                Goal::Operational | Goal::Ready => StopLevel::Off,
-                Goal::Off => StopLevel::Close,
+                TargetState::Enabled => StopLevel::Operational,
+                TargetState::Operational | TargetState::Ready => StopLevel::Off,
+                TargetState::Off => StopLevel::Close,
             };
-            let (begun, word) = (self.mark(now), self.rest_word());
+            let (begun, word) = (self.mark(now), self.rest_control_word());
             self.stage = Stage::Stop { level, since: now, begun, word };
         }
     }
 
     /// Returns the control word of a drive at rest. If the drive is enabled, this is a stop with bit 6 unchanged.
-    fn rest_word(&self) -> ControlWord {
+    fn rest_control_word(&self) -> ControlWord {
         let sent = self.sent.control;
-        let enabled = Goal::of_word(sent) == Goal::Enabled;
+        let enabled = TargetState::of_word(sent) == TargetState::Enabled;
         match self.level {
-            Goal::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
+            TargetState::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
             level => level.word(),
         }
     }
 
-    pub(super) fn setpoint(&self, actual: Actual) -> Setpoint {
+    pub(super) fn setpoint(&self, actual: ActualValues) -> Setpoint {
         let motion = self.act.and_then(|act| act.motion);
         let control = match (&self.stage, motion) {
-            (Stage::Rest { .. }, _) => self.rest_word(),
+            (Stage::Rest { .. }, _) => self.rest_control_word(),
             (Stage::Lead(lead), _) => lead.word(),
             (Stage::Stop { level: StopLevel::Mode, word, .. }, _) => *word,
             (Stage::Stop { level: StopLevel::Operational, .. }, _) => ControlWord::OPERATIONAL,
@@ -217,17 +219,17 @@ impl DeadMan {
             (stage, Some(target)) if stage.has_motion() => target,
             _ => actual.position,
         };
-        let Effort { speed, torque } =
-            if matches!(self.stage, Stage::Stop { .. }) || Goal::of_word(control) == Goal::Enabled {
+        let SpeedTorque { speed, torque } =
+            if matches!(self.stage, Stage::Stop { .. }) || TargetState::of_word(control) == TargetState::Enabled {
                 self.effort
             } else {
-                Effort::NONE
+                SpeedTorque::NONE
             };
         Setpoint { control, speed, torque, target }
     }
 }
 
-fn moving(stage: &Stage, kind: MotionKind, actual: Actual) -> ControlWord {
+fn moving(stage: &Stage, kind: MotionKind, actual: ActualValues) -> ControlWord {
     let toggled = |acknowledged: &bool, toggle: bool| {
         let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
         ControlWord::hold_present_state(status)

@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use super::{DeadMan, Effort, Goal, Intent, Lock, MotionRequest, Permit, Phase};
-use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, StatusWord};
+use super::{DeadMan, Lock, MotionIntent, MotionRequest, Permit, Phase, SpeedTorque, TargetState};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, StatusWord};
 use crate::units::Moment;
 
 const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
@@ -12,7 +12,7 @@ const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
 struct Bench {
     man: DeadMan,
     now: Moment,
-    intent: Intent,
+    intent: MotionIntent,
     permit: Permit,
     status: u16,
     position: i32,
@@ -32,7 +32,7 @@ impl Bench {
         Bench {
             man: DeadMan::new(DriveNumber::FIRST, 0),
             now: Moment::START,
-            intent: Intent::rest(DriveNumber::FIRST, 0, Moment::START),
+            intent: MotionIntent::rest(DriveNumber::FIRST, 0, Moment::START),
             permit: Permit::within(-10_000, 10_000),
             status,
             position: 0,
@@ -42,7 +42,8 @@ impl Bench {
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { request: wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
+        self.intent =
+            MotionIntent { request: wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
     }
 
     fn cycle(&mut self) {
@@ -50,7 +51,7 @@ impl Bench {
         if self.refreshes {
             self.intent.refreshed = self.now;
         }
-        let actual = Actual { status: StatusWord::new(self.status), speed: 0, position: self.position };
+        let actual = ActualValues { status: StatusWord::new(self.status), speed: 0, position: self.position };
         self.man.next(self.now, self.is_connected.then_some(actual), &self.intent, &self.permit);
     }
 
@@ -60,14 +61,14 @@ impl Bench {
 
     /// Creates a bench whose dead-man is in the given phase of the documented table.
     fn in_phase(name: &str) -> Self {
-        let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
-        let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+        let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::JOG };
+        let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false };
         let is_below = matches!(name, "at rest" | "leading" | "up to a motion");
         let mut bench = Bench::new(if is_below { READY } else { ENABLED });
         bench.cycles(3);
         match name {
             "at rest" => {}
-            "leading" => bench.act(MotionRequest::Lead(Goal::Enabled)),
+            "leading" => bench.act(MotionRequest::Lead(TargetState::Enabled)),
             "up to a motion" | "moving (run)" | "stopping" => bench.act(jog),
             _ => bench.act(job),
         }
@@ -114,7 +115,7 @@ impl Bench {
                 let moves = self.man.ended().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
                 assert!(moves, "not before");
             }
-            "another action" => self.act(MotionRequest::Lead(Goal::Operational)),
+            "another action" => self.act(MotionRequest::Lead(TargetState::Operational)),
             "no status from the drive" => {
                 self.is_connected = false;
                 self.man.contact_lost(self.now);

@@ -5,14 +5,15 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{
-    DeadMan, Effort, Ended, Goal, Intent, LEVEL_TIME, Lock, MotionRequest, Outside, Permit, Phase, Refusal, Side,
+    DeadMan, Ended, LEVEL_TIME, Lock, MotionIntent, MotionRequest, Outside, Permit, Phase, Refusal, Side, SpeedTorque,
+    TargetState,
 };
 use crate::devices::hiperdrive::protocol::{
-    Actual, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
+    ActualValues, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
 };
 use crate::units::Moment;
 
-const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
 
 /// Bits 1, 2, 11 and 13 to 15, and those of jog steps.
 const NEVER: u16 = 0b1110_1011_0000_0110;
@@ -35,7 +36,7 @@ struct Tick {
 
 fn wish() -> impl Strategy<Value = MotionRequest> {
     let direction = prop_oneof![Just(Direction::Clockwise), Just(Direction::Counterclockwise)];
-    let effort = prop_oneof![3 => Just(FULL), 1 => Just(Effort::NONE)];
+    let effort = prop_oneof![3 => Just(FULL), 1 => Just(SpeedTorque::NONE)];
     let end = prop_oneof![Just(RunEnd::RangeEnd), Just(RunEnd::Endless)];
     prop_oneof![
         Just(MotionRequest::Rest),
@@ -43,7 +44,7 @@ fn wish() -> impl Strategy<Value = MotionRequest> {
         Just(MotionRequest::Pause),
         Just(MotionRequest::Resume),
         Just(MotionRequest::Acknowledge),
-        (0usize..4).prop_map(|goal| MotionRequest::Lead(Goal::ALL[goal])),
+        (0usize..4).prop_map(|goal| MotionRequest::Lead(TargetState::ALL[goal])),
         (any::<i32>(), effort.clone())
             .prop_map(|(target, effort)| MotionRequest::Move { target: target % 2000, effort }),
         (any::<i32>(), effort.clone()).prop_map(|(by, effort)| MotionRequest::Step { by: by % 500, effort }),
@@ -79,8 +80,8 @@ fn tick() -> impl Strategy<Value = Tick> {
     )
 }
 
-fn heard(said: Option<(u16, i32)>) -> Option<Actual> {
-    said.map(|(status, position)| Actual { status: StatusWord::new(status), speed: 0, position })
+fn heard(said: Option<(u16, i32)>) -> Option<ActualValues> {
+    said.map(|(status, position)| ActualValues { status: StatusWord::new(status), speed: 0, position })
 }
 
 /// Every relevant status before every relevant word: a standing word starts nothing.
@@ -109,14 +110,14 @@ fn a_standstill_word_starts_no_motion() {
 fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
     let permit = Permit::within(-1000, 1000);
-    let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+    let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false };
     let mut status = 0x2A37;
     let mut words = Vec::new();
     for at in 0..100u64 {
         let now = Moment::START + Duration::from_millis(at * 10);
         let wish = if at < 20 { jog } else { MotionRequest::Stop };
         let intent =
-            Intent { drive: DriveNumber::FIRST, request: wish, number: 1 + u64::from(at >= 20), refreshed: now };
+            MotionIntent { drive: DriveNumber::FIRST, request: wish, number: 1 + u64::from(at >= 20), refreshed: now };
         let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
         // It acknowledges a run with bit 12, and forgets it only below operational.
         status = match word {
@@ -142,7 +143,7 @@ fn an_unseen_stop_still_ends_the_job() {
         let mut now = Moment::START;
         let mut look = |man: &mut DeadMan, number: u64, wish: MotionRequest, status: u16| {
             now = now + Duration::from_millis(10);
-            let intent = Intent { drive: DriveNumber::FIRST, request: wish, number, refreshed: now };
+            let intent = MotionIntent { drive: DriveNumber::FIRST, request: wish, number, refreshed: now };
             man.next(now, heard(Some((status, 0))), &intent, &permit).control
         };
         let job = MotionRequest::Move { target: 500, effort: FULL };
@@ -167,19 +168,19 @@ fn an_unseen_stop_still_ends_the_job() {
 struct Looks {
     man: DeadMan,
     now: Moment,
-    intent: Intent,
+    intent: MotionIntent,
     permit: Permit,
 }
 
 impl Looks {
     fn new() -> Self {
-        let intent = Intent::rest(DriveNumber::FIRST, 0, Moment::START);
+        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, Moment::START);
         let man = DeadMan::new(DriveNumber::FIRST, 0);
         Looks { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { request: wish, number: self.intent.number + 1, ..self.intent };
+        self.intent = MotionIntent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
     /// Calls the dead-man this number of times with a drive that reports this.
@@ -205,7 +206,7 @@ fn doubted_limits_delay_the_start_of_a_motion() {
         looks.look(3, 0x2A31, 0);
         looks.act(wish);
         looks.look(1, 0x2A31, 0);
-        assert_eq!(looks.man.phase(), Phase::Leading(Goal::Enabled));
+        assert_eq!(looks.man.phase(), Phase::Leading(TargetState::Enabled));
         looks.permit.doubted = true;
         looks.look(1, 0x2A33, 0);
         assert_eq!(looks.man.ended(), Some((1, doubted)), "{wish:?}");
@@ -284,7 +285,7 @@ proptest! {
     fn the_dead_man_holds_its_invariants_for_any_events(ticks in prop::collection::vec(tick(), 1..120)) {
         let mut man = DeadMan::new(DriveNumber::FIRST, 5);
         let mut now = Moment::START;
-        let mut intent = Intent::rest(DriveNumber::FIRST, 5, now);
+        let mut intent = MotionIntent::rest(DriveNumber::FIRST, 5, now);
         let mut before = Setpoint::default();
         // Acts up to this one have ended, by the test's own record.
         let mut over = 5;
@@ -298,7 +299,7 @@ proptest! {
                 let carries = matches!(wish, MotionRequest::Pause | MotionRequest::Resume) && own && !intent.is_stale(now);
                 over = if carries { over } else { intent.number };
                 let drive = if own { DriveNumber::FIRST } else { other };
-                intent = Intent { drive, request: wish, number: intent.number + 1, refreshed: now };
+                intent = MotionIntent { drive, request: wish, number: intent.number + 1, refreshed: now };
             }
             if let (Some(wish), None) = (meddled, act) {
                 // Of an act that has been taken; one that still waits may be another.

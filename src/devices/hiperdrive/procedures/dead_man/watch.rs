@@ -13,7 +13,7 @@
 //! a drive is ±1° (manual, technical data; reference 5).
 
 use super::{DeadMan, Ended, Lock, Motion, MotionKind, MotionRequest, Permit, Refusal, SHORT, Stage};
-use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ impl Outside {
 impl Permit {
     /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the limit that is
     /// within a degree. Returns `None` if the drive is inside, or if no limits are known.
-    pub fn outside(&self, actual: Actual) -> Option<Outside> {
+    pub fn outside(&self, actual: ActualValues) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
             // In a range so narrow that both limits are within a degree, it may be either.
@@ -106,7 +106,7 @@ impl Motion {
 
     /// Returns the distance of a job to its target in steps. For a run, which has no target, returns a value that
     /// decreases as the drive moves in the direction of the run.
-    fn distance(&self, actual: Actual) -> i64 {
+    fn distance(&self, actual: ActualValues) -> i64 {
         let position = i64::from(actual.position);
         match self.kind {
             MotionKind::Job { target } => (position - i64::from(target)).abs(),
@@ -117,7 +117,7 @@ impl Motion {
 }
 
 impl Watch {
-    pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
+    pub(super) fn begin(motion: &Motion, actual: ActualValues, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
         let outside = limits.and_then(|_| permit.outside(actual));
         let best = motion.distance(actual);
@@ -133,7 +133,7 @@ impl Watch {
     }
 
     /// Compares a report with the limits and the target, and returns how the motion must end, if it must.
-    pub(super) fn check_report(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+    pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance(actual);
         self.best = self.best.min(distance);
@@ -150,7 +150,7 @@ impl Watch {
 
     /// Detects that the drive continues to move during a waiting job, by more than a degree from its position after
     /// braking.
-    fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
+    fn wait(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<Ended> {
         if !has_braked {
             self.waits_at = None;
             return None;
@@ -160,7 +160,7 @@ impl Watch {
         moves.then_some(Ended::Left(State::Moving))
     }
 
-    fn check_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+    fn check_limits(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<Ended> {
         let (limits, degree) = (motion.limits(permit)?, i64::from(permit.degree));
         let runs = matches!(motion.kind, MotionKind::Run { .. });
         let beyond = Some(Ended::Beyond { position: actual.position });
@@ -188,7 +188,7 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].
-    pub fn check_place(&self, request: MotionRequest, actual: Actual) -> Result<(), Refusal> {
+    pub fn check_place(&self, request: MotionRequest, actual: ActualValues) -> Result<(), Refusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
             MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
@@ -209,7 +209,7 @@ impl Permit {
 }
 
 impl DeadMan {
-    pub(super) fn watch_motion(&mut self, now: Moment, actual: Actual, permit: &Permit) -> Option<Ended> {
+    pub(super) fn watch_motion(&mut self, now: Moment, actual: ActualValues, permit: &Permit) -> Option<Ended> {
         let mark = self.mark(now);
         let act = self.act.as_mut()?;
         let motion = act.motion.as_ref()?;

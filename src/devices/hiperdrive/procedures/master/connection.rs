@@ -6,10 +6,10 @@
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use super::{Master, ONCE, Repeats};
+use super::{Master, ONCE, RetryPolicy};
 use crate::buses::ethernet_ip::protocol::{
-    ConnectionTimeout, ForwardClose, ForwardOpen, ForwardOpened, GeneralStatus, IoPacket, Item, NetworkParameters,
-    NetworkPriority, NetworkType, Owner, Path, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
+    ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpened, GeneralStatus, IoPacket, Item,
+    NetworkParameters, NetworkPriority, NetworkType, Owner, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
 use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
@@ -69,7 +69,7 @@ impl Master<'_> {
             if !matters {
                 continue;
             }
-            match self.open_so(layout, kind, port) {
+            match self.open_with_layout(layout, kind, port) {
                 Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
                     Some(&extended @ (CONNECTION_IN_USE | OWNED)) if is_connection_refusal(&refusal) => {
                         return Err(Error::OtherMaster { extended });
@@ -91,7 +91,7 @@ impl Master<'_> {
     /// [`Error::Refused`]; errors of the exchange.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
-        match self.shielded(|master| master.request(RequestedItem::Close, &close.request(), Repeats::Always)) {
+        match self.shielded(|master| master.request(RequestedItem::Close, &close.request(), RetryPolicy::Always)) {
             Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
             ended => ended.map(|_| ()),
         }
@@ -104,7 +104,7 @@ impl Master<'_> {
         }
     }
 
-    fn open_so(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<Opened, Error> {
+    fn open_with_layout(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<Opened, Error> {
         self.station.connections = self.station.connections.wrapping_add(1);
         let serial = self.station.connections;
         let owner = Owner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
@@ -130,13 +130,13 @@ impl Master<'_> {
             to_originator_interval_us: interval,
             to_originator,
             transport: Transport::CYCLIC,
-            path: Path::assemblies(configuration, to, from),
+            path: EPath::assemblies(configuration, to, from),
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
         // A second open would be refused as in use, so it is sent once. If its reply is not understood, the connection may
         // be open.
-        let requested = self.request_with(RequestedItem::Open, &open.request(), &[ours], ONCE);
+        let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], ONCE);
         let opened = requested.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
             Err(cause) => Err(Error::Damaged { requested: RequestedItem::Open, tries: 1, cause: cause.into() }),

@@ -1,7 +1,7 @@
 //! Diagnosis of a refused parameter: whether the drive exists, whether it is requested, and the present range of the
 //! value, as far as can be determined.
 
-use super::{Master, Repeats, writable_parameter};
+use super::{Master, RetryPolicy, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
@@ -44,11 +44,11 @@ impl Master<'_> {
 
     /// Returns whether another parameter of the drive is known to be 0.
     fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
-        let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
+        let Some(number) = ParameterNumber::for_drive(base, drive).filter(|own| *own != refused) else {
             return Ok(false);
         };
         let request = Request::get(number.class(), 1, number.attribute());
-        match self.request(RequestedItem::Parameter(number), &request, Repeats::Always) {
+        match self.request(RequestedItem::Parameter(number), &request, RetryPolicy::Always) {
             Ok(reply) => Ok(number.row().is_some_and(|row| row.kind.parse(&reply.data) == Ok(Value::Number(0)))),
             Err(Error::Refused { .. }) => Ok(false),
             Err(error) => Err(error),
@@ -65,7 +65,7 @@ impl Master<'_> {
         match refusal.status {
             GeneralStatus::NOT_SETTABLE => Ok(Error::ReadOnly { number, name: row.name }),
             GeneralStatus::INVALID_VALUE => {
-                let range = self.range_now(number, row)?;
+                let range = self.current_range(number, row)?;
                 Ok(match range {
                     Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
                     None => Error::Refused { requested: RequestedItem::Set(number), refusal },
@@ -77,7 +77,7 @@ impl Master<'_> {
 
     /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference
     /// 4), and no limit is farther from 0 than the turns of the drive (reference 5).
-    fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
+    fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,
             None => Travel::UNKNOWN,
@@ -86,7 +86,7 @@ impl Master<'_> {
         let Some(drive) = number.drive().filter(|_| matches!(row.number, LOWER | UPPER | REFERENCE)) else {
             return Ok(allowed);
         };
-        let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
+        let mut of_drive = |base| match ParameterNumber::for_drive(base, drive) {
             Some(number) => match self.read_number(number) {
                 Ok(value) => Ok(Some(value)),
                 // The cause of the original refusal is what counts.
@@ -107,7 +107,7 @@ impl Master<'_> {
 
     fn travel(&mut self, drive: DriveNumber) -> Result<Travel, Error> {
         let mut word = |base| {
-            let Some(number) = ParameterNumber::of_drive(base, drive) else { return Ok(None) };
+            let Some(number) = ParameterNumber::for_drive(base, drive) else { return Ok(None) };
             match self.read_number(number) {
                 Ok(value) => Ok(u16::try_from(value).ok()),
                 Err(error) if error.is_unsaid() => Ok(None),

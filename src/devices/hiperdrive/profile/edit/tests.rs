@@ -291,7 +291,7 @@ fn services_depend_on_every_value_they_may_change() {
     {
         let plan = plan_service(&device, service);
         assert_eq!((steps(&plan), plan.write_cycles()), (vec![(47, code)], cost));
-        assert_eq!((plan.base.values, Service::of_code(code)), (device.values.clone(), Some(service)));
+        assert_eq!((plan.base.values, Service::from_code(code)), (device.values.clone(), Some(service)));
     }
     let plan = plan_service(&device, Service::Acknowledge(drive(1)));
     assert_eq!((plan.base, plan.ops.len()), (Base::default(), 1));

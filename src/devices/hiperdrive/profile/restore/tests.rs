@@ -4,7 +4,7 @@ use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number, profile};
 use crate::devices::hiperdrive::profile::{MountingMark, Op, Service};
 use crate::devices::hiperdrive::protocol::{Topology, Variant};
-use crate::profile::{Document, Profile};
+use crate::profile::{Profile, ProfileDocument};
 
 fn device() -> DeviceState {
     let profile = profile();
@@ -133,7 +133,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
         let text = std::fs::read_to_string(path).unwrap();
-        Document::parse(&text, HiperdriveProfile::FORMATS).unwrap().body.into_profile().unwrap()
+        ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap().body.into_profile().unwrap()
     };
     let mut now = device();
     now.positions = [(drive(1), 0), (drive(3), 0)].into();

@@ -3,15 +3,22 @@
 use super::super::test_profiles::{drive, identity, image_of, number, profile};
 use super::*;
 use crate::profile::testing::{changed_in_place, edited};
-use crate::profile::{Body, Document};
+use crate::profile::{Body, ProfileDocument};
 
-fn document(profile: HiperdriveProfile) -> Document {
+fn document(profile: HiperdriveProfile) -> ProfileDocument {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
-    Document { saved, note: None, body: Body::new(profile), unknown: Default::default(), schema: 1, beyond: Vec::new() }
+    ProfileDocument {
+        saved,
+        note: None,
+        body: Body::new(profile),
+        unknown: Default::default(),
+        schema: 1,
+        beyond: Vec::new(),
+    }
 }
 
 fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
-    Document::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
+    ProfileDocument::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
 }
 
 /// Profile as written by a user, for no particular device.
@@ -32,7 +39,7 @@ fn replaced(from: &str, to: &str) -> String {
 #[test]
 fn emitted_profiles_parse_back() {
     let text = document(profile()).emit();
-    assert_eq!(Document::parse(&text, HiperdriveProfile::FORMATS).unwrap(), document(profile()));
+    assert_eq!(ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap(), document(profile()));
     for line in [
         "        category: \"HIPERDRIVE HUB-4\",\n",
         "        serial_number: \"100\",\n",
@@ -74,7 +81,7 @@ fn unknown_fields_are_kept() {
         .replace("number: 2,", "number: 2, axis: \"feed\",")
         .replace("154: 400,", "154: 400, \"spare\": Some(3),")
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
-    let document = Document::parse(&text, HiperdriveProfile::FORMATS).unwrap();
+    let document = ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap();
     let profile = document.body.get::<HiperdriveProfile>().unwrap();
     assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
     let written = document.emit();
@@ -88,7 +95,7 @@ fn unknown_fields_are_kept() {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
     assert_eq!(document.beyond.len(), 5);
-    let again = Document::parse(&written, HiperdriveProfile::FORMATS).unwrap();
+    let again = ProfileDocument::parse(&written, HiperdriveProfile::FORMATS).unwrap();
     assert_eq!(
         (again.emit(), again.beyond.len()),
         (written, 2),

@@ -93,7 +93,7 @@ fn parameters_map_to_cip_attributes() {
         assert_eq!((parameter.class(), parameter.attribute()), (class, attribute), "{own}");
         assert_eq!((parameter.drive(), parameter.base()), (drive, base), "{own}");
         assert_eq!(ParameterNumber::from_attribute(class, attribute), Some(parameter), "{own}");
-        let drives = drive.and_then(|drive| ParameterNumber::of_drive(base, drive));
+        let drives = drive.and_then(|drive| ParameterNumber::for_drive(base, drive));
         assert_eq!(drives, drive.map(|_| parameter), "{own}");
     }
     for (class, attribute) in [(0x63, 1), (0x64, 0), (0x64, 100), (0x65, 99), (0x65, 200), (0x6D, 101), (0xFFFF, 101)] {
@@ -118,7 +118,7 @@ fn the_parameter_table_matches_the_reference() {
     assert_eq!(saved, [152, 154, 156, 158, 160, 162, 164, 166, 186, 188, 190, 192, 198]);
     let row = |own| number(own).row().unwrap();
     assert_eq!((row(107).kind, row(107).unit, row(107).access), (Kind::I32, "steps", Access::Read));
-    assert_eq!((row(166).kind, row(166).unit, row(166).factory), (Kind::U16, "0.1 rpm", Factory::Number(350)));
+    assert_eq!((row(166).kind, row(166).unit, row(166).factory), (Kind::U16, "0.1 rpm", FactoryValue::Number(350)));
     assert_eq!((row(199).access, row(47).access, row(42).saved), (Access::Write, Access::ReadWrite, true));
     assert_eq!((row(807).number, number(25).row().is_none(), number(148).row().is_none()), (107, true, true));
     // Factory values: 511 and 16000 turns of 65536 steps.
@@ -285,12 +285,13 @@ fn error_variant_led_and_switch_tables_match_the_reference() {
     let variant = |number| Variant::new(number).row().map(|row| (row.name, row.family));
     assert_eq!((variant(1), variant(13)), (Some(("HRA25A", Family::Short)), Some(("HDA70", Family::Long))));
     assert_eq!((variant(9), variant(0), variant(0xFFFF)), (Some(("HDA30E", Family::Short)), None, None));
-    let all = LedSubject::Drives.row(DriveLight::RedGreen).map(|row| row.meaning);
-    let one = LedSubject::Drive.row(DriveLight::RedGreen).map(|row| row.meaning);
+    let all = LedSubject::Drives.row(DriveLedState::RedGreen).map(|row| row.meaning);
+    let one = LedSubject::Drive.row(DriveLedState::RedGreen).map(|row| row.meaning);
     assert_eq!((all, one), (Some("error of a requested drive"), Some("drive error")));
-    assert!(LedSubject::Drive.row(DriveLight::Alternating).is_none());
-    let twins =
-        |row: &BusLedRow| BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count();
+    assert!(LedSubject::Drive.row(DriveLedState::Alternating).is_none());
+    let twins = |row: &NetworkLedRow| {
+        BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count()
+    };
     assert!(BUS_LEDS.iter().all(|row| twins(row) == 1));
     // Manual 3.3 and 4.4: seven states for all drives of a hub and for an adapter's drive, four for one drive of a hub.
     for (subject, lights) in [(LedSubject::Adapter, 7), (LedSubject::Drives, 7), (LedSubject::Drive, 4)] {
@@ -298,8 +299,8 @@ fn error_variant_led_and_switch_tables_match_the_reference() {
         let is_own = |row: &LedRow| rows.iter().filter(|other| other.light == row.light).count() == 1;
         assert!(rows.len() == lights && rows.iter().all(is_own), "{subject:?}");
     }
-    assert_eq!(PORT_LEDS.map(|row| row.light), [PortLight::Off, PortLight::Link, PortLight::Active]);
-    let duplicate = BusLamp::Network.row(BusLight::Red).map(|row| row.meaning);
+    assert_eq!(PORT_LEDS.map(|row| row.light), [PortLedState::Off, PortLedState::Link, PortLedState::Active]);
+    let duplicate = NetworkLed::Network.row(NetworkLedState::Red).map(|row| row.meaning);
     assert_eq!(duplicate, Some("another device has the same address"));
     assert_eq!(AddressSwitch::parse(5), Some(AddressSwitch::Fixed("192.168.1.5".parse().unwrap())));
     assert_eq!([0, 97, 98, 99].map(AddressSwitch::parse), {

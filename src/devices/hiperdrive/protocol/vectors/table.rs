@@ -21,7 +21,7 @@ struct Typed<'t> {
 }
 
 /// Turns of a drive family: the travel (9.2) and, for each parameter number, the range and the factory value.
-struct Turns {
+struct TurnsTable {
     way: i64,
     rows: BTreeMap<u16, (i64, i64, i64)>,
 }
@@ -53,7 +53,7 @@ fn typed() -> Vec<Typed<'static>> {
     rows
 }
 
-fn families() -> BTreeMap<&'static str, Turns> {
+fn families() -> BTreeMap<&'static str, TurnsTable> {
     let mut families = BTreeMap::new();
     let mut current = "";
     for line in lines().skip_while(|line| !line.starts_with('[')) {
@@ -61,7 +61,7 @@ fn families() -> BTreeMap<&'static str, Turns> {
             let (name, rest) = head.split_once(" | ").unwrap();
             let way = rest.rsplit_once("way ").unwrap().1.trim_end_matches(']').parse().unwrap();
             current = name;
-            families.insert(name, Turns { way, rows: BTreeMap::new() });
+            families.insert(name, TurnsTable { way, rows: BTreeMap::new() });
             continue;
         }
         let [number, range, factory] = line.split_whitespace().collect::<Vec<_>>()[..] else { panic!("{line}") };
@@ -146,12 +146,12 @@ fn every_row_matches_the_manual() {
         };
         assert_eq!((row.access, row.saved), (access, typed.saved == "ja"), "{own}");
         let factory = match typed.factory {
-            "-" if own == 192 => Factory::Automatic,
-            "-" => Factory::None,
-            "turns -" => Factory::Turns(-1),
-            "turns +" => Factory::Turns(1),
-            "hub 0 adapter 1" => Factory::Topology { adapter: 1, hub: 0 },
-            number => Factory::Number(number.parse().unwrap()),
+            "-" if own == 192 => FactoryValue::Automatic,
+            "-" => FactoryValue::None,
+            "turns -" => FactoryValue::Turns(-1),
+            "turns +" => FactoryValue::Turns(1),
+            "hub 0 adapter 1" => FactoryValue::Topology { adapter: 1, hub: 0 },
+            number => FactoryValue::Number(number.parse().unwrap()),
         };
         assert_eq!(row.factory, factory, "{own}");
         let reach = match typed.range {
@@ -208,7 +208,7 @@ fn limit_ranges_are_the_familys_turns_in_scaled_units() {
     let mut families = families();
     assert_eq!(families.len(), names.len());
     for (name, family) in names {
-        let Turns { way, rows } = families.remove(name).unwrap();
+        let TurnsTable { way, rows } = families.remove(name).unwrap();
         for (numerator, denominator) in [(256, 1), (400, 256), (100, 256), (25, 192), (1, 65_535), (65_535, 1), (3, 7)]
         {
             let steps = |turns: i64| {

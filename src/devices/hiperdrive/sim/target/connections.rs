@@ -11,9 +11,9 @@ use super::cyclic::Cyclic;
 use super::objects::{object, wrong};
 use super::plant::{Originator, Plant};
 use crate::buses::ethernet_ip::protocol::{
-    ElectronicKey, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, GeneralStatus,
-    IMPLICIT_PORT, IoPacket, Item, Items, LogicalKind, NetworkType, Owner, Path, RealTimeFormat, Reply, Request,
-    Segment, Service, SocketAddress, Trigger,
+    EPath, ElectronicKey, ForwardClose, ForwardClosed, ForwardErrorReply, ForwardOpen, ForwardOpened, GeneralStatus,
+    IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType, Owner, RealTimeFormat, Reply, Request, Segment,
+    Service, SocketAddress, Trigger,
 };
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
 use crate::units::Moment;
@@ -21,13 +21,13 @@ use crate::units::Moment;
 #[derive(Debug, Default)]
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,
-    explicit: Vec<Explicit>,
+    explicit: Vec<ExplicitConnection>,
     /// Number of connections opened so far. No connection number is used twice.
     opened: u32,
 }
 
 #[derive(Debug)]
-struct Explicit {
+struct ExplicitConnection {
     owner: Owner,
     session: u32,
     to_target_id: u32,
@@ -103,7 +103,7 @@ impl Plant {
         &mut self,
         from: (Originator, u32),
         request: &Request,
-        items: &Items,
+        items: &ItemList,
     ) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
         if let Err(status) = object(&request.path) {
@@ -134,7 +134,7 @@ impl Plant {
         from: (Originator, u32),
         request: &Request,
         open: &ForwardOpen,
-        items: &Items,
+        items: &ItemList,
     ) -> (Reply, Vec<Item>) {
         let opened = match open.transport.class() {
             1 => self.open_cyclic(from.0, open, items),
@@ -154,7 +154,7 @@ impl Plant {
                 (request.done(opened.emit()), sockets)
             }
             Err(extended) => {
-                let refused = ForwardRefused { owner: open.owner, remaining_path_words: 0 };
+                let refused = ForwardErrorReply { owner: open.owner, remaining_path_words: 0 };
                 (refused.reply(request, extended), Vec::new())
             }
         }
@@ -164,7 +164,7 @@ impl Plant {
         &mut self,
         from: Originator,
         open: &ForwardOpen,
-        items: &Items,
+        items: &ItemList,
     ) -> Result<(u32, Vec<Item>), Refusal> {
         match &self.connections.cyclic {
             Some(cyclic) if cyclic.owner == open.owner => return Err(IN_USE),
@@ -176,7 +176,7 @@ impl Plant {
         }
         self.check_path(&open.path)?;
         let kinds = [open.to_target, open.to_originator];
-        if kinds.iter().any(|one| one.kind() != NetworkType::PointToPoint || one.redundant_owner()) {
+        if kinds.iter().any(|one| one.kind() != NetworkType::PointToPoint || one.has_redundant_owner()) {
             return Err(NETWORK_TYPE);
         }
         let layout = self.layout(open)?;
@@ -193,7 +193,7 @@ impl Plant {
     }
 
     /// Checks that a path names assemblies 100 and 101, optionally 104 for configuration, and that its key fits.
-    fn check_path(&mut self, path: &Path) -> Result<(), Refusal> {
+    fn check_path(&mut self, path: &EPath) -> Result<(), Refusal> {
         let [configuration, to_target, to_originator] = ASSEMBLIES;
         for segment in &path.0 {
             match segment {
@@ -248,12 +248,12 @@ impl Plant {
         if connections.explicit.len() >= MOST_EXPLICIT {
             return Err(NONE_LEFT);
         }
-        let path = Path::instance(MESSAGE_ROUTER, 1);
+        let path = EPath::instance(MESSAGE_ROUTER, 1);
         if open.path.emit() != path.emit() {
             return Err(SEGMENT);
         }
         let id = connections.next_id();
-        connections.explicit.push(Explicit {
+        connections.explicit.push(ExplicitConnection {
             owner: open.owner,
             session,
             to_target_id: id,
@@ -272,7 +272,7 @@ impl Plant {
         if cyclic.is_some() {
             self.station.close(self.now);
         } else if self.connections.explicit.len() == before {
-            let refused = ForwardRefused { owner: close.owner, remaining_path_words: 0 };
+            let refused = ForwardErrorReply { owner: close.owner, remaining_path_words: 0 };
             return refused.reply(request, NOT_FOUND);
         }
         request.done(ForwardClosed { owner: close.owner, application: Vec::new() }.emit())

@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use super::plant::Plant;
 use crate::buses::ethernet_ip::protocol::{
-    ForwardOpen, Frame, IoPacket, Owner, PacketTracker, PacketVerdict, RealTimeFormat, RunIdle,
+    ForwardOpen, Frame, IoPacket, Owner, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader,
 };
-use crate::devices::hiperdrive::protocol::{Layout, OutImage};
+use crate::devices::hiperdrive::protocol::{Layout, OutputImage};
 use crate::units::Moment;
 
 #[derive(Debug)]
@@ -85,7 +85,7 @@ impl Plant {
             return;
         }
         match IoPacket::parse(packet, RealTimeFormat::Header) {
-            Ok(packet) => self.consume(&packet),
+            Ok(packet) => self.receive_io_packet(&packet),
             Err(_) => {
                 let asked = Frame::parse(packet).is_ok_and(|frame| self.answer_datagram(from, &frame));
                 self.figures.malformed += u64::from(!asked);
@@ -93,13 +93,13 @@ impl Plant {
         }
     }
 
-    fn consume(&mut self, packet: &IoPacket) {
+    fn receive_io_packet(&mut self, packet: &IoPacket) {
         let Some(cyclic) = self.connections.cyclic.as_mut().filter(|one| one.to_target_id == packet.connection) else {
             self.figures.foreign += 1;
             return;
         };
-        let runs = packet.header.is_some_and(RunIdle::runs);
-        let Ok(image) = OutImage::parse(&packet.data, cyclic.layout) else {
+        let runs = packet.header.is_some_and(RunIdleHeader::runs);
+        let Ok(image) = OutputImage::parse(&packet.data, cyclic.layout) else {
             self.figures.malformed += 1;
             return;
         };

@@ -4,7 +4,7 @@ use std::net::SocketAddrV4;
 
 use super::plant::{Originator, Plant};
 use crate::buses::ethernet_ip::protocol::{
-    Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, Items, Reply, Request, Service,
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, ItemList, Reply, Request, Service,
     SocketAddress,
 };
 
@@ -36,7 +36,7 @@ impl Plant {
             Command::REGISTER_SESSION => return Some(self.register(from, frame)),
             Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => Ok(self.list(frame.command)),
             Command::SEND_RR_DATA => self.unconnected(from, frame),
-            Command::SEND_UNIT_DATA => self.connected(from, frame).transpose()?,
+            Command::SEND_UNIT_DATA => self.handle_unit_data(from, frame).transpose()?,
             _ => Err(EncapsulationStatus::UNSUPPORTED),
         };
         Some(match body {
@@ -90,11 +90,11 @@ impl Plant {
             Command::LIST_SERVICES => vec![Item::Unknown { kind: SERVICES.0, data: SERVICES.1.to_vec() }],
             _ => Vec::new(),
         };
-        Body::List(Items(items))
+        Body::List(ItemList(items))
     }
 
     /// Parses the items of a frame that belongs to the originator's own session.
-    fn items(&self, from: Originator, frame: &Frame) -> Result<Items, Refusal> {
+    fn items(&self, from: Originator, frame: &Frame) -> Result<ItemList, Refusal> {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
         }
@@ -111,11 +111,11 @@ impl Plant {
         };
         let (reply, sockets) = self.message((from, frame.session), message, &items)?;
         let items = [Item::Null, Item::UnconnectedData(reply.emit())].into_iter().chain(sockets).collect();
-        Ok(Body::Data { interface: 0, timeout_s: 0, items: Items(items) })
+        Ok(Body::Data { interface: 0, timeout_s: 0, items: ItemList(items) })
     }
 
     /// Handles SendUnitData. Returns `None` for an unknown connection.
-    fn connected(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
+    fn handle_unit_data(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
         let items = self.items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
             return Err(EncapsulationStatus::MALFORMED);
@@ -126,7 +126,7 @@ impl Plant {
         let (count, message) = data.split_first_chunk::<2>().ok_or(EncapsulationStatus::MALFORMED)?;
         let (reply, _) = self.message((from, frame.session), message, &items)?;
         let data = [&count[..], &reply.emit()].concat();
-        let items = Items(vec![Item::ConnectedAddress(to_originator), Item::ConnectedData(data)]);
+        let items = ItemList(vec![Item::ConnectedAddress(to_originator), Item::ConnectedData(data)]);
         Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
     }
 
@@ -135,7 +135,7 @@ impl Plant {
         &mut self,
         from: (Originator, u32),
         message: &[u8],
-        items: &Items,
+        items: &ItemList,
     ) -> Result<(Reply, Vec<Item>), Refusal> {
         match Request::parse(message) {
             Ok(request) if request.class() == Some(Request::CONNECTION_MANAGER) => {

@@ -30,8 +30,8 @@ use plant::{Originator, Plant};
 use super::config::Config;
 use super::station::Station;
 use crate::buses::ethernet_ip::protocol::Receiver;
-use crate::sim::line::Queue;
-use crate::sim::{ByteDevice, DatagramDevice, Faults};
+use crate::sim::line::TransitQueue;
+use crate::sim::{ByteDevice, DatagramDevice, SimulatedFaults};
 use crate::units::Moment;
 
 /// A TCP connection of one originator to a virtual adapter or hub, and the datagrams of all originators. Created from a
@@ -41,7 +41,7 @@ pub struct Target {
     shared: Arc<Mutex<Plant>>,
     originator: Originator,
     receiver: Receiver,
-    to_host: Queue<Vec<u8>>,
+    to_host: TransitQueue<Vec<u8>>,
     ended: bool,
 }
 
@@ -72,7 +72,7 @@ impl Target {
 
     fn to(shared: Arc<Mutex<Plant>>, peer: Ipv4Addr) -> Self {
         let originator = lock(&shared).originator(peer);
-        Target { shared, originator, receiver: Receiver::default(), to_host: Queue::default(), ended: false }
+        Target { shared, originator, receiver: Receiver::default(), to_host: TransitQueue::default(), ended: false }
     }
 
     /// Gives access to the station, for reading it or for changes that are not possible over a bus.
@@ -92,7 +92,7 @@ impl Target {
     }
 
     /// Replaces the faults, as for a cable that is repaired or breaks later. The counts of frames and saves are kept.
-    pub fn set_faults(&self, faults: &Faults) {
+    pub fn set_faults(&self, faults: &SimulatedFaults) {
         self.lock().set_faults(faults);
     }
 
@@ -135,7 +135,7 @@ impl ByteDevice for Target {
             match self.receiver.next_frame() {
                 Ok(Some(frame)) => {
                     let reply = plant.take(now, self.originator, &frame);
-                    self.ended = !plant.keeps(&frame);
+                    self.ended = !plant.keeps_connection_open(&frame);
                     drop(plant);
                     reply.into_iter().for_each(|(at, bytes)| self.to_host.insert(at, bytes));
                 }
@@ -159,7 +159,7 @@ impl ByteDevice for Target {
     }
 
     fn connect(&mut self, now: Moment) {
-        (self.receiver, self.to_host, self.ended) = (Receiver::default(), Queue::default(), false);
+        (self.receiver, self.to_host, self.ended) = (Receiver::default(), TransitQueue::default(), false);
         let originator = self.originator;
         let mut plant = self.lock();
         plant.leave(originator);

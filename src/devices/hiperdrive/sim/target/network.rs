@@ -7,7 +7,7 @@ use std::net::Ipv4Addr;
 
 use super::objects::wrong;
 use crate::buses::ethernet_ip::protocol::{
-    AddressSource, ConfigurationControl, GeneralStatus, InterfaceConfiguration, Path,
+    AddressSource, ConfigurationControl, EPath, GeneralStatus, InterfaceConfiguration,
 };
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
@@ -44,7 +44,7 @@ impl Network {
     pub(super) fn new(switch: u8, serial_number: u16) -> Self {
         let [high, low] = serial_number.to_be_bytes();
         let mac = [0x02, 0x00, 0x00, 0x00, high, low];
-        let mut network = Network { switch, control: dhcp(), present: NONE, stored: NONE, mac };
+        let mut network = Network { switch, control: dhcp_control(), present: NONE, stored: NONE, mac };
         network.power_up();
         network
     }
@@ -67,7 +67,7 @@ impl Network {
 
     /// Restores the factory settings. The address is kept until the supply is switched.
     pub(super) fn factory(&mut self) {
-        (self.control, self.stored) = (dhcp(), NONE);
+        (self.control, self.stored) = (dhcp_control(), NONE);
     }
 
     pub(super) fn interface(&self, attribute: u16) -> Option<Vec<u8>> {
@@ -76,7 +76,7 @@ impl Network {
             2 => CAPABILITY.to_le_bytes().to_vec(),
             ConfigurationControl::ATTRIBUTE => self.control.emit().to_vec(),
             4 => {
-                let path = Path::instance(ETHERNET_LINK, 1).emit();
+                let path = EPath::instance(ETHERNET_LINK, 1).emit();
                 // Two words.
                 [&(path.len() as u16 / 2).to_le_bytes()[..], &path].concat()
             }
@@ -132,6 +132,6 @@ impl Network {
     }
 }
 
-fn dhcp() -> ConfigurationControl {
+fn dhcp_control() -> ConfigurationControl {
     ConfigurationControl::default().with(AddressSource::Dhcp)
 }

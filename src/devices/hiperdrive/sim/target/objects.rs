@@ -2,7 +2,7 @@
 
 use super::plant::Plant;
 use crate::buses::ethernet_ip::protocol::{
-    ConfigurationControl, GeneralStatus, Identity, LogicalKind, PacketError, Path, Reply, Request, Revision, Segment,
+    ConfigurationControl, EPath, GeneralStatus, Identity, LogicalKind, PacketError, Reply, Request, Revision, Segment,
     Service,
 };
 use crate::devices::hiperdrive::protocol::{Access, ParameterNumber, ParameterRow, VENDOR, Value};
@@ -109,7 +109,7 @@ impl Plant {
 }
 
 /// Returns class and attribute of a path that refers to the only instance of an object.
-pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
+pub(super) fn object(path: &EPath) -> Result<(u16, Option<u16>), GeneralStatus> {
     let understood = |segment: &Segment| match segment {
         Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,
         _ => false,

@@ -13,8 +13,8 @@ use super::connections::Connections;
 use super::network::Network;
 use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
 use crate::devices::hiperdrive::protocol::ByteOrder;
-use crate::sim::Faults;
-use crate::sim::line::Queue;
+use crate::sim::SimulatedFaults;
+use crate::sim::line::TransitQueue;
 use crate::units::Moment;
 
 /// The device with everything that is connected to it.
@@ -30,9 +30,9 @@ pub(super) struct Plant {
     pub(super) figures: Figures,
     pub(super) now: Moment,
     pub(super) sessions: BTreeMap<u32, Originator>,
-    pub(super) datagrams: Queue<(SocketAddrV4, Vec<u8>)>,
+    pub(super) datagrams: TransitQueue<(SocketAddrV4, Vec<u8>)>,
     pub(super) rng: Rng,
-    faults: Faults,
+    faults: SimulatedFaults,
     heard: u32,
     originators: u64,
 }
@@ -58,7 +58,7 @@ impl Plant {
             figures: Figures::default(),
             now: Moment::START,
             sessions: BTreeMap::new(),
-            datagrams: Queue::default(),
+            datagrams: TransitQueue::default(),
             rng: Rng::with_seed(config.seed),
             faults: config.faults.clone(),
             heard: 0,
@@ -71,7 +71,7 @@ impl Plant {
         Originator { number: self.originators, address }
     }
 
-    pub(super) fn set_faults(&mut self, faults: &Faults) {
+    pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.station.die_in_store(faults.die_in_store());
         self.faults = faults.clone();
     }
@@ -96,11 +96,11 @@ impl Plant {
         let reply = self.answer(from, frame)?;
         let leaves = self.station.answers_at().map_or(self.now, |at| at.max(self.now));
         let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
-        Some((leaves + REPLY + self.faults.delay(), bytes))
+        Some((leaves + REPLY + self.faults.reply_delay(), bytes))
     }
 
     /// Returns whether the TCP connection stays open after this frame.
-    pub(super) fn keeps(&self, frame: &Frame) -> bool {
+    pub(super) fn keeps_connection_open(&self, frame: &Frame) -> bool {
         frame.command != Command::UNREGISTER_SESSION
     }
 
@@ -131,7 +131,7 @@ impl Plant {
     fn disconnect(&mut self) {
         self.sessions.clear();
         self.connections = Connections::after(&self.connections);
-        self.datagrams = Queue::default();
+        self.datagrams = TransitQueue::default();
     }
 
     /// Counts an arrival and returns whether the target receives it.
@@ -167,7 +167,7 @@ impl Plant {
     /// Sends a datagram at the given moment, unless a fault drops it.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.carry(bytes) {
-            self.datagrams.insert(at + self.faults.delay(), (to, bytes));
+            self.datagrams.insert(at + self.faults.reply_delay(), (to, bytes));
         }
     }
 

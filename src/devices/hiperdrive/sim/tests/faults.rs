@@ -62,7 +62,8 @@ fn insufficient_torque_causes_a_following_error() {
 #[test]
 fn a_hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
-    let mut bench = Bench::new(Setup { drives: vec![Some((Variant::new(13), hot))], ..Setup::default() });
+    let mut bench =
+        Bench::new(StationConfig { drives: vec![Some((Variant::new(13), hot))], ..StationConfig::default() });
     assert_eq!(bench.read(119), Value::Number(50));
     bench.enable();
     bench.words(&[0x1419, 0x1459]);
@@ -155,7 +156,7 @@ fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
     bench.start(655_360);
     bench.run(500);
     for _ in 0..20 {
-        let image = OutImage { drives: bench.out.clone(), pkw: None };
+        let image = OutputImage { drives: bench.out.clone(), pkw: None };
         bench.station.cyclic(bench.now, &image, false);
         bench.now = bench.now + Duration::from_millis(10);
     }

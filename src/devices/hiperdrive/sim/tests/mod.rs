@@ -6,9 +6,9 @@ mod parameters;
 
 use std::time::Duration;
 
-use super::{Drive, Setup, SpindleLoad, Station};
+use super::{Drive, SpindleLoad, Station, StationConfig};
 use crate::devices::hiperdrive::protocol::{
-    Actual, DriveNumber, ErrorCode, OutData, OutImage, ParameterNumber, Pkw, Topology, Value, Variant,
+    ActualValues, DriveNumber, ErrorCode, OutputData, OutputImage, ParameterNumber, Pkw, Topology, Value, Variant,
 };
 use crate::units::Moment;
 
@@ -16,33 +16,33 @@ use crate::units::Moment;
 struct Bench {
     station: Station,
     now: Moment,
-    out: Vec<OutData>,
+    out: Vec<OutputData>,
     pkw: Option<Pkw>,
 }
 
 const FIRST: usize = 0;
 
 impl Bench {
-    fn new(setup: Setup) -> Self {
+    fn new(setup: StationConfig) -> Self {
         let drives = usize::from(setup.topology.drives());
         let mut station = Station::new(setup);
         station.open(Moment::START, Duration::from_millis(40));
-        let out = OutData { speed: 100, torque: 100, ..OutData::default() };
+        let out = OutputData { speed: 100, torque: 100, ..OutputData::default() };
         Bench { station, now: Moment::START, out: vec![out; drives], pkw: None }
     }
 
     fn single() -> Self {
-        Bench::new(Setup::default())
+        Bench::new(StationConfig::default())
     }
 
     /// Creates a hub of four with drives in the first two places.
     fn hub() -> Self {
         let drive = Some((Variant::new(13), SpindleLoad::default()));
-        Bench::new(Setup { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
+        Bench::new(StationConfig { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
     }
 
     fn cycle(&mut self) {
-        let image = OutImage { drives: self.out.clone(), pkw: self.pkw };
+        let image = OutputImage { drives: self.out.clone(), pkw: self.pkw };
         self.station.cyclic(self.now, &image, true);
         self.now = self.now + Duration::from_millis(10);
     }
@@ -74,7 +74,7 @@ impl Bench {
         assert_eq!(self.word(0x0479) & 0xF03F, 0x1037, "moving, acknowledged");
     }
 
-    fn actual(&mut self, drive: usize) -> Actual {
+    fn actual(&mut self, drive: usize) -> ActualValues {
         self.station.image(self.now).drives[drive]
     }
 

@@ -180,7 +180,7 @@ fn motion_is_independent_of_the_polling_interval() {
     let run = |portions: &[u64]| {
         let mut drive = Drive::new(Variant::new(7), Topology::Adapter, SpindleLoad::default());
         let at = |ms| Moment::START + Duration::from_millis(ms);
-        let out = OutData { control: 0x0479, speed: 80, torque: 50, target: 100_000 };
+        let out = OutputData { control: 0x0479, speed: 80, torque: 50, target: 100_000 };
         drive.command(at(0), out);
         for ms in portions {
             drive.actual(at(*ms));
@@ -208,7 +208,7 @@ proptest! {
             // Mostly words that a host might send, and never an endless run.
             let control = if control & 1 == 0 { control & 0x17FF } else { 0x0409 | control & 0x0270 };
             let control = if control & 0x1020 == 0x1020 { control & !0x0020 } else { control };
-            bench.out[FIRST] = OutData { control, speed, torque, target };
+            bench.out[FIRST] = OutputData { control, speed, torque, target };
             bench.run(ms);
             let actual = bench.actual(FIRST);
             prop_assert!((-50_000..=100_000).contains(&actual.position), "{:?}", actual);

@@ -25,7 +25,7 @@ pub enum DriveRequest {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Button {
+pub enum AxisButton {
     /// Execute the task of the current step, which is a request, a write or a save.
     Do,
     Confirm,
@@ -44,7 +44,7 @@ pub enum Button {
 pub enum AxisAction {
     Begin,
     Edit(Box<Entries>),
-    Press(Button),
+    Press(AxisButton),
     /// Adopt the present position as the limit that the current step sets.
     TakePlace,
     Next,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
-use crate::devices::hiperdrive::protocol::{Actual, Direction, ErrorCode, Family, Length, PositionScale, State};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, ErrorCode, Family, Length, PositionScale, State};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 use crate::units::Moment;
 
@@ -19,7 +19,7 @@ pub struct DriveFacts {
     pub moves: bool,
     /// The act and direction of a held jog button.
     pub held: Option<(u64, Direction)>,
-    pub actual: Option<Actual>,
+    pub actual: Option<ActualValues>,
     /// Time of the last report from the drive on the session's clock, if known.
     pub actual_at: Option<Moment>,
     pub position: Option<i32>,

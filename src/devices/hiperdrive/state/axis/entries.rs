@@ -6,7 +6,7 @@ use crate::app::texts::signed;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::ruler::{Measure, PositionRangeError, Ruler};
+use crate::devices::hiperdrive::state::ruler::{PositionRangeError, PositionUnit, Ruler};
 
 /// Typed values in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub struct Preview {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reference {
+pub struct ReferencePosition {
     /// Position as entered.
     pub asked: i32,
     /// Position as accepted by the drive, a multiple of 64 steps.
@@ -48,7 +48,7 @@ impl Entries {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
         let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
         let step = known.filter(|(_, own)| own.scale != PositionScale::FACTORY);
-        let resolution = step.and_then(|(_, own)| own.of(1, Measure::Millimetres)).map(trimmed);
+        let resolution = step.and_then(|(_, own)| own.of(1, PositionUnit::Millimetres)).map(trimmed);
         let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
     }
@@ -86,7 +86,7 @@ impl Entries {
         let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
         let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
         let unchanged = seen.limits.and_then(|(low, high)| {
-            let mm = |steps: i32| ruler.of(steps.into(), Measure::Millimetres);
+            let mm = |steps: i32| ruler.of(steps.into(), PositionUnit::Millimetres);
             Some((mm(low)?, mm(high)?))
         });
         Ok(Preview { scale, ruler, lower, upper, unchanged })
@@ -96,7 +96,7 @@ impl Entries {
     ///
     /// # Errors
     /// Explains why the number is invalid or outside the limits.
-    pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
+    pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<ReferencePosition, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(asked).filter(|own| (low..=high).contains(own));
@@ -104,14 +104,14 @@ impl Entries {
             let mm = |steps: i32| words::millimetres(ruler, steps.into());
             TEXTS.text("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
         })?;
-        Ok(Reference { asked, becomes })
+        Ok(ReferencePosition { asked, becomes })
     }
 
     /// Returns the lower limit.
     ///
     /// # Errors
     /// Explains why the entry is invalid.
-    pub fn lower(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
+    pub fn lower_limit(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.lower", &self.lower, ruler)
     }
 
@@ -132,8 +132,8 @@ fn trimmed(value: f64) -> String {
 
 /// Formats a number of steps as an entry, with enough decimals to distinguish steps.
 pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
-    let decimals = ruler.decimals(Measure::Millimetres);
-    Some(format!("{:.decimals$}", ruler.of(steps.into(), Measure::Millimetres)?))
+    let decimals = ruler.decimals(PositionUnit::Millimetres);
+    Some(format!("{:.decimals$}", ruler.of(steps.into(), PositionUnit::Millimetres)?))
 }
 
 fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
@@ -145,7 +145,7 @@ fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
 fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32, Text> {
     let ruler = ruler.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
     let value = within(TEXTS.text(what), text, -1e6, 1e6)?;
-    ruler.steps(value, Measure::Millimetres).map_err(|why| match why {
+    ruler.steps(value, PositionUnit::Millimetres).map_err(|why| match why {
         PositionRangeError::NoPitch => TEXTS.text("hd_axis.unread"),
         PositionRangeError::Bits { least, most } => TEXTS
             .text("hd_axis.beyond")

@@ -16,7 +16,7 @@ impl Axis {
     }
 
     /// Adopts the present position of the axis as the limit that the current step sets.
-    pub(crate) fn take_limit(&mut self, seen: &DriveFacts) {
+    pub(crate) fn adopt_limit(&mut self, seen: &DriveFacts) {
         if self.check_can_adopt_place(seen).is_err() {
             return;
         }
@@ -200,7 +200,7 @@ impl Axis {
         if self.step == AxisStep::Jog {
             self.travel.note(seen);
         }
-        self.power = self.power.map(|power| power.followed(seen));
+        self.power = self.power.map(|power| power.with_latest_values(seen));
         if let (Some((place, target, act)), Some((ended_act, ended))) = (self.going, seen.ended)
             && act == ended_act
             && let (Some(position), Some(scale)) = (seen.position, seen.scale)
@@ -227,7 +227,7 @@ impl Axis {
             }
             _ => {}
         }
-        if let Some(step) = self.chain.fall(&self.basis(seen)) {
+        if let Some(step) = self.chain.discard_outdated(&self.basis(seen)) {
             self.undo_from(step, false);
         }
         let is_set = |position: &i32| seen.values.get(&REFERENCE) == Some(&i64::from(*position));

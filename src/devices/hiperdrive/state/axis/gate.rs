@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use super::supply::{MARK, Power, Restart, is_marked, mark};
-use super::{Axis, AxisStep, Button, DriveFacts, DriveRequest, TestTarget, differences, words};
+use super::supply::{MARK, Power, RestartEvidence, is_marked, mark};
+use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
@@ -19,24 +19,24 @@ impl Axis {
     ///
     /// # Errors
     /// Explains why the button cannot be pressed now.
-    pub fn ask(&self, button: Button, seen: &DriveFacts) -> Result<DriveRequest, Text> {
+    pub fn ask(&self, button: AxisButton, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
         }
         if seen.busy || self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
         }
-        if seen.stale && button != Button::Give {
+        if seen.stale && button != AxisButton::Give {
             return Err(TEXTS.text("hd_axis.unread"));
         }
         let stands = || if seen.moves { Err(TEXTS.text("hd_axis.moving")) } else { Ok(()) };
         match button {
-            Button::Take | Button::Give if seen.controlled == (button == Button::Take) => {
+            AxisButton::Take | AxisButton::Give if seen.controlled == (button == AxisButton::Take) => {
                 Err(TEXTS.text("hd_axis.already"))
             }
-            Button::Take => Ok(DriveRequest::Take),
-            Button::Give => stands().map(|()| DriveRequest::Give),
-            Button::Recall => {
+            AxisButton::Take => Ok(DriveRequest::Take),
+            AxisButton::Give => stands().map(|()| DriveRequest::Give),
+            AxisButton::Recall => {
                 stands()?;
                 let back = differences::values_to_restore(seen);
                 match (back.is_empty(), differences::is_position_different(seen)) {
@@ -46,29 +46,31 @@ impl Axis {
                 }
             }
             _ if self.over.is_some() => Err(TEXTS.text("hd_axis.over")),
-            Button::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
-            Button::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
-            Button::Acknowledge => Ok(DriveRequest::Acknowledge),
+            AxisButton::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
+            AxisButton::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
+            AxisButton::Acknowledge => Ok(DriveRequest::Acknowledge),
             _ if let Some(step) = self.invalidated_text() => Err(words::invalidated_text(step)),
-            Button::Do => stands().and_then(|()| self.step_request(seen)),
-            Button::Confirm => match (seen.scale, seen.limits) {
+            AxisButton::Do => stands().and_then(|()| self.step_request(seen)),
+            AxisButton::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
                 _ => Err(TEXTS.text("hd_axis.unread")),
             },
-            Button::Widen => {
+            AxisButton::Widen => {
                 let preview = self.entries.preview(seen)?;
                 stands().map(|()| DriveRequest::Try(vec![(LOWER, preview.lower.into()), (UPPER, preview.upper.into())]))
             }
-            Button::Go(place) => {
+            AxisButton::Go(place) => {
                 self.may_move(seen)?;
                 stands().and_then(|()| self.target(place, seen).map(DriveRequest::Move))
             }
-            Button::PowerCycle if !seen.is_virtual => Err(TEXTS.text("hd_axis.not_virtual")),
-            Button::PowerCycle if seen.controlled => Err(TEXTS.text("hd_axis.give_first")),
-            Button::PowerCycle => Ok(DriveRequest::PowerCycle),
-            Button::Restarted => match self.power {
-                Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(DriveRequest::BelieveRestart),
-                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
+            AxisButton::PowerCycle if !seen.is_virtual => Err(TEXTS.text("hd_axis.not_virtual")),
+            AxisButton::PowerCycle if seen.controlled => Err(TEXTS.text("hd_axis.give_first")),
+            AxisButton::PowerCycle => Ok(DriveRequest::PowerCycle),
+            AxisButton::Restarted => match self.power {
+                Some(Power::Back { restart: RestartEvidence::Unproven, .. }) => Ok(DriveRequest::BelieveRestart),
+                Some(Power::Back { restart: RestartEvidence::Disproved, .. }) => {
+                    Err(TEXTS.text("hd_axis.not_restarted"))
+                }
                 Some(Power::Back { .. }) => Err(TEXTS.text("hd_axis.already")),
                 _ => Err(TEXTS.text("hd_axis.needs_power")),
             },
@@ -107,9 +109,11 @@ impl Axis {
             }
             AxisStep::Save => Ok(DriveRequest::Save),
             AxisStep::PowerCycle => match (self.power, is_marked(seen), mark()) {
-                (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
-                    Ok(DriveRequest::Try(vec![(MARK, mark)]))
-                }
+                (
+                    Some(Power::On(_) | Power::Back { restart: RestartEvidence::Unproven, .. }),
+                    Some(false),
+                    Some(mark),
+                ) => Ok(DriveRequest::Try(vec![(MARK, mark)])),
                 _ => Err(TEXTS.text("hd_axis.already")),
             },
             AxisStep::Confirm | AxisStep::Jog | AxisStep::Lower | AxisStep::Test => Err(TEXTS.text("hd_axis.already")),
@@ -119,7 +123,7 @@ impl Axis {
     /// Returns both taught limits after checking that the axis is between them.
     fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
-        let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
+        let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
         if low >= high {
             return Err(TEXTS.text("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
@@ -232,7 +236,7 @@ impl Axis {
                 let is_set = self.reference.is_some_and(|(_, origin)| origin == self.origin(seen));
                 lacks(is_set || self.chain.holds(AxisStep::Reference), "hd_axis.needs_reference")
             }
-            AxisStep::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
+            AxisStep::Lower => self.entries.lower_limit(seen.ruler()).map(|_| ()),
             AxisStep::Upper => {
                 let taught = self.taught_limits(seen)?;
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
@@ -243,8 +247,10 @@ impl Axis {
             }
             AxisStep::Save => lacks(self.saved, "hd_axis.needs_save"),
             AxisStep::PowerCycle => match self.power {
-                Some(Power::Back { restart: Restart::Unproven, .. }) => Err(TEXTS.text("hd_axis.needs_proof")),
-                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
+                Some(Power::Back { restart: RestartEvidence::Unproven, .. }) => Err(TEXTS.text("hd_axis.needs_proof")),
+                Some(Power::Back { restart: RestartEvidence::Disproved, .. }) => {
+                    Err(TEXTS.text("hd_axis.not_restarted"))
+                }
                 _ => lacks(self.survived(), "hd_axis.needs_power"),
             },
         }

@@ -32,13 +32,13 @@ pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language
         page.line("", &pitch);
     }
     page.space();
-    AxisStep::ALL.into_iter().for_each(|step| step_lines(&mut page, axis, step, seen));
+    AxisStep::ALL.into_iter().for_each(|step| report_step(&mut page, axis, step, seen));
     page.space();
     end_lines(axis, now).iter().for_each(|line| page.line("", line));
     Some(page.text)
 }
 
-fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
+fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
     let reached = axis.reached(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
     page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
@@ -73,7 +73,7 @@ pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
         lines.push(TEXTS.text("hd_axis.partly"));
     }
     lines.extend(words::differences(now));
-    lines.extend(words::place_left(axis, now));
+    lines.extend(words::unrestored_position_text(axis, now));
     lines.extend(words::unexplained_change_text(axis, axis.as_seen(now)));
     lines
 }

@@ -17,7 +17,7 @@ const FASTEST_RPM: f64 = 35.0;
 const UNREAD: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
-pub(super) struct Standstill {
+pub(super) struct StandstillMonitor {
     last: Option<StandstillReading>,
     /// Whether the connection has been lost since the reading. The clock of a session is valid only for that session.
     interrupted: bool,
@@ -44,7 +44,7 @@ pub(super) enum PositionChange {
     Unexplained(i64),
 }
 
-impl Standstill {
+impl StandstillMonitor {
     /// Records that the connection was lost.
     pub(super) const fn interrupt(&mut self) {
         self.interrupted = true;
@@ -53,7 +53,7 @@ impl Standstill {
     /// Discards the last standstill because the drive was off and may have been turned by hand. The power-cycle check
     /// compares the position itself.
     pub(super) fn forget(&mut self) {
-        *self = Standstill::default();
+        *self = StandstillMonitor::default();
     }
 
     /// Processes a reading. Returns the change since the previous reading if it cannot be explained by motion.

@@ -72,7 +72,7 @@ impl StepOutcomes {
     }
 
     /// Discards results that no longer match the present facts and returns the first affected step.
-    pub(super) fn fall(&mut self, now: &Preconditions) -> Option<AxisStep> {
+    pub(super) fn discard_outdated(&mut self, now: &Preconditions) -> Option<AxisStep> {
         let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
         let fallen = (left < self.0.len()).then(|| AxisStep::ALL.get(left).copied()).flatten();

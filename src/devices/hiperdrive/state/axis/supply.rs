@@ -3,7 +3,7 @@
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
-use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
+use crate::devices::hiperdrive::protocol::{FactoryValue, PARAMETERS, PositionScale};
 
 /// Parameter that reveals a restart of the drive. It is never saved, so only a restart restores its factory setting
 /// (manual, 182), and it moves nothing.
@@ -24,7 +24,7 @@ pub struct StateBeforePowerOff {
 
 /// Evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Restart {
+pub enum RestartEvidence {
     /// The restart is proven by a reading, in which parameter 182 has its factory setting again.
     Read,
     Switched,
@@ -49,24 +49,24 @@ pub enum Power {
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
-        restart: Restart,
+        restart: RestartEvidence,
     },
 }
 
 impl Power {
     pub(super) fn on(seen: &DriveFacts) -> Self {
-        Power::On(StateBeforePowerOff::default()).followed(seen)
+        Power::On(StateBeforePowerOff::default()).with_latest_values(seen)
     }
 
     /// Adopts the latest values while the supply is on. As long as the mark is present, the supply has not been off
     /// since the mark was set.
-    pub(super) fn followed(self, seen: &DriveFacts) -> Self {
+    pub(super) fn with_latest_values(self, seen: &DriveFacts) -> Self {
         match self {
-            Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
+            Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven }
                 if seen.is_settled() && is_marked(seen) == Some(true) =>
             {
                 let before = StateBeforePowerOff { marked: true, ..before };
-                Power::Back { before, kept, moved, allowed, restart: Restart::Disproved }
+                Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Disproved }
             }
             Power::On(_) if seen.is_settled() => Power::On(StateBeforePowerOff {
                 scale: seen.scale,
@@ -88,18 +88,19 @@ impl Power {
     /// the first one after the power cycle.
     pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
-            Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
+            Power::Gone(before)
+            | Power::Back { before, restart: RestartEvidence::Unproven | RestartEvidence::Disproved, .. } => before,
             own => return own,
         };
         let Some(scale) = seen.scale else { return self };
         let restart = match (switched, before.marked, is_marked(seen)) {
-            (true, ..) => Restart::Switched,
+            (true, ..) => RestartEvidence::Switched,
             // Also if the connection was lost before the mark was known to be set.
-            (_, _, Some(true)) => Restart::Disproved,
-            (_, true, Some(false)) => Restart::Read,
-            _ => Restart::Unproven,
+            (_, _, Some(true)) => RestartEvidence::Disproved,
+            (_, true, Some(false)) => RestartEvidence::Read,
+            _ => RestartEvidence::Unproven,
         };
-        before.marked |= restart == Restart::Disproved;
+        before.marked |= restart == RestartEvidence::Disproved;
         let position = seen.actual.filter(|actual| actual.status.is_present()).map(|actual| actual.position);
         Power::Back {
             before,
@@ -113,8 +114,8 @@ impl Power {
     /// Adopts the user's statement that the supply was off, if nothing proves or disproves the statement.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
-            Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
-                Power::Back { before, kept, moved, allowed, restart: Restart::Said }
+            Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Unproven } => {
+                Power::Back { before, kept, moved, allowed, restart: RestartEvidence::Said }
             }
             own => own,
         }
@@ -123,7 +124,7 @@ impl Power {
     /// Returns whether the saved values are present, the axis has not moved, and the supply was off.
     pub(super) fn is_survived(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
-            if moved.abs() <= allowed && matches!(restart, Restart::Read | Restart::Switched | Restart::Said))
+            if moved.abs() <= allowed && matches!(restart, RestartEvidence::Read | RestartEvidence::Switched | RestartEvidence::Said))
     }
 }
 
@@ -140,7 +141,7 @@ pub(super) fn mark() -> Option<i64> {
 fn from_the_factory() -> Option<i64> {
     let row = PARAMETERS.iter().find(|row| row.number == MARK)?;
     match row.factory {
-        Factory::Number(value) => Some(value),
-        Factory::None | Factory::Topology { .. } | Factory::Turns(_) | Factory::Automatic => None,
+        FactoryValue::Number(value) => Some(value),
+        FactoryValue::None | FactoryValue::Topology { .. } | FactoryValue::Turns(_) | FactoryValue::Automatic => None,
     }
 }

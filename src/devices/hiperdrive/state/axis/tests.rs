@@ -10,13 +10,13 @@ use std::time::Duration;
 use super::*;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
-use crate::devices::hiperdrive::protocol::{Actual, Direction, Family, StatusWord};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, Family, StatusWord};
 
 /// Returns the facts of a drive that is not requested, with factory settings.
 fn fresh() -> DriveFacts {
     DriveFacts {
         connected: true,
-        actual: Some(Actual { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
+        actual: Some(ActualValues { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
         position: Some(0),
         // The factory setting of 182 is 1000, of 198 it is 0.
         values: BTreeMap::from([(152, 0), (182, 1000), (198, 0)]),
@@ -78,7 +78,7 @@ fn obey(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
 }
 
 #[track_caller]
-fn press(axis: &mut Axis, seen: &mut DriveFacts, button: Button) -> DriveRequest {
+fn press(axis: &mut Axis, seen: &mut DriveFacts, button: AxisButton) -> DriveRequest {
     let ask = axis.ask(button, seen).unwrap();
     obey(axis, seen, ask.clone());
     ask
@@ -147,15 +147,15 @@ fn rewritten_parameters_are_reported_once() {
 /// Goes from the beginning to the step with the slow jog: 4 mm per turn, a step of 0.01 mm.
 fn until_jog() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(152, 1)]));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(152, 1)]));
     next(&mut axis, &seen, AxisStep::Scale);
     type_spindle(&mut axis);
     // Reference 5: 400/256; 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(values));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(values));
     confirm_spindle(&mut axis, &mut seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
-    press(&mut axis, &mut seen, Button::Confirm);
+    press(&mut axis, &mut seen, AxisButton::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
     (axis, seen)
 }
@@ -173,7 +173,7 @@ fn jog(axis: &mut Axis, seen: &mut DriveFacts, to: i32, turns: Direction) {
 
 fn until_test() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_jog();
-    press(&mut axis, &mut seen, Button::Take);
+    press(&mut axis, &mut seen, AxisButton::Take);
     jog(&mut axis, &mut seen, 500, Direction::Clockwise);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_down");
     jog(&mut axis, &mut seen, 100, Direction::Counterclockwise);
@@ -182,23 +182,23 @@ fn until_test() -> (Axis, DriveFacts) {
     next(&mut axis, &seen, AxisStep::Reference);
     axis.edit(Entries { reference: "1,00".to_owned(), ..axis.entries().clone() });
     // 100 steps become 128: the nearest multiple of 64.
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::SetPosition(128));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::SetPosition(128));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
     at(&mut seen, -1000);
-    axis.take_limit(&seen);
+    axis.adopt_limit(&seen);
     assert_eq!(axis.entries().lower, "-10.00");
     next(&mut axis, &seen, AxisStep::Upper);
     at(&mut seen, 2000);
-    axis.take_limit(&seen);
+    axis.adopt_limit(&seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_limits");
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -1000), (160, 2000)]));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -1000), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     (axis, seen)
 }
 
 fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
-    let DriveRequest::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
+    let DriveRequest::Move(target) = axis.ask(AxisButton::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
     axis.note_test_move(place, target, act);
     seen.moves = true;
@@ -216,10 +216,10 @@ fn until_power() -> (Axis, DriveFacts) {
         go(&mut axis, &mut seen, place, ends);
     }
     next(&mut axis, &seen, AxisStep::Save);
-    press(&mut axis, &mut seen, Button::Do);
+    press(&mut axis, &mut seen, AxisButton::Do);
     assert!(axis.is_saved());
     next(&mut axis, &seen, AxisStep::PowerCycle);
-    press(&mut axis, &mut seen, Button::Give);
+    press(&mut axis, &mut seen, AxisButton::Give);
     (axis, seen)
 }
 
@@ -231,7 +231,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     axis.surveyed(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
     // Worked out by hand: the factory setting of 182 is 1000.
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(182, 1001)]));
     axis.lose();
     seen.connected = false;
     axis.look(&seen);
@@ -241,7 +241,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     at(&mut seen, 2002 - 6);
     axis.surveyed(&seen, false);
     let Some(Power::Back { kept, moved, allowed, restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
-    assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, Restart::Read));
+    assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, RestartEvidence::Read));
     go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
     assert!(AxisStep::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
@@ -258,7 +258,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
 fn values_lost_in_a_power_cycle_are_reported() {
     let survive = |change: fn(&mut DriveFacts)| {
         let (mut axis, mut seen) = until_power();
-        press(&mut axis, &mut seen, Button::Do);
+        press(&mut axis, &mut seen, AxisButton::Do);
         axis.lose();
         seen.values.insert(182, 1000);
         change(&mut seen);
@@ -283,21 +283,23 @@ fn impossible_steps_are_refused_with_a_reason() {
         ("stale", DriveFacts { stale: true, ..seen.clone() }, "hd_axis.unread"),
         ("no control", seen.clone(), "hd_axis.no_control"),
     ] {
-        assert_eq!(why(&axis, &changed, Button::Go(TestTarget::Middle)), id, "{label}");
+        assert_eq!(why(&axis, &changed, AxisButton::Go(TestTarget::Middle)), id, "{label}");
     }
     let (mut axis, mut seen) = until_test();
     seen.moves = true;
-    for button in [Button::Do, Button::Widen, Button::Go(TestTarget::Lower), Button::Give, Button::Recall] {
+    for button in
+        [AxisButton::Do, AxisButton::Widen, AxisButton::Go(TestTarget::Lower), AxisButton::Give, AxisButton::Recall]
+    {
         assert_eq!(why(&axis, &seen, button), "hd_axis.moving", "{button:?}");
     }
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.moving");
     seen.moves = false;
-    assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.not_virtual");
+    assert_eq!(why(&axis, &seen, AxisButton::PowerCycle), "hd_axis.not_virtual");
     seen.is_virtual = true;
-    assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.give_first");
+    assert_eq!(why(&axis, &seen, AxisButton::PowerCycle), "hd_axis.give_first");
     // During a write nothing else is done.
     axis.begin(DriveRequest::Save, &seen);
-    assert_eq!(why(&axis, &seen, Button::Go(TestTarget::Lower)), "hd_axis.busy");
+    assert_eq!(why(&axis, &seen, AxisButton::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
     axis.back(&seen);
     assert_eq!(axis.step(), AxisStep::Test);
@@ -322,10 +324,10 @@ fn taught_limits_must_contain_the_position() {
         ("-10", "1e99", "entry.number"),
     ] {
         axis.edit(typed(lower, upper, &axis));
-        assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
+        assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
     }
     axis.edit(typed("-10,00", "20.01", &axis));
-    assert_eq!(axis.ask(Button::Do, &seen), Ok(DriveRequest::Try(vec![(158, -1000), (160, 2001)])));
+    assert_eq!(axis.ask(AxisButton::Do, &seen), Ok(DriveRequest::Try(vec![(158, -1000), (160, 2001)])));
 }
 
 #[test]
@@ -336,7 +338,9 @@ fn a_test_that_misses_its_target_does_not_count() {
     assert!(!axis.outcome(TestTarget::Middle).unwrap().is_good());
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
     assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
-    let DriveRequest::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
+    let DriveRequest::Move(target) = axis.ask(AxisButton::Go(TestTarget::Upper), &seen).unwrap() else {
+        panic!("no move")
+    };
     axis.note_test_move(TestTarget::Upper, target, 9);
     // An earlier act does not count for this one.
     axis.look(&seen);
@@ -354,9 +358,9 @@ fn cancelling_reports_written_and_unsaved_values() {
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
     assert!(axis.changes().len() == 8 && axis.reached(AxisStep::Test) == Reached::Ahead);
-    assert_eq!(axis.ask(Button::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
+    assert_eq!(axis.ask(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
-    assert_eq!(press(&mut axis, &mut seen, Button::Recall), DriveRequest::Restore(vec![(152, 0)]));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
     // The place has the position that was set.
     assert_eq!(axis.changes(), [AxisChange::Position(128)]);
     let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
@@ -379,7 +383,7 @@ fn a_correct_position_is_not_written() {
     let (mut axis, mut seen) = until_jog();
     axis.skip(&seen, "");
     assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
-    press(&mut axis, &mut seen, Button::Take);
+    press(&mut axis, &mut seen, AxisButton::Take);
     jog(&mut axis, &mut seen, 500, Direction::Counterclockwise);
     jog(&mut axis, &mut seen, 0, Direction::Clockwise);
     assert_eq!(axis.travel().clockwise_is_up, Some(false));

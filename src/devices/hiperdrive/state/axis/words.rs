@@ -1,13 +1,13 @@
 //! Texts for the steps of the axis set-up: names, tasks, findings.
 
-use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, Reached, Restart, TestTarget};
+use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, Reached, RestartEvidence, TestTarget};
 use crate::app::Text;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, SpeedTorque};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
-use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
+use crate::devices::hiperdrive::state::ruler::{PositionUnit, Ruler};
 
 pub fn title(step: AxisStep) -> Text {
     TEXTS.text(match step {
@@ -97,7 +97,7 @@ pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
         }
         AxisStep::Reference => Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
         AxisStep::Lower => {
-            Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
+            Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower_limit(ruler).ok()?)))
         }
         AxisStep::Test => {
             let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
@@ -122,11 +122,11 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
         Power::Back { kept, moved, allowed, restart, .. } => (kept, moved, allowed, restart),
     };
     let proof = TEXTS.text(match restart {
-        Restart::Read => "hd_axis.restart_read",
-        Restart::Switched => "hd_axis.restart_switched",
-        Restart::Said => "hd_axis.restart_said",
-        Restart::Unproven => "hd_axis.restart_unproven",
-        Restart::Disproved => "hd_axis.not_restarted",
+        RestartEvidence::Read => "hd_axis.restart_read",
+        RestartEvidence::Switched => "hd_axis.restart_switched",
+        RestartEvidence::Said => "hd_axis.restart_said",
+        RestartEvidence::Unproven => "hd_axis.restart_unproven",
+        RestartEvidence::Disproved => "hd_axis.not_restarted",
     });
     let Some(moved) = moved else { return Some(TEXTS.text("hd_axis.power_unknown")) };
     let id = match (kept, moved.abs() <= allowed) {
@@ -168,7 +168,7 @@ pub fn fault(seen: &DriveFacts) -> Option<Text> {
 
 /// Describes the speed and torque sent for the jog buttons and the test.
 pub fn effort(id: &'static str) -> Text {
-    let Effort { speed, torque } = Effort::JOG;
+    let SpeedTorque { speed, torque } = SpeedTorque::JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
@@ -204,7 +204,7 @@ pub fn write_back_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
 }
 
 /// Returns a message if parameters were restored but the position was not.
-pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
+pub fn unrestored_position_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_position_different(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
@@ -246,9 +246,9 @@ fn change(own: &AxisChange) -> Text {
 
 /// Formats steps in millimetres, with enough decimals to distinguish steps, or as steps if the spindle is unknown.
 pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
-    match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
+    match ruler.and_then(|ruler| Some((ruler.of(steps, PositionUnit::Millimetres)?, ruler))) {
         Some((value, ruler)) => {
-            let decimals = ruler.decimals(Measure::Millimetres).min(4);
+            let decimals = ruler.decimals(PositionUnit::Millimetres).min(4);
             TEXTS.text("hd_axis.millimetres").with_number("value", value, decimals)
         }
         None => TEXTS.text("hd_axis.steps").with("value", steps),

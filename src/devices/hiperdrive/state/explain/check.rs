@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
 pub fn check(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
 }
 
 pub(super) fn step(step: CheckStep) -> Text {
@@ -32,7 +32,7 @@ pub(super) fn step(step: CheckStep) -> Text {
     }
 }
 
-fn finding(finding: &CheckFinding) -> Text {
+fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Replies { requested, slowest_ms, late } => {
             TEXTS.text("hd_check.replies").with("asked", requested).with("slowest", slowest_ms).with("late", late)

@@ -27,7 +27,7 @@ pub fn device(error: &Error) -> Text {
             .text("hd_said.damaged")
             .with_text("asked", item_text(*what))
             .with("tries", tries)
-            .with_text("why", damage(cause)),
+            .with_text("why", damage_text(cause)),
         Error::Encapsulation { requested: what, status } => TEXTS
             .text("hd_said.refused")
             .with_text("asked", item_text(*what))
@@ -120,7 +120,7 @@ fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-pub fn damage(damage: &Damage) -> Text {
+pub fn damage_text(damage: &Damage) -> Text {
     match damage {
         Damage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet(why)),
         Damage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value(why)),

@@ -4,8 +4,8 @@ use super::names::{parameter, state};
 use crate::app::explain::link;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::MotionSnapshot;
-use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, ParameterReading, ParameterResult};
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Refusal};
+use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Phase, Refusal, TargetState};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -103,12 +103,12 @@ pub const fn weight(ended: Ended) -> Severity {
     }
 }
 
-pub fn goal(goal: Goal) -> Text {
+pub fn goal(goal: TargetState) -> Text {
     state(match goal {
-        Goal::Off => State::NotReady,
-        Goal::Ready => State::Ready,
-        Goal::Operational => State::Operational,
-        Goal::Enabled => State::Enabled,
+        TargetState::Off => State::NotReady,
+        TargetState::Ready => State::Ready,
+        TargetState::Operational => State::Operational,
+        TargetState::Enabled => State::Enabled,
     })
 }
 
@@ -128,13 +128,13 @@ pub const LOST: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 
 /// Explains why the cyclic connection was lost and what to do.
-pub fn lost(lost: Option<&CyclicLost>) -> Text {
+pub fn lost(lost: Option<&ConnectionLoss>) -> Text {
     match lost {
-        Some(CyclicLost::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
-        Some(CyclicLost::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link(error)),
-        Some(CyclicLost::DoesNotStand(drive)) => TEXTS.text("hd_lost.does_not_stand").with("drive", drive.get()),
-        Some(CyclicLost::Session) => TEXTS.text("hd_lost.session"),
-        Some(CyclicLost::Failed) => TEXTS.text("hd_lost.failed"),
+        Some(ConnectionLoss::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
+        Some(ConnectionLoss::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link(error)),
+        Some(ConnectionLoss::DoesNotStand(drive)) => TEXTS.text("hd_lost.does_not_stand").with("drive", drive.get()),
+        Some(ConnectionLoss::Session) => TEXTS.text("hd_lost.session"),
+        Some(ConnectionLoss::Failed) => TEXTS.text("hd_lost.failed"),
         None => TEXTS.text("hd_end.lost"),
     }
 }

@@ -4,20 +4,20 @@ use std::time::Duration;
 
 use crate::app::Language::German;
 use crate::app::explain::{document, in_both_languages, setting, url};
-use crate::app::{DeviceType, Kinds};
+use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::sim::Config;
 use crate::devices::hiperdrive::state::Unit;
-use crate::link::Query;
-use crate::profile::{Document, Formats, Profile};
+use crate::link::UrlQuery;
+use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Unit::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Unit::KIND], &[]);
 
 #[test]
 fn link_errors_are_explained_in_both_languages() {
     for text in ["rpi=1", "timeout=1", "order=middle", "udp=0"] {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, None, Duration::ZERO).unwrap_err();
         in_both_languages(&url(&error), &error);
     }
@@ -26,7 +26,7 @@ fn link_errors_are_explained_in_both_languages() {
 #[test]
 fn virtual_drive_setting_errors_are_explained_in_both_languages() {
     for text in ["sed=1", "s3=10", "switch=100", "hub=2", "variant=x", "drives=1,1", "speed=1", "load=x", "name=ä"] {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
         in_both_languages(&setting(&error), &error);
     }
@@ -36,7 +36,7 @@ fn virtual_drive_setting_errors_are_explained_in_both_languages() {
 fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "hiperdrive", identity: (category: "HIPERDRIVE HUB-4"),
         drives: [(number: 1, parameters: {158: 5}), (number: 2)], mounting: [(item: "198")])"#;
-    assert!(Document::parse(good, HiperdriveProfile::FORMATS).is_ok());
+    assert!(ProfileDocument::parse(good, HiperdriveProfile::FORMATS).is_ok());
     let cases = [
         ("HUB-4", "HUB-5"),
         ("number: 2", "number: 9"),
@@ -49,7 +49,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("\"198\"", "\"100\""),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
     }
     // The window calls a parameter by its own name.
@@ -57,7 +57,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("drives: [", "parameters: {9: 5}, drives: [", "vom Gerät nicht gespeichert"),
         ("{158: 5}", "{186: 300}", "300"),
     ] {
-        let error = Document::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
         let words = document(&error, KINDS).words(German);
         assert!(words.contains(german) && !words.contains(" not ") && !words.contains(" must "), "{words}");
     }

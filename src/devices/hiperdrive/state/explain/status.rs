@@ -26,7 +26,7 @@ pub(super) fn frame(status: EncapsulationStatus) -> Text {
 
 /// Returns code and name of a CIP status and of its extended status.
 pub(super) fn refusal(refusal: &Refusal) -> Text {
-    let status = general(refusal.status);
+    let status = general_status_text(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
         ([], _) => return status,
         ([first, ..], Some(row)) => vec![coded_name(format!("0x{first:04X}"), connection(row.code))],
@@ -36,7 +36,7 @@ pub(super) fn refusal(refusal: &Refusal) -> Text {
     TEXTS.text("hd_status_name.followed").with_text("status", status).with_text("words", words)
 }
 
-fn general(status: GeneralStatus) -> Text {
+fn general_status_text(status: GeneralStatus) -> Text {
     let name = match status.code() {
         0x00 => "hd_status_name.cip_00",
         0x01 => "hd_status_name.cip_01",
@@ -203,7 +203,8 @@ mod tests {
         }
         // One name per row, and none for other rows.
         let unknown = TEXTS.text(UNKNOWN).words(German);
-        let mut names: Vec<String> = GENERAL_STATUS.iter().map(|row| general(row.code).words(German)).collect();
+        let mut names: Vec<String> =
+            GENERAL_STATUS.iter().map(|row| general_status_text(row.code).words(German)).collect();
         names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).words(German)));
         assert!(names.iter().all(|name| !name.contains(&unknown)), "{names:?}");
     }

@@ -77,10 +77,10 @@ pub fn item(item: Item) -> Text {
 }
 
 pub fn other_type(types: &OtherType) -> Text {
-    of_types(types, "hd_review.other_kind", "hd_review.other_variant")
+    type_mismatch_text(types, "hd_review.other_kind", "hd_review.other_variant")
 }
 
-fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> Text {
+fn type_mismatch_text(types: &OtherType, whole: &'static str, of_drive: &'static str) -> Text {
     match types {
         OtherType::Device { profile, device } => {
             TEXTS.text(whole).with("profile", profile.category()).with("device", device.category())
@@ -102,7 +102,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDrive { drive, profile, device } => {
             TEXTS.text("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => of_types(types, "hd_plan.other_kind", "hd_plan.other_variant"),
+        PlanError::OtherType(types) => type_mismatch_text(types, "hd_plan.other_kind", "hd_plan.other_variant"),
         PlanError::OutOfRange(error) => out_of_range(error),
         PlanError::ReadOnly { item } => about("hd_said.read_only", *item),
         PlanError::Moves { item } => about("hd_said.motion", *item),
@@ -158,7 +158,12 @@ pub fn written(written: &Written) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+pub(super) fn interruption_text(
+    interrupted: &Interrupted,
+    backup: &Path,
+    planned: usize,
+    kind: ChangeKind,
+) -> Vec<Text> {
     let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)

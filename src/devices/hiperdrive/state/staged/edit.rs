@@ -104,7 +104,7 @@ fn put<const N: usize>(
     families: &Families,
 ) -> Result<(), EditError> {
     for (number, value) in values {
-        if let Some(number) = ParameterNumber::of_drive(number, drive) {
+        if let Some(number) = ParameterNumber::for_drive(number, drive) {
             set(after, number, value, ground, families)?;
         }
     }

@@ -26,7 +26,7 @@ pub enum Mark {
 impl Mark {
     pub fn numbers(&self) -> Vec<ParameterNumber> {
         let of = |drive, numbers: &[u16]| {
-            numbers.iter().filter_map(|own| ParameterNumber::of_drive(*own, drive)).collect::<Vec<_>>()
+            numbers.iter().filter_map(|own| ParameterNumber::for_drive(*own, drive)).collect::<Vec<_>>()
         };
         match self {
             Mark::OutOfRange(error) => vec![error.number],
@@ -74,7 +74,7 @@ fn mark_drive(base: &Image, wanted: &Image, drive: DriveNumber, position: Option
             marks.push(Mark::LimitsMove { drive, lower: turns(lower), upper: turns(upper) });
         }
     }
-    if wanted.of_drive(drive, TIMEOUT) == Some(NO_TIMEOUT) {
+    if wanted.for_drive(drive, TIMEOUT) == Some(NO_TIMEOUT) {
         marks.push(Mark::NoTimeout { drive });
     }
 }

@@ -87,7 +87,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert!(staged.undo() && staged.undo() && !staged.is_dirty());
     staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
-    let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
+    let mut profile = Staged::for_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
     profile.set_families([(ONE, Family::Short)].into());
     let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
     assert_eq!((error.number.get(), error.range), (158, within(204_800)));
@@ -158,7 +158,7 @@ fn a_new_scale_converts_or_moves_the_limits() {
 
 #[test]
 fn questionable_values_are_marked() {
-    let mut profile = Staged::of_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
+    let mut profile = Staged::for_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
     let marks = profile.marks(|_| None);
     assert!(matches!(marks[0], Mark::OutOfRange(error) if error.number == number(166)));
     assert_eq!(marks[1..], [Mark::Crossed { drive: ONE, lower: 10, upper: 10 }, Mark::NoTimeout { drive: ONE }]);

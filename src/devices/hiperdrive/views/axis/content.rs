@@ -2,10 +2,10 @@
 
 use egui::{RichText, Ui, vec2};
 
-use super::AxisPicture;
+use super::AxisPanel;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisStep, Button, Entries, TestTarget, words};
+use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton, AxisStep, Entries, TestTarget, words};
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::pad_ui;
 use crate::devices::hiperdrive::views::say;
@@ -20,7 +20,7 @@ const GO: f32 = 172.0;
 pub(super) fn content_ui(
     ui: &mut Ui,
     theme: &Theme,
-    shown: &AxisPicture<'_>,
+    shown: &AxisPanel<'_>,
     entries: &mut Entries,
     actions: &mut Vec<Action>,
 ) {
@@ -54,7 +54,7 @@ pub(super) fn content_ui(
 }
 
 /// Draws the buttons of the step, on one line if there is room.
-fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
         let allowed = shown.axis.check_can_adopt_place(shown.seen);
@@ -64,7 +64,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
     }
     if step != AxisStep::Lower {
         let word = theme.words(&words::button(step));
-        shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
         super::recall_ui(ui, theme, shown, actions);
@@ -73,7 +73,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
 }
 
 /// Draws the messages about the entries and the results of the step so far, without clickable widgets.
-pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
+pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
         availability_ui(ui, theme, shown);
@@ -95,24 +95,24 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, e
 }
 
 /// Draws the button that takes control. Nothing moves without the cyclic connection, nor during a fault.
-fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = say(theme, "hd_axis.take");
-        shown.button(ui, theme, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
+        shown.button(ui, theme, AxisButton::Take, (icons::PLUGS_CONNECTED, &word), actions);
         let word = say(theme, "hd_axis.acknowledge");
-        shown.button(ui, theme, Button::Acknowledge, (icons::CHECK, &word), actions);
+        shown.button(ui, theme, AxisButton::Acknowledge, (icons::CHECK, &word), actions);
     });
     ui.add_space(theme.space.inside);
 }
 
-fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
+fn may_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text> {
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
 /// Draws the reason why the jog buttons are blocked, or what they do.
-fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
-    if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
+    if let Some(outside) = shown.unit.outside_limits_text(shown.axis.drive()) {
         super::line(ui, theme, Severity::Error, &outside);
     }
     if let Some(why) = blocked.into_iter().flatten().next()
@@ -130,7 +130,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
 }
 
 /// Draws the two hold-to-run buttons, which jog slowly and with low torque.
-fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
@@ -154,7 +154,7 @@ fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
 }
 
 /// Draws pitch and resolution, and the values that result from them before they are written.
-fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
+fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     if entries.pitch.trim().is_empty() {
         return;
     }
@@ -184,7 +184,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries)
     }
 }
 
-fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
         theme.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
@@ -193,13 +193,13 @@ fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut 
     ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
         let word = say(theme, "hd_axis.confirm");
-        shown.button(ui, theme, Button::Confirm, (icons::EYE, &word), actions);
+        shown.button(ui, theme, AxisButton::Confirm, (icons::EYE, &word), actions);
         let word = say(theme, "hd_axis.widen");
-        shown.button(ui, theme, Button::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
+        shown.button(ui, theme, AxisButton::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
     });
 }
 
-fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
+fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     let ruler = shown.seen.ruler();
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
@@ -212,7 +212,7 @@ fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &E
     }
 }
 
-fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
         let word = theme.words(&words::place(own));
@@ -223,7 +223,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
             let size = vec2(GO, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.set_min_width(GO);
-                shown.button(ui, theme, Button::Go(own), (icons::PLAY, &go), actions);
+                shown.button(ui, theme, AxisButton::Go(own), (icons::PLAY, &go), actions);
             });
             if shown.axis.going() == Some(own) {
                 ui.label(theme.label(say(theme, "hd_axis.goes")));
@@ -239,18 +239,18 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
 }
 
 /// Draws the control of the supply, which is switched here for a virtual device and by hand for a real one.
-fn power_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn power_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));
-        shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
         let word = say(theme, "hd_axis.give");
-        shown.button(ui, theme, Button::Give, (icons::PLUGS, &word), actions);
+        shown.button(ui, theme, AxisButton::Give, (icons::PLUGS, &word), actions);
         if shown.seen.is_virtual {
             let word = say(theme, "hd_axis.power_cycle");
-            shown.button(ui, theme, Button::PowerCycle, (icons::POWER, &word), actions);
+            shown.button(ui, theme, AxisButton::PowerCycle, (icons::POWER, &word), actions);
         } else {
             let word = say(theme, "hd_axis.restarted");
-            shown.button(ui, theme, Button::Restarted, (icons::POWER, &word), actions);
+            shown.button(ui, theme, AxisButton::Restarted, (icons::POWER, &word), actions);
         }
         super::skip_ui(ui, theme, shown, actions);
     });

@@ -60,7 +60,7 @@ impl Master<'_> {
                 Err(trouble) => (None, self.may_try_again(&Request::ReadStatus, tries, trouble)),
             };
             let passed = self.line.take_late_bytes();
-            let late = self.replies_in(&passed);
+            let late = self.find_replies(&passed);
             self.station.line.quality.late += late.len() as u64;
             let mut pending = None;
             for (codes, more) in answered.into_iter().chain(late) {
@@ -94,10 +94,10 @@ impl Master<'_> {
     }
 
     /// Returns the replies to 50h among bytes that were skipped.
-    fn replies_in(&self, bytes: &[u8]) -> Vec<Codes> {
+    fn find_replies(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {
-            rest = match self.reply_at(rest) {
+            rest = match self.parse_status_reply(rest) {
                 Some((codes, behind)) => {
                     found.push(codes);
                     behind
@@ -111,7 +111,7 @@ impl Master<'_> {
     /// Returns the reply to 50h at the start of the bytes, and the remaining bytes. The checksum also matches the first
     /// bytes of some replies (01h and 11h from address 40h), so a reply that ends with the bytes, or before the next
     /// reply, takes precedence.
-    fn reply_at<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
+    fn parse_status_reply<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;
             Some((codes(answer), behind))

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::profile::testing::{changed_in_place, edited};
-use crate::profile::{Document, ProfileError};
+use crate::profile::{ProfileDocument, ProfileError};
 
 /// Profile as a user may write it.
 const SHORT: &str = r#"(
@@ -17,8 +17,8 @@ fn commented() -> String {
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
 }
 
-fn parse(text: &str) -> Result<Document, ProfileError> {
-    Document::parse(text, HiperfaceProfile::FORMATS)
+fn parse(text: &str) -> Result<ProfileDocument, ProfileError> {
+    ProfileDocument::parse(text, HiperfaceProfile::FORMATS)
 }
 
 fn profile(text: &str) -> HiperfaceProfile {

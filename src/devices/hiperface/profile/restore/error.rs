@@ -1,6 +1,6 @@
 //! Reasons why a profile cannot be restored, or an edit cannot be planned.
 
-use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::protocol::AccessCodeNumber;
 
 /// Reason why a profile cannot be restored or an edit cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -53,7 +53,7 @@ pub enum PlanError {
         /// Field number.
         field: u8,
         /// Number of the access code that protects the field.
-        code: CodeNumber,
+        code: AccessCodeNumber,
     },
     /// Fields can only be created in ascending order.
     #[error("field {field} cannot be created: the next one is {next}")]
@@ -103,6 +103,6 @@ pub enum PlanError {
         /// Field number.
         field: u8,
         /// Number of the access code that protects the field.
-        code: CodeNumber,
+        code: AccessCodeNumber,
     },
 }

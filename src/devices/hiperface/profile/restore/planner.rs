@@ -62,7 +62,7 @@ impl Planner<'_> {
     fn report_skipped_mounting(&mut self) {
         let profile = self.profile;
         for target in &profile.fields {
-            let is_wanted = self.target_of(target.number).is_some_and(|own| own.bytes.is_some());
+            let is_wanted = self.target_field(target.number).is_some_and(|own| own.bytes.is_some());
             if is_wanted || !self.left.contains(&target.number) {
                 continue;
             }
@@ -110,7 +110,7 @@ impl Planner<'_> {
         let blocks =
             |fields: &[FieldImage]| fields.iter().map(|f| usize::from(f.status.size().blocks())).sum::<usize>();
         let mut after: Vec<FieldImage> =
-            self.device.fields.iter().filter(|now| self.target_of(now.number).is_none()).cloned().collect();
+            self.device.fields.iter().filter(|now| self.target_field(now.number).is_none()).cloned().collect();
         after.extend(self.targets(recreated));
         after.sort_by_key(|field| field.number);
         after.dedup_by_key(|field| field.number);
@@ -126,7 +126,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    fn target_of(&self, number: u8) -> Option<&FieldImage> {
+    fn target_field(&self, number: u8) -> Option<&FieldImage> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
@@ -135,7 +135,7 @@ impl Planner<'_> {
     pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
-            let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_of(f.number).is_none());
+            let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_field(f.number).is_none());
             targets.extend(own.cloned());
             targets.sort_by_key(|field| field.number);
             // Fields without bytes in the profile keep theirs.
@@ -253,7 +253,7 @@ impl Planner<'_> {
 
     pub(super) fn finish(mut self) -> crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange> {
         for now in &self.device.fields {
-            if self.target_of(now.number).is_none() && !self.left.contains(&now.number) {
+            if self.target_field(now.number).is_none() && !self.left.contains(&now.number) {
                 self.missing.push(FieldRange::of(now.number));
             }
         }

@@ -62,7 +62,7 @@ fn define(field: u8, status: u8, code: AccessCode) -> Request {
 }
 
 fn change_code(number: u8, old: AccessCode, new: AccessCode) -> Request {
-    Request::ChangeCode { number: CodeNumber::new(number).unwrap(), old, new }
+    Request::ChangeCode { number: AccessCodeNumber::new(number).unwrap(), old, new }
 }
 
 fn set_address(new: u8) -> Request {

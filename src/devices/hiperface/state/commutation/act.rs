@@ -3,7 +3,7 @@
 use super::outcome::check_can_read;
 use super::{CommutationAction, Slot};
 use crate::app::services::Services;
-use crate::app::session::{SessionEvents, WithMemory};
+use crate::app::session::{HasMemory, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
 use crate::devices::hiperface::state::{Encoder, TEXTS};

@@ -191,7 +191,7 @@ impl Form {
     ///
     /// # Errors
     /// States why the entry is invalid.
-    pub fn second_turns(&self) -> Result<f64, Text> {
+    pub fn second_vector_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
@@ -230,7 +230,7 @@ impl Form {
     }
 
     /// Returns a warning if the entered number of periods differs from that of the encoder type.
-    pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
+    pub fn periods_mismatch(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
@@ -260,5 +260,5 @@ fn missing(what: &'static str) -> Text {
 
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
-    Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))
+    Phase::from_periods(periods).ok_or_else(|| missing("commutation.phase"))
 }

@@ -49,7 +49,7 @@ impl Commutation {
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
         // Once it is stored there as an edit, the content that will be replaced is the encoder's.
         let there = match wanted == bytes {
-            true => places.filter_map(|at| staged.on_device(field, at)).collect(),
+            true => places.filter_map(|at| staged.device_byte(field, at)).collect(),
             false => wanted,
         };
         if there.len() < bytes.len() || there == bytes || is_filler(&there) || is_kept(self.form.storage, &there) {

@@ -7,7 +7,7 @@ use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
 use crate::app::number::whole;
-use crate::devices::hiperface::profile::{CommutationRecord, Damaged};
+use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordError};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
@@ -17,7 +17,7 @@ const UNUSABLE_DEG: f64 = 90.0;
 const WEAK_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offset {
+pub struct CommutationOffset {
     /// Rest position of the shaft, in periods within a revolution.
     pub fine_periods: f64,
     pub shaft_deg: f64,
@@ -46,7 +46,7 @@ pub struct Stored {
     pub field: u8,
     /// Index of the first byte.
     pub address: usize,
-    pub record: Result<CommutationRecord, Damaged>,
+    pub record: Result<CommutationRecord, CommutationRecordError>,
     /// Whether the location contains an edit that has not been written yet.
     pub edited: bool,
 }
@@ -56,7 +56,7 @@ impl Commutation {
     ///
     /// # Errors
     /// States what is missing, or why the readings cannot be used.
-    pub fn offset(&self, geometry: Option<Geometry>) -> Result<Offset, Text> {
+    pub fn offset(&self, geometry: Option<Geometry>) -> Result<CommutationOffset, Text> {
         let inputs = self.form.inputs(geometry)?;
         let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
         let (first, apart) = match (one, other) {
@@ -79,7 +79,7 @@ impl Commutation {
         });
         // The coarser one counts.
         let resolution = resolution.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
-        Ok(Offset {
+        Ok(CommutationOffset {
             fine_periods,
             shaft_deg: fine_periods / turn * 360.0,
             apart_deg,
@@ -102,7 +102,8 @@ impl Commutation {
         const STILL: f64 = 0.1;
         /// Permitted ratio of the actual movement to the expected movement.
         const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
-        let (inputs, offset, turns) = (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_turns()?);
+        let (inputs, offset, turns) =
+            (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_vector_turns()?);
         let moved = apart(offset.fine_periods, fine_periods, inputs.periods);
         let moved = if inputs.reversed { -moved } else { moved };
         let second = inputs.motor.second_vector(moved, turns).filter(|second| second.ratio.abs() >= STILL);
@@ -191,7 +192,7 @@ impl Commutation {
         }
         let here = self.last.filter(|slot| *slot != Slot::Second).and_then(|slot| self.reading(slot));
         let here = here.ok_or_else(|| TEXTS.text("commutation.not_there"))?;
-        let phase = Phase::of_periods(here.fine_periods).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
+        let phase = Phase::from_periods(here.fine_periods).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let steps = u64::from(STEPS_PER_PERIOD);
         let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);

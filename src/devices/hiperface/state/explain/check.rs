@@ -10,7 +10,7 @@ use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, Hipe
 use crate::devices::hiperface::state::TEXTS;
 
 pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -36,7 +36,7 @@ pub fn line_quality(quality: &LineQuality) -> Text {
         .with("late", late)
 }
 
-fn finding(finding: &CheckFinding) -> Text {
+fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Code(code) => status_with_number(*code),
         CheckFinding::Position(found) => position(*found),
@@ -97,8 +97,8 @@ mod tests {
             (CheckFinding::Name("SKM36".to_owned()), "SKM36", "SKM36"),
         ];
         for (found, terminal, german) in cases {
-            assert_eq!(finding(&found).terminal(), terminal);
-            assert_eq!(finding(&found).words(Language::German), german);
+            assert_eq!(finding_text(&found).terminal(), terminal);
+            assert_eq!(finding_text(&found).words(Language::German), german);
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn damage(damage: &Damage) -> Text {
+pub fn damage_text(damage: &Damage) -> Text {
     match damage {
         Damage::Reply(error) => reply(error),
         Damage::Unreadable => TEXTS.text("damage.unreadable"),
@@ -61,8 +61,8 @@ mod tests {
             Damage::Inconsistent,
         ];
         for found in cases {
-            assert_eq!(damage(&found).words(Language::English), found.to_string());
-            assert_ne!(damage(&found).words(Language::German), found.to_string());
+            assert_eq!(damage_text(&found).words(Language::English), found.to_string());
+            assert_ne!(damage_text(&found).words(Language::German), found.to_string());
         }
     }
 }

@@ -5,19 +5,19 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::bits::hex;
 use crate::devices::hiperface::protocol::{
-    Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, FrameFact, LineSettings, Reply, RequestError,
-    SerialLabel, StatusCode, TypeLabel,
+    Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, FrameDetail, LineSettings, Reply,
+    RequestError, SerialLabel, StatusCode, TypeLabel,
 };
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn frame(fact: &FrameFact) -> Text {
+pub fn frame(fact: &FrameDetail) -> Text {
     match fact {
-        FrameFact::Heading { address, command } => heading(*address, *command),
-        FrameFact::Request(arguments) => request(arguments),
-        FrameFact::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", no_request(*error)),
-        FrameFact::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
-        FrameFact::Code(code) => kind_and_code(*code),
-        FrameFact::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
+        FrameDetail::Heading { address, command } => heading(*address, *command),
+        FrameDetail::Request(arguments) => request(arguments),
+        FrameDetail::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", request_error_text(*error)),
+        FrameDetail::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
+        FrameDetail::Code(code) => kind_and_code(*code),
+        FrameDetail::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
     }
 }
 
@@ -64,7 +64,7 @@ fn request(arguments: &Arguments) -> Text {
     }
 }
 
-fn no_request(error: RequestError) -> Text {
+fn request_error_text(error: RequestError) -> Text {
     match error {
         RequestError::Command(byte) => TEXTS.text("frame.no_command").with("command", number(byte)),
         RequestError::Length { expected, got } => {

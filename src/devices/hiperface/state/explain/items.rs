@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::app::explain::plain;
-use crate::devices::hiperface::procedures::ReadBack;
+use crate::devices::hiperface::procedures::ReadBackValue;
 use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem};
 use crate::devices::hiperface::state::TEXTS;
 use crate::profile::Cause;
@@ -28,7 +28,7 @@ pub fn field_range(range: &FieldRange) -> Text {
     text.with("count", range.count.unwrap_or_default())
 }
 
-pub fn plan_item(own: &PlanItem) -> Text {
+pub fn plan_item_text(own: &PlanItem) -> Text {
     match own {
         PlanItem::Item(own) => item(own),
         PlanItem::Encoder => TEXTS.text("hf_item.encoder"),
@@ -38,10 +38,10 @@ pub fn plan_item(own: &PlanItem) -> Text {
     }
 }
 
-pub fn read_back(read: &ReadBack) -> Text {
+pub fn read_back(read: &ReadBackValue) -> Text {
     match read {
-        ReadBack::Value(value) => plain(value),
-        ReadBack::AnotherStatus => TEXTS.text("hf_item.another_status"),
+        ReadBackValue::Value(value) => plain(value),
+        ReadBackValue::AnotherStatus => TEXTS.text("hf_item.another_status"),
     }
 }
 

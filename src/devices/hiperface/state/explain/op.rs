@@ -58,7 +58,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
             OperationTexts::one(item, field_status(from), TEXTS.text("op.deleted"))
         }
         Some(from) if from.exists() => {
-            let (old, new) = differing(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+            let (old, new) = changed_properties(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
             OperationTexts::one(item, parts(old), parts(new))
         }
@@ -67,7 +67,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
 }
 
 /// Returns the properties of a field that an operation changes, each with old and new value.
-fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
+fn changed_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());
     let parts: [&dyn Fn(DataFieldStatus) -> Text; 4] = [&size, &field_access, &code, &field_code_required];
@@ -78,7 +78,7 @@ fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DeviceAddress, LineSettings};
+    use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, DeviceAddress, LineSettings};
 
     #[test]
     fn operations_are_described_in_plain_words() {
@@ -96,7 +96,7 @@ mod tests {
             (store(Some(vec![0, 1]), vec![8, 0x1F]), "data field 1, bytes 3 to 4: 00 01 → 08 1F"),
             (store(None, vec![8]), "data field 1, byte 3: new field → 08"),
             (
-                Op::ChangeCode { number: CodeNumber::ZERO, old, new },
+                Op::ChangeCode { number: AccessCodeNumber::ZERO, old, new },
                 "access code 0: current code, not shown → new code, not shown",
             ),
             (Op::SetPosition { from: 123, to: 456, synchronise: false }, "position: 123 → 456"),

@@ -4,17 +4,17 @@ use std::time::Duration;
 
 use crate::app::Language::German;
 use crate::app::explain::{document, in_both_languages, setting, url};
-use crate::app::{DeviceType, Kinds};
-use crate::devices::hiperface::procedures::{ReadBack, Station};
+use crate::app::{DeviceType, KindRegistry};
+use crate::devices::hiperface::procedures::{ReadBackValue, Station};
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, PlanItem};
-use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::protocol::AccessCodeNumber;
 use crate::devices::hiperface::sim::Config;
 use crate::devices::hiperface::state::Encoder;
-use crate::devices::hiperface::state::explain::{plan_item, read_back};
-use crate::link::Query;
-use crate::profile::{Document, Formats, Profile};
+use crate::devices::hiperface::state::explain::{plan_item_text, read_back};
+use crate::link::UrlQuery;
+use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn link_errors_are_explained_in_both_languages() {
@@ -30,7 +30,7 @@ fn link_errors_are_explained_in_both_languages() {
         "periods=2&turns=0",
     ];
     for text in queries {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
         in_both_languages(&url(&error), &error);
     }
@@ -60,7 +60,7 @@ fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
         "address=0x5F&encoders=2",
     ];
     for text in queries {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
         in_both_languages(&setting(&error), &error);
     }
@@ -70,7 +70,7 @@ fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
 fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "hiperface", identity: (serial_number: "A1", encoder_type: 0x37),
         interface: (address: 0x40, settings: 0xE4), fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")])"#;
-    assert!(Document::parse(good, HiperfaceProfile::FORMATS).is_ok());
+    assert!(ProfileDocument::parse(good, HiperfaceProfile::FORMATS).is_ok());
     let cases = [
         ("fields:", "feilds:"),
         ("identity: (", "identity: 7, was: ("),
@@ -89,7 +89,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("schema: 1", "schema: 1, schema: 1"),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
     }
 }
@@ -106,13 +106,13 @@ fn items_checked_by_a_write_are_named_in_both_languages() {
         (PlanItem::Item(Item::Counter), "Zähler"),
         (PlanItem::Item(Item::Address), "Adresse"),
         (PlanItem::Item(Item::Settings), "Schnittstelleneinstellungen"),
-        (PlanItem::Code(CodeNumber::new(2).unwrap()), "Zugriffsschlüssel 2"),
+        (PlanItem::Code(AccessCodeNumber::new(2).unwrap()), "Zugriffsschlüssel 2"),
         (PlanItem::Encoder, "Der Geber selbst"),
         (PlanItem::FieldCount, "Anzahl der Datenfelder"),
     ];
     for (item, german) in cases {
-        in_both_languages(&plan_item(&item), &item);
-        assert_eq!(plan_item(&item).words(German), german);
+        in_both_languages(&plan_item_text(&item), &item);
+        assert_eq!(plan_item_text(&item).words(German), german);
     }
-    in_both_languages(&read_back(&ReadBack::AnotherStatus), &ReadBack::AnotherStatus);
+    in_both_languages(&read_back(&ReadBackValue::AnotherStatus), &ReadBackValue::AnotherStatus);
 }

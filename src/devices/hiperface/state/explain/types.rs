@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax};
-use crate::devices::hiperface::jobs::BrokenTypeTable;
+use crate::devices::hiperface::jobs::TypeTableFileError;
 use crate::devices::hiperface::protocol::{ShapeEntry, TypeTableError};
 use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
@@ -11,8 +11,8 @@ use crate::worker::OpenError;
 /// Explains why a table of encoder types cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
-    match cause.get::<BrokenTypeTable>() {
-        Some(BrokenTypeTable { path, cause }) => {
+    match cause.get::<TypeTableFileError>() {
+        Some(TypeTableFileError { path, cause }) => {
             TEXTS.text("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
         }
         None => general::store(error),
@@ -61,7 +61,7 @@ mod tests {
         assert_eq!(why.words(English), cause.to_string());
         assert_eq!(why.terminal(), cause.to_string());
         assert_eq!(why.words(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");
-        let broken = BrokenTypeTable { path: "own.ron".into(), cause };
+        let broken = TypeTableFileError { path: "own.ron".into(), cause };
         let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(
             open(&error).words(English),

@@ -64,7 +64,7 @@ fn lines_break_at_missing_samples() {
         |heading| -> Vec<bool> { samples(&record, heading).iter().map(|own| own.2.contains(Flags::BREAK)).collect() };
     assert_eq!(breaks("position"), [false, false, true]);
     assert_eq!(breaks("temperature"), [false, false, true]);
-    assert_eq!(record.track.dropped(), 7);
+    assert_eq!(record.track.dropped_count(), 7);
     // The cable was disconnected for an hour.
     let began: Zoned = "2026-03-01T10:00:00[UTC]".parse().unwrap();
     let mut record = Record::default();

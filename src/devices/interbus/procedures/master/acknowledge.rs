@@ -6,9 +6,9 @@
 
 use std::time::Duration;
 
-use super::stability::{CycleResult, Held, STAYS_FOR};
+use super::stability::{CycleResult, STAYS_FOR, StabilityTimer};
 use super::{Error, Master};
-use crate::devices::interbus::procedures::error::AwaitedWord;
+use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
@@ -24,7 +24,7 @@ impl Master<'_> {
     /// [`Error::Illegal`], with nothing sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; errors of
     /// the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
-        self.set_again(command, 0)
+        self.resend_setting(command, 0)
     }
 
     /// Sends a word whose echo proves nothing. `question` reads the value back, and the word is repeated, with a longer
@@ -41,7 +41,7 @@ impl Master<'_> {
     ) -> Result<(), Error> {
         let mut reads = wanted;
         for tried in 0..TRIES {
-            self.set_again(command, tried)?;
+            self.resend_setting(command, tried)?;
             reads = self.ask(question)?;
             if reads == wanted {
                 return Ok(());
@@ -50,11 +50,11 @@ impl Master<'_> {
         Err(Error::NotTaken { item: item(), wanted: wanted.get(), reads: reads.get() })
     }
 
-    fn set_again(&mut self, command: Command, tried: u32) -> Result<(), Error> {
+    fn resend_setting(&mut self, command: Command, tried: u32) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;
         self.parameterising = true;
-        self.sets_program();
+        self.mark_program_set();
         self.wait_for_acknowledgement(command, tried, false)
     }
 
@@ -69,8 +69,8 @@ impl Master<'_> {
         let (before, found) = (self.input, self.found_error);
         let holds = self.holds(command, tried);
         let patience = self.patience + holds.unwrap_or_default();
-        let mut rests = Held::new(self.recorded);
-        self.until(command, AwaitedWord::Echo, patience, |CycleResult { now, word, same }| {
+        let mut rests = StabilityTimer::new(self.recorded);
+        self.until(command, ExpectedWord::Echo, patience, |CycleResult { now, word, same }| {
             let reply = Reply::parse(word);
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {

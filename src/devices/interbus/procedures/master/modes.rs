@@ -5,8 +5,8 @@ use std::time::Duration;
 use super::Master;
 use super::stability::CycleResult;
 use crate::devices::interbus::procedures::Error;
-use crate::devices::interbus::procedures::error::AwaitedWord;
-use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
+use crate::devices::interbus::procedures::error::ExpectedWord;
+use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupMode};
 
 /// Time for which a requested cam value may remain after `00000000` before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
@@ -69,7 +69,7 @@ impl Master<'_> {
             let mode = master.ask_mode()?;
             master.found = Some(mode);
             if was_set {
-                master.note_store()?;
+                master.record_store()?;
             }
             master.resume(mode)?;
             master.lead_back()?;
@@ -165,7 +165,7 @@ impl Master<'_> {
     }
 
     fn ask_mode(&mut self) -> Result<StartupMode, Error> {
-        let mode = StartupMode::parse(self.read_out(ReadOut::STARTUP_MODE)?);
+        let mode = StartupMode::parse(self.read_out(ReadOutNumber::STARTUP_MODE)?);
         (self.is, self.known.mode, self.unsure) = (Some(mode), Some(mode), false);
         Ok(mode)
     }
@@ -177,7 +177,7 @@ impl Master<'_> {
         let keeps = if of_cams { Command::Run } else { command };
         let known = self.known.hold.is_some_and(|(mode, _)| mode == wanted);
         let mut is = wanted;
-        self.note_switch(wanted)?;
+        self.record_mode_switch(wanted)?;
         for held in [false, true].into_iter().skip(usize::from(known)) {
             (self.unsure, self.switched) = (true, true);
             self.send_instruction(command)?;
@@ -280,7 +280,7 @@ impl Master<'_> {
     /// would store the settings. A value that persists can be told apart from the next echo.
     fn end_query(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
-        let ended = self.until(Command::Normal, AwaitedWord::Run, patience, |CycleResult { word, same, .. }| {
+        let ended = self.until(Command::Normal, ExpectedWord::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
             (!asks && same.is_stable()).then_some(Ok(()))
         });

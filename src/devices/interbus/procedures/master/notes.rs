@@ -3,14 +3,14 @@
 use super::Master;
 use super::modes::is_equivalent_mode;
 use crate::devices::interbus::procedures::Error;
-use crate::devices::interbus::procedures::journal::{Excursion, Journal};
-use crate::devices::interbus::protocol::{ReadOut, StartupMode};
+use crate::devices::interbus::procedures::journal::{Journal, ModeSwitch};
+use crate::devices::interbus::protocol::{ReadOutNumber, StartupMode};
 
 #[derive(Default)]
 pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
-    excursion: Option<Excursion>,
+    excursion: Option<ModeSwitch>,
     /// Number of cam programs left without a change, each of which the encoder may nevertheless have stored (reference
     /// 5).
     left: u64,
@@ -33,18 +33,21 @@ impl Master<'_> {
     }
 
     /// Records, in advance, the number of cam programs to be selected for reading.
-    pub(in crate::devices::interbus::procedures) fn will_read(&mut self, programs: usize) -> Result<(), Error> {
+    pub(in crate::devices::interbus::procedures) fn record_program_reads(
+        &mut self,
+        programs: usize,
+    ) -> Result<(), Error> {
         if programs == 0 || self.notes.journal.is_none() {
             return Ok(());
         }
         let serial_number = self.serial_number()?;
         if let Some(journal) = &mut self.notes.journal {
-            journal.intends(&serial_number, programs as u64);
+            journal.record_intent(&serial_number, programs as u64);
         }
         Ok(())
     }
 
-    pub(super) fn sets_program(&mut self) {
+    pub(super) fn mark_program_set(&mut self) {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
@@ -55,7 +58,7 @@ impl Master<'_> {
         }
         let serial_number = self.serial_number()?;
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
-        let Some(excursion) = journal.excursion(&serial_number) else { return Ok(()) };
+        let Some(excursion) = journal.recorded_excursion(&serial_number) else { return Ok(()) };
         if is_equivalent_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
             // It was returned, or another mode was selected since.
             journal.is_back(&serial_number);
@@ -72,7 +75,7 @@ impl Master<'_> {
     }
 
     /// Records, before the switch, that the encoder will enter the given mode.
-    pub(super) fn note_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
+    pub(super) fn record_mode_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
         if let Some(StartupMode::Cams(_)) = self.is
             && !std::mem::take(&mut self.notes.is_set)
         {
@@ -83,18 +86,18 @@ impl Master<'_> {
             return Ok(());
         }
         let serial_number = self.serial_number()?;
-        let excursion = self.notes.excursion.get_or_insert_with(|| Excursion { found, sent: Vec::new() });
+        let excursion = self.notes.excursion.get_or_insert_with(|| ModeSwitch { found, sent: Vec::new() });
         if !excursion.sent.contains(&wanted) {
             excursion.sent.push(wanted);
         }
         if let Some(journal) = &mut self.notes.journal {
-            journal.leaves(&serial_number, excursion);
+            journal.record_excursion(&serial_number, excursion);
         }
         Ok(())
     }
 
     /// Records that returning the encoder to operation stored settings made by another program.
-    pub(super) fn note_store(&mut self) -> Result<(), Error> {
+    pub(super) fn record_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;
             self.notes.left += 1;
@@ -117,7 +120,7 @@ impl Master<'_> {
 
     fn serial_number(&mut self) -> Result<String, Error> {
         if self.notes.serial_number.is_none() {
-            self.read_out(ReadOut::SERIAL_NUMBER)?;
+            self.read_out(ReadOutNumber::SERIAL_NUMBER)?;
         }
         Ok(self.notes.serial_number.clone().unwrap_or_default())
     }

@@ -24,7 +24,7 @@ pub(super) const fn least_cycles(recorded: bool) -> u32 {
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
+pub(super) struct StabilityTimer {
     /// Whether only cycles count, as in a recording, in which no time passes.
     timeless: bool,
     cycles: u32,
@@ -32,16 +32,16 @@ pub(super) struct Held {
     lasted: Duration,
 }
 
-impl Held {
+impl StabilityTimer {
     /// Creates a check whose condition does not hold yet.
     pub(super) const fn new(timeless: bool) -> Self {
-        Held { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
+        StabilityTimer { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
     }
 
     /// Records whether the condition holds in the current cycle.
     pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
         if !holds {
-            *self = Held::new(self.timeless);
+            *self = StabilityTimer::new(self.timeless);
             return;
         }
         self.cycles += 1;
@@ -65,7 +65,7 @@ impl Held {
     }
 
     /// Returns the time from the first cycle to the last in which the condition held.
-    pub(super) const fn stable_for(self) -> Duration {
+    pub(super) const fn stable_duration(self) -> Duration {
         self.lasted
     }
 
@@ -78,5 +78,5 @@ impl Held {
 pub(super) struct CycleResult {
     pub(super) now: Moment,
     pub(super) word: u32,
-    pub(super) same: Held,
+    pub(super) same: StabilityTimer,
 }

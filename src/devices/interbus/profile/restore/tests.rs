@@ -4,7 +4,7 @@ use super::super::test_profiles::{edges, identity, image, profile, value, with};
 use super::super::{Base, ItemValue, Op};
 use super::*;
 use crate::devices::interbus::protocol::{Flags, WindowShift};
-use crate::profile::{Document, Profile};
+use crate::profile::{Profile, ProfileDocument};
 
 use ItemValue::{Cam, Mask, Number};
 
@@ -123,7 +123,7 @@ fn another_type_needs_a_separate_permission() {
 fn only_needed_programs_are_read() {
     let mut of = profile(MINE);
     let numbers = |profile: &InterbusProfile| -> Vec<u8> {
-        programs_needed(profile).into_iter().map(ProgramNumber::get).collect()
+        required_programs(profile).into_iter().map(ProgramNumber::get).collect()
     };
     assert_eq!(numbers(&of), [1, 2, 3, 4, 5, 6, 7, 8]);
     of.image.programs[..6].fill(None);
@@ -152,7 +152,7 @@ fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
         let text = std::fs::read_to_string(path).unwrap();
-        let document = Document::parse(&text, InterbusProfile::FORMATS).unwrap();
+        let document = ProfileDocument::parse(&text, InterbusProfile::FORMATS).unwrap();
         assert_eq!(document.emit(), text, "as this program writes it");
         document.body.into_profile().unwrap()
     };

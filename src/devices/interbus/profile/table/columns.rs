@@ -23,7 +23,7 @@ const WORDS: [(Column, &[&str]); 5] = [
 
 impl Columns {
     /// Identifies the columns by their header, or returns `None` if the header names neither a start nor a stop.
-    pub(super) fn of_header(cells: &[&str]) -> Option<Self> {
+    pub(super) fn from_header(cells: &[&str]) -> Option<Self> {
         let mut places: Vec<(Column, usize)> = Vec::new();
         for (place, cell) in cells.iter().enumerate() {
             let known = WORDS.iter().find(|(column, words)| {

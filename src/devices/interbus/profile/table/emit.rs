@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use super::{Names, Scale, Unit};
+use super::{CamNames, Scale, Unit};
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::CamNumber;
 
 /// Returns the active cams of all known programs as a table in machine units. The columns are separated by
 /// semicolons if a decimal comma is used, and otherwise by commas. Reading the table back yields the same steps.
-pub fn emit(image: &Image, names: &Names, scale: &Scale, decimal_comma: bool) -> String {
+pub fn emit(image: &Image, names: &CamNames, scale: &Scale, decimal_comma: bool) -> String {
     let separator = if decimal_comma { ';' } else { ',' };
     let unit = match scale.unit() {
         Unit::Steps => "steps",

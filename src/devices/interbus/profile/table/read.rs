@@ -48,7 +48,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     }
     let mut drafts = Vec::new();
     for line in lines.iter().skip(usize::from(table.header)).take(MOST_ROWS) {
-        match draft(options, &columns, line, delimiter != Delimiter::Comma) {
+        match parse_draft(options, &columns, line, delimiter != Delimiter::Comma) {
             Ok(draft) => drafts.push(draft),
             Err(problem) => table.problems.push(problem),
         }
@@ -58,7 +58,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     }
     table.place(drafts);
     table.problems.sort_by_key(|problem| (problem.line, problem.column));
-    table.note_pulses();
+    table.add_pulse_notes();
     table
 }
 
@@ -72,7 +72,7 @@ impl CamTable {
         if !self.header {
             return Columns::from_column_count(count);
         }
-        let known = Columns::of_header(&cells);
+        let known = Columns::from_header(&cells);
         if known.is_none() {
             self.notes.push(TableNote::OtherHeader);
         }
@@ -128,7 +128,7 @@ impl CamTable {
     }
 
     /// Adds a note for each track with several pulses, since every pulse uses a cam.
-    fn note_pulses(&mut self) {
+    fn add_pulse_notes(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
             for row in self.rows.iter().filter(|row| row.program == program && !row.name.is_empty()) {
@@ -181,7 +181,12 @@ fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
     cells.collect()
 }
 
-fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: bool) -> Result<Draft, TableProblem> {
+fn parse_draft(
+    options: &TableOptions,
+    columns: &Columns,
+    line: &TableLine,
+    comma: bool,
+) -> Result<Draft, TableProblem> {
     let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
     let wrong = |column, what| TableProblem { line: line.number, column: at(column), kind: what };
     let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);

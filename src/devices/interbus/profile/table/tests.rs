@@ -2,7 +2,7 @@
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;
-use crate::devices::interbus::profile::{Direction, Image, Names, Outside, Parameters, Scale, Unit};
+use crate::devices::interbus::profile::{CamNames, Direction, Image, Outside, Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
 fn number(program: u8) -> ProgramNumber {
@@ -198,7 +198,7 @@ fn emitted_tables_parse_back() {
         program.cams[4] = edges(1, 2);
         program.cams[7] = edges(17, 16);
         *image.program_mut(number(6)).unwrap() = Some(program);
-        let mut names = Names::default();
+        let mut names = CamNames::default();
         names.set_cam(number(6), cam(2), "a;b, \"c\"".to_owned());
         for comma in [false, true] {
             let text = emit_table(&image, &names, &scale, comma);

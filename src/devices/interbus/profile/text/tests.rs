@@ -3,15 +3,22 @@
 use super::super::test_profiles::{cam, edges, profile, program};
 use super::*;
 use crate::profile::testing::{changed_in_place, edited};
-use crate::profile::{Body, Carried, Change, Changed, Document, divergence};
+use crate::profile::{Body, Carried, Change, ChangedSide, ProfileDocument, diverging_changes};
 
-fn document(profile: InterbusProfile) -> Document {
+fn document(profile: InterbusProfile) -> ProfileDocument {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
-    Document { saved, note: None, body: Body::new(profile), unknown: Default::default(), schema: 1, beyond: Vec::new() }
+    ProfileDocument {
+        saved,
+        note: None,
+        body: Body::new(profile),
+        unknown: Default::default(),
+        schema: 1,
+        beyond: Vec::new(),
+    }
 }
 
 fn parse(text: &str) -> Result<InterbusProfile, ProfileError> {
-    Document::parse(text, InterbusProfile::FORMATS)?.body.into_profile()
+    ProfileDocument::parse(text, InterbusProfile::FORMATS)?.body.into_profile()
 }
 
 /// Minimal profile as written by a user.
@@ -37,7 +44,7 @@ fn emitted_profiles_parse_back() {
     full.names.set_program(program(8), "\"best\" cartons".to_owned());
     full.names.set_cam(program(8), cam(0), "Leimdüse".to_owned());
     let text = document(full.clone()).emit();
-    assert_eq!(Document::parse(&text, InterbusProfile::FORMATS).unwrap(), document(full));
+    assert_eq!(ProfileDocument::parse(&text, InterbusProfile::FORMATS).unwrap(), document(full));
     for line in [
         "        steps: 3600, // over all turns: the measuring range",
         "        direction: \"cw\",",
@@ -68,8 +75,8 @@ fn a_short_profile_leaves_the_rest_unset() {
 fn unknown_fields_are_kept_in_place() {
     let text = replaced("zero_shift: 0", "zero_shift: 0, gearbox: 3");
     let text = text.replace("mask: 0b101", "mask: 5, colour: \"red\"").replace("stop: 0x28", "stop: 40, lamp: 7");
-    let once = Document::parse(&text, InterbusProfile::FORMATS).unwrap().emit();
-    assert_eq!(Document::parse(&once, InterbusProfile::FORMATS).unwrap().emit(), once);
+    let once = ProfileDocument::parse(&text, InterbusProfile::FORMATS).unwrap().emit();
+    assert_eq!(ProfileDocument::parse(&once, InterbusProfile::FORMATS).unwrap().emit(), once);
     for line in
         ["        extra: {\"gearbox\": 3},", "            extra: {\"colour\": \"red\"},", "extra: {\"lamp\": 7}),"]
     {
@@ -103,8 +110,8 @@ fn errors_name_their_entry() {
     }
 }
 
-fn parse_document(text: &str) -> Document {
-    Document::parse(text, InterbusProfile::FORMATS).unwrap()
+fn parse_document(text: &str) -> ProfileDocument {
+    ProfileDocument::parse(text, InterbusProfile::FORMATS).unwrap()
 }
 
 /// Profile as written by a user, with comments.
@@ -156,16 +163,17 @@ fn divergent_changes_are_listed_by_entry() {
     let base = parse_document(COMMENTED);
     let theirs = parse_document(&COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1"));
     let mine = parse_document(&COMMENTED.replace("start: 10,", "start: 14,").replace("stop: 200", "stop: 222"));
-    let found = divergence(&base, &theirs, &mine);
-    let told: Vec<(String, Changed)> = found.iter().map(|(change, who)| (change.place(), *who)).collect();
+    let found = diverging_changes(&base, &theirs, &mine);
+    let told: Vec<(String, ChangedSide)> = found.iter().map(|(change, who)| (change.place(), *who)).collect();
     let place = |rest: &str| format!("programs[program: 2].{rest}");
     let expected = [
-        (place("mask"), Changed::There),
-        (place("cams[cam: 0].stop"), Changed::Here),
-        (place("cams[cam: 1].start"), Changed::Both),
+        (place("mask"), ChangedSide::There),
+        (place("cams[cam: 0].stop"), ChangedSide::Here),
+        (place("cams[cam: 1].start"), ChangedSide::Both),
     ];
     assert_eq!(told, expected);
-    let here: Vec<Change> = found.into_iter().filter(|(_, who)| *who == Changed::Here).map(|(own, _)| own).collect();
+    let here: Vec<Change> =
+        found.into_iter().filter(|(_, who)| *who == ChangedSide::Here).map(|(own, _)| own).collect();
     let merged = theirs.changed(&here, InterbusProfile::FORMATS).unwrap();
     let expected = COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1");
     assert_eq!(merged, parse_document(&expected.replace("stop: 200", "stop: 222")));

@@ -46,8 +46,8 @@ impl Encoder {
     /// outputs are invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
-            None => self.turn_to(Activity::Running, InWordContent::Live),
-            Some(_) => self.turn_to(Activity::Setting, InWordContent::Word(INVALID)),
+            None => self.switch_activity(Activity::Running, InWordContent::Live),
+            Some(_) => self.switch_activity(Activity::Setting, InWordContent::Word(INVALID)),
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::units::Moment;
 
 impl Encoder {
     /// Sets the position to the preset. A preset beyond the range, which is possible after a gear change, wraps.
-    pub(super) fn fire(&mut self, now: Moment) {
+    pub(super) fn trigger_preset(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
         let zero_shift = u64::from(self.memory.zero_shift) % steps;

@@ -1,7 +1,7 @@
 //! Read-outs (reference 3 and 5).
 
 use super::{Activity, Encoder, InWordContent};
-use crate::devices::interbus::protocol::{Cam, CamNumber, Command, ReadOut, StartupMode, Value};
+use crate::devices::interbus::protocol::{Cam, CamNumber, Command, ReadOutNumber, StartupMode, Value};
 use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
@@ -13,7 +13,7 @@ const CHIP: u32 = 0x40;
 
 impl Encoder {
     /// Handles 2021xxxxh.
-    pub(super) fn read_out(&mut self, now: Moment, read_out: ReadOut) {
+    pub(super) fn read_out(&mut self, now: Moment, read_out: ReadOutNumber) {
         let value = self.value(now, read_out);
         self.show(value);
     }
@@ -37,10 +37,10 @@ impl Encoder {
     /// Sends a read-out value, or for `None` the error word for a nonexistent cam, register or number.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
-        self.turn_to(Activity::ReadingOut, InWordContent::Word(word));
+        self.switch_activity(Activity::ReadingOut, InWordContent::Word(word));
     }
 
-    fn value(&self, now: Moment, read_out: ReadOut) -> Option<u32> {
+    fn value(&self, now: Moment, read_out: ReadOutNumber) -> Option<u32> {
         let (identity, memory) = (&self.identity, &self.memory);
         let minus_one = u32::from(identity.steps_minus_one);
         if let Some(register) = read_out.register() {

@@ -197,7 +197,7 @@ fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut lost = Host::with("fault=drop:1");
     lost.exchange(&[(write, "")]);
     assert_eq!(lost.gateway.with_encoder(|encoder| encoder.out()), 0x0200_0168);
-    lost.gateway.set_faults(&crate::sim::Faults::default());
+    lost.gateway.set_faults(&crate::sim::SimulatedFaults::default());
     lost.exchange(&[(write, "00 01 00 00 00 06 01 10 00 00 00 02")]);
 }
 

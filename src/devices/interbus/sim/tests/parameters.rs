@@ -23,7 +23,7 @@ fn the_worked_example_of_the_reference_matches() {
     }
     assert_eq!(
         (master.encoder.stores(), master.encoder.mode()),
-        (4, crate::devices::interbus::protocol::Mode::Position)
+        (4, crate::devices::interbus::protocol::EncoderMode::Position)
     );
 }
 

@@ -30,7 +30,7 @@ pub fn rounded(at_least: f64) -> f64 {
 
 /// Returns the visible grid lines, at least `apart` steps from each other.
 pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
-    let one = scale.steps_in_unit();
+    let one = scale.steps_per_unit();
     let unit = round_units(scale.unit(), apart / one);
     let decimals = decimals(unit);
     let zero = f64::from(scale.zero());
@@ -46,7 +46,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
 }
 
 /// Returns the next or previous grid line from a position, in steps. Lines continue beyond the range.
-pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
+pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
     let mut lines = around.into_iter().map(|line| line as i64);
@@ -59,7 +59,7 @@ pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64
 
 /// Returns the grid lines around a position, `each` on either side, rounded to whole steps and in ascending order.
 pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
-    let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
+    let steps = scale.steps_per_unit() * round_units(scale.unit(), apart / scale.steps_per_unit());
     let zero = f64::from(scale.zero());
     let own = ((position - zero) / steps).floor();
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()

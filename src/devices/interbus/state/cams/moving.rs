@@ -6,17 +6,17 @@ use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Hold {
+pub enum DragTarget {
     Edge(CamNumber, Edge),
     Whole(CamNumber),
     /// An empty lane, in which a new cam can be drawn.
     New(CamNumber),
 }
 
-impl Hold {
+impl DragTarget {
     pub const fn cam(self) -> CamNumber {
         match self {
-            Hold::Edge(cam, _) | Hold::Whole(cam) | Hold::New(cam) => cam,
+            DragTarget::Edge(cam, _) | DragTarget::Whole(cam) | DragTarget::New(cam) => cam,
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Snapping of a dragged edge to edges of other cams and to grid lines.
 
-use super::{Chart, Hold, grid, of_edge};
+use super::{Chart, DragTarget, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
 /// Snapping targets and the distance within which they attract an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Snap {
+pub struct SnapSettings {
     /// Reach in steps.
     pub reach: f64,
     /// Minimum distance of the grid lines to snap to, in steps. If `None`, edges do not snap to grid lines.
@@ -15,13 +15,13 @@ pub struct Snap {
     pub edges: bool,
 }
 
-impl Snap {
-    pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
+impl SnapSettings {
+    pub const OFF: SnapSettings = SnapSettings { reach: 0.0, apart: None, edges: false };
 
     /// Creates settings that snap to all targets in a chart with the given number of steps per point: within six
     /// points, and on a grid of at least ten.
     pub const fn on(steps_in_point: f64) -> Self {
-        Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
+        SnapSettings { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
 }
 
@@ -32,12 +32,12 @@ const GRID: f64 = 10.0;
 
 /// Returns the number of steps to move instead of `by`, so that an edge of the original cam snaps to the nearest
 /// target or, if there is none, to a whole step.
-pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &Snap) -> i64 {
+pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {
-        Hold::Edge(_, Edge::Start) => &[Edge::Start],
-        Hold::Edge(_, Edge::Stop) => &[Edge::Stop],
-        Hold::Whole(_) | Hold::New(_) => &[Edge::Start, Edge::Stop],
+        DragTarget::Edge(_, Edge::Start) => &[Edge::Start],
+        DragTarget::Edge(_, Edge::Stop) => &[Edge::Stop],
+        DragTarget::Whole(_) | DragTarget::New(_) => &[Edge::Start, Edge::Stop],
     };
     let mut best: Option<(f64, i64)> = None;
     for edge in edges {
@@ -53,7 +53,7 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &
 }
 
 /// Returns the possible targets of an edge, the strongest first.
-fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &Snap) -> Vec<f64> {
+fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &SnapSettings) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
     // The same place in the turn that the pointer has reached.
     let turn = (at / range).floor() * range;

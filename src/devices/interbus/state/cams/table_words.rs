@@ -77,14 +77,14 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
     // As in the table: rounding here would hide the effect.
-    let requested = decimals.max(written_decimals(edge.requested));
+    let requested = decimals.max(decimal_count(edge.requested));
     let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
     let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
     text.with("step", edge.step).with_text("off", off)
 }
 
-fn written_decimals(number: f64) -> usize {
+fn decimal_count(number: f64) -> usize {
     let written = number.to_string();
     written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MOST_DECIMALS)
 }

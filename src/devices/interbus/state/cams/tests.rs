@@ -3,11 +3,11 @@
 mod session;
 
 use super::{
-    Chart, Hold, OutputState, Snap, Stretch, VisibleRange, drawn, moved, next_line, pulled, rounded, snap, stretches,
-    ticks, words,
+    Chart, DragTarget, OutputState, SnapSettings, Stretch, VisibleRange, drawn, moved, next_grid_line, pulled, rounded,
+    snap, stretches, ticks, words,
 };
 use crate::app::Language;
-use crate::devices::interbus::profile::{Direction, Edge, Image, Names, Parameters, Scale};
+use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, Parameters, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
 use crate::devices::interbus::state::staged::{Edit, Staged};
 
@@ -31,7 +31,7 @@ fn program() -> ProgramNumber {
 fn staged(cams: &[(u8, u32, u32)]) -> Staged {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = Staged::of_profile(Image::of(parameters), Names::default());
+    let mut staged = Staged::for_profile(Image::of(parameters), CamNames::default());
     for (number, start, stop) in cams {
         let edit = Edit::Cam { program: program(), cam: cam(*number), start: *start, stop: *stop, on: true };
         staged.edit(&edit).unwrap();
@@ -113,14 +113,14 @@ fn cams_can_be_moved_and_drawn() {
 fn the_keyboard_moves_to_the_next_grid_line() {
     let steps = Scale::default();
     for (position, forward, expected) in [(100, true, 150), (101, true, 150), (100, false, 50), (101, false, 100)] {
-        assert_eq!(next_line(&steps, 40.0, position, forward), expected, "{position}");
+        assert_eq!(next_grid_line(&steps, 40.0, position, forward), expected, "{position}");
     }
-    assert_eq!(next_line(&steps, 40.0, 0, false), -50, "over the end of the range");
-    assert_eq!(next_line(&steps, 0.01, 7, true), 8);
+    assert_eq!(next_grid_line(&steps, 40.0, 0, false), -50, "over the end of the range");
+    assert_eq!(next_grid_line(&steps, 0.01, 7, true), 8);
     // 10° of 1000 steps: 27.8, 55.6, 83.3.
     let degrees = Scale::degrees(1000.0, 0).unwrap();
     for (position, forward, expected) in [(28, true, 56), (56, true, 83), (83, false, 56), (0, false, -28)] {
-        assert_eq!(next_line(&degrees, 20.0, position, forward), expected, "{position}");
+        assert_eq!(next_grid_line(&degrees, 20.0, position, forward), expected, "{position}");
     }
 }
 
@@ -172,25 +172,25 @@ fn a_view_stays_within_the_range() {
 fn edges_snap_to_nearby_positions() {
     let chart = chart(&[(0, 100, 199), (1, 403, 555)]);
     let (first, steps) = (edges(100, 199), Scale::default());
-    let pull = |edge, by, with: &Snap| snap(&chart, &steps, Hold::Edge(cam(0), edge), first, by, with);
-    let on = Snap { reach: 6.0, apart: None, edges: true };
+    let pull = |edge, by, with: &SnapSettings| snap(&chart, &steps, DragTarget::Edge(cam(0), edge), first, by, with);
+    let on = SnapSettings { reach: 6.0, apart: None, edges: true };
     // Of the other cam: 403 to 555. A stop snaps to right before its start, or to its stop.
     assert_eq!(199 + pull(Edge::Stop, 200.3, &on), 402);
     assert_eq!(199 + pull(Edge::Stop, 351.0, &on), 555);
     assert_eq!(100 + pull(Edge::Start, 453.4, &on), 556);
     assert_eq!(100 + pull(Edge::Start, 299.0, &on), 403);
     assert_eq!(100 + pull(Edge::Start, 280.4, &on), 380);
-    assert_eq!(pull(Edge::Stop, 200.3, &Snap::OFF), 200);
-    let grid = Snap { reach: 6.0, apart: Some(50.0), edges: true };
+    assert_eq!(pull(Edge::Stop, 200.3, &SnapSettings::OFF), 200);
+    let grid = SnapSettings { reach: 6.0, apart: Some(50.0), edges: true };
     assert_eq!(100 + pull(Edge::Start, 353.0, &grid), 450);
     assert_eq!(100 + pull(Edge::Start, -104.0, &grid), 0);
     assert_eq!(100 + pull(Edge::Start, -204.0, &grid), -100, "over the end of the range");
     // Moved as a whole, either edge snaps: 199 + 203 = 402.
-    assert_eq!(snap(&chart, &steps, Hold::Whole(cam(0)), first, 199.0, &on), 203);
+    assert_eq!(snap(&chart, &steps, DragTarget::Whole(cam(0)), first, 199.0, &on), 203);
     // 90° of 1000 steps is 250; the grid has 30°, which is 83.3.
     let degrees = Scale::degrees(1000.0, 0).unwrap();
-    let units = Snap { reach: 6.0, apart: Some(80.0), edges: false };
-    assert_eq!(100 + snap(&chart, &degrees, Hold::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);
+    let units = SnapSettings { reach: 6.0, apart: Some(80.0), edges: false };
+    assert_eq!(100 + snap(&chart, &degrees, DragTarget::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
 pub fn check(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -23,7 +23,7 @@ fn step(step: CheckStep) -> Text {
     })
 }
 
-fn finding(finding: &CheckFinding) -> Text {
+fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Replies { requested, slowest_ms } => {
             TEXTS.text("ib_check.replies").with("asked", requested).with("slowest", slowest_ms)

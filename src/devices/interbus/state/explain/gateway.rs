@@ -33,7 +33,7 @@ pub(super) fn exception_name(exception: Exception) -> Text {
 }
 
 /// Explains the most likely cause of an exception and the remedy.
-pub fn exception(exception: Exception) -> Text {
+pub fn exception_text(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",
         0x02 => "ib_exception.address",
@@ -47,7 +47,7 @@ pub fn exception(exception: Exception) -> Text {
     })
 }
 
-pub fn damage(damage: Damage) -> Text {
+pub fn damage_text(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),
         Damage::Unit { requested, got } => TEXTS.text("ib_damage.unit").with("asked", requested).with("got", got),

@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::interbus::profile::{Direction, Edge};
-use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOut, StartupMode};
+use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOutNumber, StartupMode};
 use crate::devices::interbus::state::TEXTS;
 
 pub fn parameter(parameter: Parameter) -> Text {
@@ -19,7 +19,7 @@ pub fn parameter(parameter: Parameter) -> Text {
 
 /// Formats a parameter value, using its meaning if it has one.
 pub(super) fn number(parameter: Parameter, number: u32) -> Text {
-    match Direction::of_code(number) {
+    match Direction::from_code(number) {
         Some(own) if parameter == Parameter::Direction => direction(own),
         _ => plain(number),
     }
@@ -57,7 +57,7 @@ pub fn startup(mode: StartupMode) -> Text {
     }
 }
 
-pub fn read_out(read_out: ReadOut) -> Text {
+pub fn read_out(read_out: ReadOutNumber) -> Text {
     match (read_out.number(), read_out.register()) {
         (_, Some(register)) => TEXTS.text("ib_doing.chip").with("register", register),
         (0x0, _) => TEXTS.text("ib_doing.serial"),

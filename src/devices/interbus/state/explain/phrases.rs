@@ -1,20 +1,20 @@
 //! Tests of the texts for errors of the lower layers, in both languages.
 
 use crate::app::explain::{document, in_both_languages};
-use crate::app::{DeviceType, Kinds};
+use crate::app::{DeviceType, KindRegistry};
 use crate::devices::interbus::procedures::Exception;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::state::Encoder;
-use crate::profile::{Document, Formats, Profile};
+use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
         zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
         start: 1, stop: 2)])])"#;
-    assert!(Document::parse(good, InterbusProfile::FORMATS).is_ok());
+    assert!(ProfileDocument::parse(good, InterbusProfile::FORMATS).is_ok());
     let cases = [
         ("parameters:", "parametres:"),
         ("3600", "-1"),
@@ -33,7 +33,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("start: 1, ", ""),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
     }
 }

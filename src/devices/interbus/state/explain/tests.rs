@@ -9,7 +9,7 @@ use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError, ProgramChange};
 use crate::devices::interbus::protocol::{
-    CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
+    CamNumber, Code, Command, EncoderMode, Flags, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
     WindowShift,
 };
 use crate::link::LinkErrorKind;
@@ -54,23 +54,26 @@ fn encoder_errors_name_a_remedy() {
         (Error::Damaged { requested, tries: 5, cause: Damage::Function { requested: 4, got: 3 } }, vec!["3", "4"]),
         (Error::Damaged { requested, tries: 5, cause: Damage::Registers }, vec![]),
         (Error::NeverSilent, vec![]),
-        (Error::Illegal(Refused { command: Command::Preset, mode: Mode::Cam }), vec!["0x40000000"]),
+        (Error::Illegal(Refused { command: Command::Preset, mode: EncoderMode::Cam }), vec!["0x40000000"]),
         (Error::Refused { sent: set, error: error_word(0x8200_0000) }, vec!["0x02002001", "0x82000000"]),
         (Error::UnknownReadOut { command: Command::ReadShift }, vec!["0x20200040"]),
-        (time_out(AwaitedWord::Echo), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(AwaitedWord::Value), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(AwaitedWord::Run), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(AwaitedWord::Preset), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(ExpectedWord::Echo), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(ExpectedWord::Value), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(ExpectedWord::Run), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(ExpectedWord::Preset), vec!["0x02002000", "2000", "0x00000012"]),
         (Error::OtherMaster { sent: 0, output: 0x4000_0000 }, vec!["0x40000000", "0x00000000"]),
         (Error::NotRunning { input: 0xC200_00FF }, vec!["0xC20000FF"]),
         (Error::WordOrder { input: 0x3456_0012, swapped: 0x0012_3456 }, vec!["0x34560012", "0x00123456", "order="]),
-        (Error::Implausible(Implausible::Gear(GearError::Turns { turns: 65_536 })), vec!["65536", "4096", "order="]),
         (
-            Error::Implausible(Implausible::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
+            Error::Implausible(ImplausibleValue::Gear(GearError::Turns { turns: 65_536 })),
+            vec!["65536", "4096", "order="],
+        ),
+        (
+            Error::Implausible(ImplausibleValue::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
             vec!["8192", "order="],
         ),
-        (Error::Implausible(Implausible::Direction(77)), vec!["77", "order="]),
-        (Error::Implausible(Implausible::Value { read: 0x2020_0040, value: 99 }), vec!["99", "0x20200040"]),
+        (Error::Implausible(ImplausibleValue::Direction(77)), vec!["77", "order="]),
+        (Error::Implausible(ImplausibleValue::Value { read: 0x2020_0040, value: 99 }), vec!["99", "0x20200040"]),
         (Error::NoMode { wanted: program(3), is: StartupMode::K3 }, vec!["3", "K3"]),
         (Error::NotSelectable { mode: StartupMode::K2 }, vec!["K2"]),
         (Error::UnknownMode { mode: StartupMode::Unknown(value(85)) }, vec!["85"]),
@@ -158,7 +161,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
         let program = ProgramNumber::new(1).unwrap();
         let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
         let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, end_state: left };
-        let texts = write::interruption(&interrupted, Path::new("b.ron"), 3, kind);
+        let texts = write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind);
         assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
         texts.iter().map(Text::terminal).collect()
     };
@@ -186,7 +189,7 @@ fn completing_a_write_is_advised_after_leading_back() {
         let last = |left| {
             let interrupted =
                 Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, end_state: left };
-            write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+            write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(EndState::AsFound), last(EndState::Unknown(standing)));
         assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));

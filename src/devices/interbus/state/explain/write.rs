@@ -79,10 +79,10 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
 
 /// Returns the message for a profile of another encoder type.
 pub fn other_type(types: OtherType) -> Text {
-    of_types("ib_review.other_type", types)
+    type_mismatch_text("ib_review.other_type", types)
 }
 
-fn of_types(id: &'static str, types: OtherType) -> Text {
+fn type_mismatch_text(id: &'static str, types: OtherType) -> Text {
     let name = |flags: Flags| match (flags.multiturn(), flags.steps_minus_one()) {
         (true, false) => "ib_type.multiturn",
         (false, false) => "ib_type.single_turn",
@@ -99,7 +99,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => of_types("ib_plan.other_type", *types),
+        PlanError::OtherType(types) => type_mismatch_text("ib_plan.other_type", *types),
         PlanError::Gear(GearError::Turns { turns }) => TEXTS.text("ib_plan.turns").with("turns", turns),
         PlanError::Gear(GearError::Steps { steps, turns, most }) => {
             TEXTS.text("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)
@@ -143,12 +143,12 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
 
-pub(super) fn not_begun(why: &NotBegun) -> Text {
+pub(super) fn not_started_text(why: &NotBegun) -> Text {
     match why {
         NotBegun::Worn { seen, cost, .. } => {
             TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
-        NotBegun::OtherPlan | NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
+        NotBegun::OtherPlan | NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_started_text(why),
     }
 }
 
@@ -160,7 +160,12 @@ pub fn written(written: &Written) -> Text {
 
 /// Describes an interrupted write: how far it got, why it stopped, the state of the encoder, and the location of the
 /// backup.
-pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+pub(super) fn interruption_text(
+    interrupted: &Interrupted,
+    backup: &Path,
+    planned: usize,
+    kind: ChangeKind,
+) -> Vec<Text> {
     let Interrupted { done, unfinished, cause, end_state: left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();
     let mut texts = vec![if cause.is_cancelled() && *left == EndState::AsFound {

@@ -117,7 +117,7 @@ impl SavedEdit {
                 }
             }
             SavedEdit::Direction(code) => {
-                parameters.direction = Direction::of_code(code).unwrap_or(parameters.direction);
+                parameters.direction = Direction::from_code(code).unwrap_or(parameters.direction);
             }
             SavedEdit::Preset(preset) => parameters.preset = Value::new(preset).map_or(parameters.preset, Value::get),
             SavedEdit::ZeroShift(shift) => {
@@ -140,7 +140,7 @@ impl SavedEdit {
             SavedEdit::On(_, cam, on) => {
                 let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
                 if let Some((own, cam)) = own.zip(CamNumber::new(cam)) {
-                    own.set_on(cam, on);
+                    own.set_cam_enabled(cam, on);
                 }
             }
             SavedEdit::Name(_, cam, ref name) => {

@@ -143,7 +143,7 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
             if on && own.cams.get(usize::from(cam.get())).is_none_or(Option::is_none) {
                 return Err(EditError::NoCam { program, cam });
             }
-            own.set_on(cam, on);
+            own.set_cam_enabled(cam, on);
         }
         Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, checked_name(name)?),
         Edit::ProgramName { program, ref name } => after.names.set_program(program, checked_name(name)?),

@@ -2,7 +2,7 @@
 
 use super::{Differs, Edit, EditError, EditedValues, Mark, SavedEdit, Staged, ValueId};
 use crate::app::PendingEdits;
-use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
+use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
@@ -269,7 +269,7 @@ fn drafts_round_trip_as_text() {
 
 #[test]
 fn missing_values_can_be_added_to_a_profile() {
-    let mut staged = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    let mut staged = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
     assert_eq!(staged.edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
     let drawn = Edit::Cam { program: number(2), cam: cam(4), start: 900, stop: 99, on: true };
@@ -279,7 +279,7 @@ fn missing_values_can_be_added_to_a_profile() {
     assert_eq!(staged.edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
     let kept = staged.edits();
     assert_eq!(kept, [SavedEdit::Shift(3), SavedEdit::Cam(2, 4, 900, 99), SavedEdit::On(2, 4, true)]);
-    let mut other = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    let mut other = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     other.take_draft(kept);
     assert_eq!(other.wanted(), staged.wanted());
     let EditedValues { image, names } = staged.wanted().unwrap().clone();
@@ -298,7 +298,7 @@ fn names_are_saved_and_not_written() {
     let mut other = staged();
     other.take_draft(kept);
     assert_eq!(other.wanted(), encoder.wanted());
-    let mut profile = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    let mut profile = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     profile.edit(&name(0, "feed")).unwrap();
     assert!(profile.is_dirty() && profile.is_program_edited(number(1)));
     profile.edit(&name(0, "  ")).unwrap();

@@ -7,7 +7,7 @@ use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem_below, text_entry};
+use crate::ui::controls::{button, entry, icon_menu, name, paragraph, show_error_below, text_entry};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -89,7 +89,7 @@ fn whole_ui(
                 }
             }
         });
-        problem_below(ui, theme, view.refused.as_ref());
+        show_error_below(ui, theme, view.refused.as_ref());
         paragraph(ui, theme.caption(say(theme, "ib_cams.move_words")));
     });
 }

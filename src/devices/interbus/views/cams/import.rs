@@ -14,7 +14,7 @@ use crate::ui::{Theme, icons};
 const LIST: f32 = 200.0;
 
 /// Imports a table that is pasted while no text field has the focus.
-pub(super) fn pasted_table(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+pub(super) fn import_pasted_table(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     if ui.ctx().text_edit_focused() || encoder.staged.wanted().is_none() {
         return;
     }

@@ -7,7 +7,7 @@ use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, committed_entry, entry, folding_card, paragraph, problem_below};
+use crate::ui::controls::{choice, committed_entry, entry, folding_card, paragraph, show_error_below};
 
 /// Entered text that has not taken effect yet.
 #[derive(Default)]
@@ -39,7 +39,7 @@ pub(super) fn card_ui(
                 (Unit::Millimetres, "ib_scale.millimetres"),
             ];
             if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(theme, id)))) {
-                set(forms::usual_scale(unit, scale.zero(), range));
+                set(forms::default_scale(unit, scale.zero(), range));
             }
         });
         if let Some(steps) = forms::steps_of(scale) {
@@ -56,15 +56,15 @@ pub(super) fn card_ui(
                     Ok(())
                 });
             });
-            problem_below(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
+            show_error_below(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }
         let word = say(theme, "ib_scale.zero");
         entry(ui, theme, &word, |ui| {
             committed_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
-                set(forms::with_zero(scale, text, range)?);
+                set(forms::scale_with_zero(scale, text, range)?);
                 Ok(())
             });
         });
-        problem_below(ui, theme, view.zero.as_ref().and_then(|own| own.1.as_ref()));
+        show_error_below(ui, theme, view.zero.as_ref().and_then(|own| own.1.as_ref()));
     });
 }

@@ -7,7 +7,7 @@ use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect
 use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
-use crate::devices::interbus::state::cams::{self, Chart, Hold, Snap, VisibleRange, words};
+use crate::devices::interbus::state::cams::{self, Chart, DragTarget, SnapSettings, VisibleRange, words};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
@@ -46,7 +46,7 @@ pub(crate) enum CamEvent {
 /// Drag in progress, kept from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
-    pub(super) hold: Hold,
+    pub(super) hold: DragTarget,
     /// Position under the pointer when the drag started.
     pub(super) from: f64,
     pub(super) at: f64,
@@ -54,26 +54,26 @@ pub(super) struct Drag {
     pub(super) to: Option<Cam>,
 }
 
-pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
+pub(super) fn display_colour(theme: &Theme, cam: CamNumber) -> Color32 {
     series(theme, usize::from(cam.get()))
 }
 
 impl CamChart<'_> {
     /// Returns the cam after a drag from one position to another.
-    pub(super) fn pulled(&self, hold: Hold, from: f64, at: f64, snap: &Snap) -> Option<Cam> {
+    pub(super) fn pulled(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
         let range = self.chart.range;
         let own = self.chart.lane(hold.cam())?.edges;
         let by = |hold, cam| cams::snap(self.chart, self.scale, hold, cam, at - from, snap);
         match hold {
-            Hold::Edge(_, edge) => own.map(|cam| cams::pulled(cam, edge, by(hold, cam), range)),
-            Hold::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
-            Hold::New(number) => {
+            DragTarget::Edge(_, edge) => own.map(|cam| cams::pulled(cam, edge, by(hold, cam), range)),
+            DragTarget::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
+            DragTarget::New(number) => {
                 let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
                 // The place where an edge that begins at one step snaps when it is dragged to another place.
                 let snapped = |edge, begin: i64, to: f64| {
                     let place = Value::of_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
                     let one = Cam { start: place, stop: place };
-                    let hold = Hold::Edge(number, edge);
+                    let hold = DragTarget::Edge(number, edge);
                     begin + cams::snap(self.chart, self.scale, hold, one, to - begin as f64, snap)
                 };
                 let first = snapped(anchor, from.floor() as i64, from.floor());
@@ -89,15 +89,15 @@ impl CamChart<'_> {
         base: Id,
         response: &Response,
         drag: Drag,
-        snap: &Snap,
+        snap: &SnapSettings,
     ) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_drag_cancelled(ui, base);
-        let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
+        let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { SnapSettings::OFF };
         let to = self.pulled(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
         let cam = drag.hold.cam();
         if response.drag_stopped() {
             ui.data_mut(|data| data.remove::<Drag>(base));
-            let is_new = matches!(drag.hold, Hold::New(_));
+            let is_new = matches!(drag.hold, DragTarget::New(_));
             let other = to.filter(|to| is_new || self.chart.lane(cam).is_some_and(|lane| lane.edges != Some(*to)));
             return Some(match other {
                 Some(to) => CamEvent::Moved { cam, to, drawn: is_new },
@@ -119,7 +119,7 @@ impl CamChart<'_> {
 
     /// Handles the arrow keys, which move an edge or the cam by one step or to the next grid line, and the keys that
     /// switch a cam on and off.
-    pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: Hold, apart: f64) -> Option<CamEvent> {
+    pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
         }
@@ -129,13 +129,13 @@ impl CamChart<'_> {
         let cam = hold.cam();
         let lane = self.chart.lane(cam)?;
         let edge = match hold {
-            Hold::Edge(_, edge) => edge,
-            Hold::Whole(_) | Hold::New(_) => Edge::Start,
+            DragTarget::Edge(_, edge) => edge,
+            DragTarget::Whole(_) | DragTarget::New(_) => Edge::Start,
         };
         let at = self.chart.edge(cam, edge)?;
         for (key, forward) in [(Key::ArrowLeft, false), (Key::ArrowRight, true)] {
             let by = if pressed(Modifiers::SHIFT, key) {
-                cams::next_line(self.scale, apart, at, forward) - i64::from(at)
+                cams::next_grid_line(self.scale, apart, at, forward) - i64::from(at)
             } else if pressed(Modifiers::NONE, key) {
                 if forward { 1 } else { -1 }
             } else {
@@ -149,12 +149,12 @@ impl CamChart<'_> {
         pressed(Modifiers::NONE, Key::Space).then_some(CamEvent::Switched(cam, !lane.on))
     }
 
-    fn by(&self, hold: Hold, by: i64) -> Option<CamEvent> {
+    fn by(&self, hold: DragTarget, by: i64) -> Option<CamEvent> {
         let cam = hold.cam();
         let own = self.chart.lane(cam)?.edges?;
         let to = match hold {
-            Hold::Edge(_, edge) => cams::pulled(own, edge, by, self.chart.range),
-            Hold::Whole(_) | Hold::New(_) => cams::moved(own, by, self.chart.range),
+            DragTarget::Edge(_, edge) => cams::pulled(own, edge, by, self.chart.range),
+            DragTarget::Whole(_) | DragTarget::New(_) => cams::moved(own, by, self.chart.range),
         };
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
@@ -165,10 +165,10 @@ impl CamChart<'_> {
         ui: &Ui,
         theme: &Theme,
         response: &Response,
-        hold: Hold,
+        hold: DragTarget,
         label: &Text,
     ) -> Option<CamEvent> {
-        let Hold::Edge(cam, edge) = hold else { return None };
+        let DragTarget::Edge(cam, edge) = hold else { return None };
         let at = self.chart.edge(cam, edge)?;
         let last = self.chart.last();
         response.widget_info(|| {
@@ -210,7 +210,7 @@ impl CamChart<'_> {
         if more == less { None } else { self.by(hold, more - less) }
     }
 
-    pub(super) fn tip(&self, theme: &Theme, response: Response, hold: Hold) {
+    pub(super) fn tip(&self, theme: &Theme, response: Response, hold: DragTarget) {
         let Some(lane) = self.chart.lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
@@ -222,9 +222,9 @@ impl CamChart<'_> {
             }
             if self.movable {
                 let hint = match hold {
-                    Hold::Edge(..) => "cams.hint_edge",
-                    Hold::Whole(_) => "cams.hint_whole",
-                    Hold::New(_) => "cams.hint_new",
+                    DragTarget::Edge(..) => "cams.hint_edge",
+                    DragTarget::Whole(_) => "cams.hint_whole",
+                    DragTarget::New(_) => "cams.hint_new",
                 };
                 ui.label(theme.caption(say(theme, hint)));
             }
@@ -236,8 +236,8 @@ impl CamChart<'_> {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
         let words = match drag.hold {
-            Hold::Edge(_, edge) => words::position(cams::of_edge(to, edge).get(), self.scale, range),
-            Hold::Whole(_) | Hold::New(_) => words::stretch(to, self.scale, range),
+            DragTarget::Edge(_, edge) => words::position(cams::of_edge(to, edge).get(), self.scale, range),
+            DragTarget::Whole(_) | DragTarget::New(_) => words::stretch(to, self.scale, range),
         };
         let font = FontId::proportional(theme.sizes.caption);
         let galley = painter.layout_no_wrap(theme.words(&words), font, theme.palette.on_accent.into());

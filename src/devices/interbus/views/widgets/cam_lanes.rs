@@ -23,7 +23,7 @@ use egui::{Id, Sense, Ui, WidgetInfo};
 
 use super::cam_chart::{self, CamChart, CamEvent, Drag};
 use crate::devices::interbus::profile::Unit;
-use crate::devices::interbus::state::cams::{Chart, Snap, VisibleRange};
+use crate::devices::interbus::state::cams::{Chart, SnapSettings, VisibleRange};
 use crate::ui::Theme;
 
 use place::PlotArea;
@@ -54,7 +54,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
     let lanes = LanePainter { ui, theme, model, shown, place: &place, base };
     let looked = lanes.look(range);
     lanes.paint(drag);
-    let pulled = lanes.grips(drag);
+    let pulled = lanes.draw_handles(drag);
     let switched = lanes.draw_heads();
     if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
         ui.data_mut(|data| data.remove::<Drag>(base));
@@ -63,8 +63,8 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
 }
 
 impl LanePainter<'_> {
-    fn snap(&self) -> Snap {
-        Snap::on(self.place.steps_in_point())
+    fn snap(&self) -> SnapSettings {
+        SnapSettings::on(self.place.steps_per_point())
     }
 
     /// Handles the mouse wheel over the chart, which zooms and scrolls the view.
@@ -79,7 +79,7 @@ impl LanePainter<'_> {
             let around = self.place.position(pointer.x);
             return Some(view.zoomed(f64::from(zoom), around, range)).filter(|to| *to != view).map(CamEvent::Viewed);
         }
-        let by = -f64::from(along) * self.place.steps_in_point();
+        let by = -f64::from(along) * self.place.steps_per_point();
         Some(view.panned(by, range)).filter(|to| *to != view).map(CamEvent::Viewed)
     }
 }

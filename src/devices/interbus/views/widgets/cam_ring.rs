@@ -16,11 +16,11 @@ use egui::{
     Vec2, WidgetInfo,
 };
 
-use super::cam_chart::{self, CamChart, CamEvent, Drag, ink};
+use super::cam_chart::{self, CamChart, CamEvent, Drag, display_colour};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Program, Value};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, VisibleRange, ticks, words};
+use crate::devices::interbus::state::cams::{Chart, DragTarget, Lane, SnapSettings, VisibleRange, ticks, words};
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
@@ -77,7 +77,7 @@ impl Dial {
     }
 
     /// Returns the number of steps per point on the outermost circle.
-    fn steps_in_point(self) -> f64 {
+    fn steps_per_point(self) -> f64 {
         self.range / (std::f64::consts::TAU * f64::from(self.radius))
     }
 }
@@ -106,7 +106,7 @@ pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f
     if ui.is_rect_visible(rect) {
         ring.paint();
     }
-    let whole = ring.disc(rect, drag);
+    let whole = ring.draw_disc(rect, drag);
     let edges = ring.edges(drag);
     if let Some(drag) = drag {
         model.ghost(theme, ui.painter(), &drag, rect.center());
@@ -118,18 +118,18 @@ pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f
 }
 
 impl Ring<'_> {
-    fn snap(&self) -> Snap {
-        Snap::on(self.dial.steps_in_point())
+    fn snap(&self) -> SnapSettings {
+        SnapSettings::on(self.dial.steps_per_point())
     }
 
     /// Draws the circles, on which a cam can be grabbed.
-    fn disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
+    fn draw_disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
         let under = |place: Pos2| {
             let lane = self.model.chart.lane(self.dial.cam(place)?)?;
             let position = Value::of_word(self.dial.position(place) as u32);
-            lane.edges.filter(|cam| cam.is_on(position)).map(|_| Hold::Whole(lane.cam))
+            lane.edges.filter(|cam| cam.is_on(position)).map(|_| DragTarget::Whole(lane.cam))
         };
         let hovered = response.hover_pos();
         let hold = match drag {
@@ -157,7 +157,7 @@ impl Ring<'_> {
     }
 
     fn edge(&self, lane: &Lane, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
-        let hold = Hold::Edge(lane.cam, edge);
+        let hold = DragTarget::Edge(lane.cam, edge);
         let place = self.place(self.model.chart, lane.cam, edge)?;
         let rect = Rect::from_center_size(place, Vec2::splat(GRIP.min(self.dial.pitch())));
         let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
@@ -192,7 +192,7 @@ impl Ring<'_> {
 
     /// Handles a drag around the ring, following the pointer in every frame along the shorter way from its previous
     /// position.
-    fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
+    fn pulled(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
         }
@@ -253,7 +253,7 @@ impl Ring<'_> {
         let (theme, dial) = (self.theme, self.dial);
         let thick = (dial.pitch() - 3.0).max(2.0);
         let (width, colour) =
-            if lane.on { (thick, ink(theme, lane.cam)) } else { (1.5, Color32::from(theme.palette.muted)) };
+            if lane.on { (thick, display_colour(theme, lane.cam)) } else { (1.5, Color32::from(theme.palette.muted)) };
         for stretch in lane.stretches(self.shown.range) {
             let (from, to) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
             let count = (((to - from) / dial.range * 128.0).ceil() as usize).clamp(2, 128);

@@ -66,7 +66,7 @@ impl Kind {
         }
     }
 
-    fn ink(self, theme: &Theme) -> Color32 {
+    fn display_colour(self, theme: &Theme) -> Color32 {
         match self {
             Kind::Invalid => theme.palette.bad.into(),
             Kind::Zero => theme.palette.muted.into(),
@@ -130,18 +130,18 @@ impl WordLayout<'_> {
     }
 }
 
-struct Cells {
+struct CellGrid {
     left: f32,
     top: f32,
     cell: f32,
     columns: u8,
 }
 
-impl Cells {
+impl CellGrid {
     fn new(room: f32) -> Self {
         let columns = if room >= f32::from(BITS) * LEAST { BITS } else { BITS / 2 };
         let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
-        Cells { left: 0.0, top: 0.0, cell, columns }
+        CellGrid { left: 0.0, top: 0.0, cell, columns }
     }
 
     fn line_height() -> f32 {
@@ -149,7 +149,7 @@ impl Cells {
     }
 
     fn size(&self) -> Vec2 {
-        let lines = f32::from(BITS / self.columns) * Cells::line_height();
+        let lines = f32::from(BITS / self.columns) * CellGrid::line_height();
         Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
     }
 
@@ -159,19 +159,19 @@ impl Cells {
     }
 
     fn at(self, origin: egui::Pos2) -> Self {
-        Cells { left: origin.x, top: origin.y, ..self }
+        CellGrid { left: origin.x, top: origin.y, ..self }
     }
 
     fn word(&self, bit: u8) -> Rect {
         let place = BITS - 1 - bit.min(BITS - 1);
-        let line = f32::from(place / self.columns) * Cells::line_height() + NUMBERS;
+        let line = f32::from(place / self.columns) * CellGrid::line_height() + NUMBERS;
         self.cell_at(place % self.columns, line)
     }
 
     fn position(&self, bit: u8) -> Rect {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);
-        let word = f32::from(BITS / self.columns) * Cells::line_height();
+        let word = f32::from(BITS / self.columns) * CellGrid::line_height();
         self.cell_at(place % self.columns, word + f32::from(place / self.columns) * CELL)
     }
 
@@ -195,7 +195,7 @@ impl Cells {
 }
 
 pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
-    let cells = Cells::new(ui.available_width());
+    let cells = CellGrid::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
     let cells = cells.at(outer.min);
     let values: Vec<String> = layout.groups().iter().map(|group| tells(theme, layout, *group)).collect();
@@ -252,16 +252,16 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     let set = layout.is_set(bit);
     let is_wrong = set == Some(true) && matches!(kind, Kind::Invalid | Kind::Zero);
     let painter = ui.painter();
-    BitCell { ink: kind.ink(theme), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, theme, rect);
+    BitCell { ink: kind.display_colour(theme), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, theme, rect);
     let font = FontId::monospace(theme.sizes.caption);
     let above = pos2(rect.center().x, rect.top() - NUMBERS / 2.0);
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
 /// Draws a bracket below a group, labelled with as much of its name as fits.
-fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
+fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
     let painter = ui.painter();
-    let ink = group.kind.ink(theme);
+    let ink = group.kind.display_colour(theme);
     let runs = cells.runs(group.high, group.low);
     for run in &runs {
         painter.hline(run.left() + 1.0..=run.right() - 1.0, run.bottom() + 3.0, Stroke::new(2.0, ink));
@@ -277,12 +277,12 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: G
 }
 
 /// Draws the bits of the position: those sent, those left out, and those unused by the range.
-fn paint_position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
+fn paint_position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);
     let used = u32::BITS - last.leading_zeros();
     let bits = layout.word.and_then(|word| CamOutput::parse(word).ok()).map(|own| own.position_bits(layout.shift));
-    let ink = Kind::Window.ink(theme);
+    let ink = Kind::Window.display_colour(theme);
     for bit in (0..POSITION).rev() {
         let rect = cells.position(bit);
         let is_sent = mask >> bit & 1 == 1;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::devices::ssi::protocol::{Families, Meaning, Settings, any_layouts};
 use crate::profile::testing::changed_in_place;
-use crate::profile::{Body, Document};
+use crate::profile::{Body, ProfileDocument};
 
 const SHORT: &str = r#"(
     schema: 1, device: "ssi",
@@ -13,11 +13,11 @@ const SHORT: &str = r#"(
 )"#;
 
 fn profile(text: &str) -> SsiProfile {
-    Document::parse(text, SsiProfile::FORMATS).unwrap().body.into_profile().unwrap()
+    ProfileDocument::parse(text, SsiProfile::FORMATS).unwrap().body.into_profile().unwrap()
 }
 
-fn document(profile: SsiProfile) -> Document {
-    Document {
+fn document(profile: SsiProfile) -> ProfileDocument {
+    ProfileDocument {
         saved: None,
         note: None,
         body: Body::new(profile),
@@ -58,7 +58,7 @@ fn full() -> SsiProfile {
         clocks: 51,
         range: Range::Bits { multiturn: 7, singleturn: 12 },
         code: Code::Gray,
-        coded: Coded::AreaAndErrors,
+        coded: GrayCoverage::AreaAndErrors,
         area: 22,
         lead: 1,
         between: 1,
@@ -171,7 +171,7 @@ proptest! {
         let profile = SsiProfile { name, direction, preset, reading, ..SsiProfile::new(descriptor) };
         let document = document(profile);
         let text = document.emit();
-        prop_assert_eq!(Document::parse(&text, SsiProfile::FORMATS), Ok(document), "{}", text);
+        prop_assert_eq!(ProfileDocument::parse(&text, SsiProfile::FORMATS), Ok(document), "{}", text);
     }
 }
 
@@ -202,8 +202,8 @@ proptest! {
             entry(has(4), format!("patterns: [(name: \"P\", word: {pattern}, meaning: \"invalid\")],")),
         ];
         let text = format!("(schema: 1, device: \"ssi\", frame: ({}))", frame.concat());
-        match Document::parse(&text, SsiProfile::FORMATS) {
-            Ok(document) => prop_assert_eq!(Document::parse(&document.emit(), SsiProfile::FORMATS), Ok(document)),
+        match ProfileDocument::parse(&text, SsiProfile::FORMATS) {
+            Ok(document) => prop_assert_eq!(ProfileDocument::parse(&document.emit(), SsiProfile::FORMATS), Ok(document)),
             Err(error) => prop_assert!(error.to_string().starts_with("frame: "), "{}", error),
         }
     }
@@ -219,7 +219,7 @@ fn unknown_fields_are_kept() {
         .replace("word: 25,", "word: 25, by: \"d\",")
         .replace("(name: \"fault\",", "(name: \"fault\", seen: \"e\",")
         .replace("clock_hz:", "module: \"f\", clock_hz:");
-    let read = Document::parse(&text, SsiProfile::FORMATS).unwrap();
+    let read = ProfileDocument::parse(&text, SsiProfile::FORMATS).unwrap();
     let written = read.emit();
     for kept in [
         "    extra: {\"owner\": (floors: [1, 2], name: \"CK\")},",
@@ -233,8 +233,8 @@ fn unknown_fields_are_kept() {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
     assert_eq!(read.beyond.len(), 7);
-    let read = Document { beyond: Vec::new(), ..read };
-    assert_eq!(Document::parse(&written, SsiProfile::FORMATS).unwrap(), read);
+    let read = ProfileDocument { beyond: Vec::new(), ..read };
+    assert_eq!(ProfileDocument::parse(&written, SsiProfile::FORMATS).unwrap(), read);
     // Entries of a bit stay with it, even if another is inserted before it.
     let mut moved = read.body.into_profile::<SsiProfile>().unwrap();
     moved.descriptor.errors.reverse();
@@ -309,7 +309,7 @@ fn profile_errors_name_their_location() {
     ];
     for (old, new, message) in cases {
         assert!(SHORT.contains(old), "{old}");
-        let error = Document::parse(&SHORT.replacen(old, new, 1), SsiProfile::FORMATS).unwrap_err().to_string();
+        let error = ProfileDocument::parse(&SHORT.replacen(old, new, 1), SsiProfile::FORMATS).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
     }
 }

@@ -40,7 +40,7 @@ impl Dialect for C {
         if bits == 0 { a.to_owned() } else { format!("({a} << {bits})") }
     }
 
-    fn equal(&self, a: &String, b: &String) -> String {
+    fn equal_expression(&self, a: &String, b: &String) -> String {
         format!("({a} == {b})")
     }
 

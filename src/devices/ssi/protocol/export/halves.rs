@@ -32,7 +32,7 @@ enum Language {
 
 const HALF: u8 = 32;
 
-struct Halves {
+struct SplitWordDialect {
     language: Language,
     /// A frame needs both.
     is_wide: bool,
@@ -49,13 +49,13 @@ struct Pair {
 /// # Errors
 /// [`TooWideError`] if 32 bits do not suffice.
 pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
-    let halves = Halves::of(layout, Language::StructuredText)?;
+    let halves = SplitWordDialect::of(layout, Language::StructuredText)?;
     let mut text = String::new();
     // Writing into a String does not fail.
-    let _ = writeln!(text, "(* SSI decoder: {}", one_line(title).replace("*)", "* )"));
+    let _ = writeln!(text, "(* SSI decoder: {}", to_single_line(title).replace("*)", "* )"));
     let _ = writeln!(text, "   {} IEC 61131-3, 32 bits.", halves.first_bit(layout));
     for (name, flag, meaning) in flags(layout) {
-        let _ = writeln!(text, "   flags 16#{:X}: {name}, {}", flag.0, one_line(&meaning).replace("*)", "* )"));
+        let _ = writeln!(text, "   flags 16#{:X}: {name}, {}", flag.0, to_single_line(&meaning).replace("*)", "* )"));
     }
     text.push_str("*)\nFUNCTION_BLOCK SSI_DECODE\n");
     let lines = statements(layout, &halves);
@@ -72,7 +72,7 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
 /// # Errors
 /// [`TooWideError`]: 32 bits do not suffice.
 pub fn scl(layout: &Layout, title: &str) -> Result<String, TooWideError> {
-    let halves = Halves::of(layout, Language::Scl)?;
+    let halves = SplitWordDialect::of(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
     let lines = statements(layout, &halves);
     halves.variables(&mut text, &lines, ["    ", "DWord", "UDInt", "Bool", "VAR_TEMP"]);
@@ -92,7 +92,7 @@ pub fn scl(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     Ok(text)
 }
 
-impl Halves {
+impl SplitWordDialect {
     fn of(layout: &Layout, language: Language) -> Result<Self, TooWideError> {
         let bits = layout.coding().bits();
         if bits > HALF {
@@ -105,7 +105,7 @@ impl Halves {
             let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
             greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(TooWideError::RoundAxis)?;
         }
-        Ok(Halves { language, is_wide: layout.clocks() > HALF })
+        Ok(SplitWordDialect { language, is_wide: layout.clocks() > HALF })
     }
 
     /// Returns a comment that names the bit in which the first bit of a frame is stored.
@@ -212,7 +212,7 @@ impl Pair {
     }
 }
 
-impl Dialect for Halves {
+impl Dialect for SplitWordDialect {
     type Word = Pair;
 
     fn name(&self, name: &'static str) -> Pair {
@@ -264,7 +264,7 @@ impl Dialect for Halves {
         }
     }
 
-    fn equal(&self, a: &Pair, b: &Pair) -> String {
+    fn equal_expression(&self, a: &Pair, b: &Pair) -> String {
         a.compared(b, "=", " AND ", "TRUE")
     }
 
@@ -314,9 +314,9 @@ impl Dialect for Halves {
 
     fn comment(&self, text: &str) -> String {
         match self.language {
-            Language::StructuredText => format!("(* {} *)", one_line(text).replace("*)", "* )")),
+            Language::StructuredText => format!("(* {} *)", to_single_line(text).replace("*)", "* )")),
             // A source file is read as ASCII by some versions.
-            Language::Scl => format!("// {}", one_line(text).replace(|c: char| !c.is_ascii(), "_")),
+            Language::Scl => format!("// {}", to_single_line(text).replace(|c: char| !c.is_ascii(), "_")),
         }
     }
 
@@ -335,7 +335,7 @@ fn uses_name(line: &str, name: &str) -> bool {
     line.split(|c| !is_name(c)).any(|word| word == name)
 }
 
-fn one_line(text: &str) -> String {
+fn to_single_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }
 

@@ -3,7 +3,7 @@
 //! preceding `g` denotes Gray.
 
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning};
+use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
@@ -62,7 +62,7 @@ pub enum FormatError {
 pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let descriptor = layout.descriptor();
     let modifier = match layout.coding().code() {
-        Code::Binary if descriptor.coded == Coded::Position => "",
+        Code::Binary if descriptor.coded == GrayCoverage::Position => "",
         Code::Gray => "g",
         Code::Binary => return Err(FormatError::Cannot(UnsupportedProperty::GrayOver)),
         Code::GrayExcess => return Err(FormatError::Cannot(UnsupportedProperty::GrayExcess)),

@@ -44,8 +44,8 @@ pub enum PictureShape {
     },
     /// A thin polyline of horizontal and vertical segments.
     Line {
-        /// Path, which begins with a [`PathStep::Move`].
-        path: Vec<PathStep>,
+        /// Path, which begins with a [`PolylineSegment::Move`].
+        path: Vec<PolylineSegment>,
         /// Line colour.
         colour: &'static str,
     },
@@ -55,7 +55,7 @@ pub enum PictureShape {
 
 /// A segment of a polyline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PathStep {
+pub enum PolylineSegment {
     /// Moves to a point without drawing.
     Move(PictureLength, u32),
     /// Draws a horizontal segment to this x coordinate.
@@ -111,7 +111,7 @@ impl Picture {
                     "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\" stroke=\"{line}\"/>"
                 ),
                 PictureShape::Line { path, colour } => {
-                    let steps: Vec<String> = path.iter().map(PathStep::to_string).collect();
+                    let steps: Vec<String> = path.iter().map(PolylineSegment::to_string).collect();
                     writeln!(svg, "<path d=\"{}\" stroke=\"{colour}\" fill=\"none\"/>", steps.join(" "))
                 }
                 PictureShape::Text(label) => label.write(&mut svg),
@@ -162,12 +162,12 @@ impl fmt::Display for PictureLength {
     }
 }
 
-impl fmt::Display for PathStep {
+impl fmt::Display for PolylineSegment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            PathStep::Move(x, y) => write!(f, "M{x} {y}"),
-            PathStep::Across(x) => write!(f, "H{x}"),
-            PathStep::Down(y) => write!(f, "V{y}"),
+            PolylineSegment::Move(x, y) => write!(f, "M{x} {y}"),
+            PolylineSegment::Across(x) => write!(f, "H{x}"),
+            PolylineSegment::Down(y) => write!(f, "V{y}"),
         }
     }
 }

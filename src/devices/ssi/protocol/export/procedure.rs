@@ -2,7 +2,7 @@
 //! layout.
 
 use crate::devices::ssi::protocol::code::{Code, ones};
-use crate::devices::ssi::protocol::descriptor::Coded;
+use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
@@ -17,7 +17,7 @@ pub(super) trait Dialect {
     fn xor(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
     fn right(&self, a: &Self::Word, bits: u8) -> Self::Word;
     fn left(&self, a: &Self::Word, bits: u8) -> Self::Word;
-    fn equal(&self, a: &Self::Word, b: &Self::Word) -> String;
+    fn equal_expression(&self, a: &Self::Word, b: &Self::Word) -> String;
     fn differs(&self, a: &Self::Word, b: &Self::Word) -> String;
     /// Converts a word expression to a number expression.
     fn number(&self, word: &Self::Word) -> String;
@@ -73,7 +73,7 @@ impl<D: Dialect> Writer<'_, D> {
     }
 
     fn is(&self, word: &'static str, value: u64) -> String {
-        self.dialect.equal(&self.dialect.name(word), &self.dialect.hex(value))
+        self.dialect.equal_expression(&self.dialect.name(word), &self.dialect.hex(value))
     }
 
     fn frame(&mut self, layout: &Layout) {
@@ -113,15 +113,15 @@ impl<D: Dialect> Writer<'_, D> {
                 self.set_word("fold", &d.xor(&d.name("fold"), &d.right(&d.name("fold"), bits)));
             }
             let odd = u64::from(parity.even);
-            self.flag(&d.equal(&d.and(&d.name("fold"), &d.hex(1)), &d.hex(odd)), Flags::PARITY);
+            self.flag(&d.equal_expression(&d.and(&d.name("fold"), &d.hex(1)), &d.hex(odd)), Flags::PARITY);
         }
-        if descriptor.coded == Coded::AreaAndErrors {
+        if descriptor.coded == GrayCoverage::AreaAndErrors {
             self.decode_inner_gray(layout);
         }
         for (index, (bit, own)) in layout.errors.iter().zip(&descriptor.errors).enumerate() {
             self.comment(&own.name);
             let level = if own.active_low { 0 } else { *bit };
-            self.flag(&d.equal(&d.and(&d.name("word"), &d.hex(*bit)), &d.hex(level)), Flags::error(index));
+            self.flag(&d.equal_expression(&d.and(&d.name("word"), &d.hex(*bit)), &d.hex(level)), Flags::error(index));
         }
         if descriptor.shift_right {
             self.comment("back by the clock by which it comes later");
@@ -131,7 +131,7 @@ impl<D: Dialect> Writer<'_, D> {
             let moved = d.and(&d.left(&d.and(&d.name("word"), &d.hex(area)), 1), &d.hex(area));
             self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(ones(layout.behind_area)))));
         }
-        if descriptor.coded == Coded::Area {
+        if descriptor.coded == GrayCoverage::Area {
             self.decode_inner_gray(layout);
             if descriptor.shift_right {
                 self.set_word("word", &d.and(&d.name("word"), &d.hex(!(1 << layout.behind_area))));

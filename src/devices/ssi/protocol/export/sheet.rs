@@ -5,14 +5,14 @@ use std::fmt::Write;
 use super::svg::role_name;
 use super::text::{ExportText, ModuleObstacle, Say, SettingMeaning};
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::Coded;
+use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
 /// Locations of the position and the remaining bits, numbered as in interface modules, with bit 0 as the last bit
 /// received.
-struct Places {
+struct BitLocations {
     frame: u8,
     lowest: u8,
     highest: u8,
@@ -23,7 +23,7 @@ struct Places {
     others: Vec<(u8, String)>,
 }
 
-impl Places {
+impl BitLocations {
     fn new(layout: &Layout, say: Say<'_>) -> Self {
         let frame = layout.clocks();
         let bits = (0..frame).rev().zip(layout.roles());
@@ -41,17 +41,17 @@ impl Places {
         }
         let ends = |bits: &[u8]| Some((*bits.last()?, *bits.first()?));
         let (lowest, highest) = ends(&position).unwrap_or((0, 0));
-        Places { frame, lowest, highest, turns: ends(&turns), steps: ends(&steps), others }
+        BitLocations { frame, lowest, highest, turns: ends(&turns), steps: ends(&steps), others }
     }
 
-    fn behind(&self) -> u8 {
+    fn lowest_bit(&self) -> u8 {
         self.lowest
     }
 }
 
 /// Returns the settings for common interface modules, one paragraph per module.
 pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: Say<'_>) -> String {
-    let places = Places::new(layout, say);
+    let places = BitLocations::new(layout, say);
     let descriptor = layout.descriptor();
     let heading = say(&ExportText::SheetTitle(title.to_owned()));
     let mut text = format!("{heading}\n\n{}\n\n", say(&ExportText::SheetPurpose));
@@ -78,12 +78,12 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
     if let Some(why) = obstacle(layout) {
         let _ = writeln!(text, "\n{} {}", say(&ExportText::Obstacle(why)), say(&ExportText::ReadAsBinary));
     }
-    let mut module = |name: &str, settings: Vec<(Label, Setting)>| {
+    let mut module = |name: &str, settings: Vec<(SheetLabel, Setting)>| {
         let _ = writeln!(text, "\n{name}");
         for (label, value) in settings {
             let label = match label {
-                Label::Own(label) => label.to_owned(),
-                Label::Said(label) => say(&label),
+                SheetLabel::Own(label) => label.to_owned(),
+                SheetLabel::Said(label) => say(&label),
             };
             let value = match value {
                 Setting::Plain(value) => value,
@@ -93,13 +93,13 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
         }
     };
     module("SIMATIC TM PosInput, SSI_Absolute_Encoder", siemens(layout, &places));
-    module("Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", beckhoff(layout, &places));
-    module("Delta AS02HC", delta(layout, &places));
+    module("Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", beckhoff_settings(layout, &places));
+    module("Delta AS02HC", delta_settings(layout, &places));
     module("Synapticon SOMANET (object 2209h)", synapticon(layout, &places));
     text
 }
 
-enum Label {
+enum SheetLabel {
     /// Term from the module manual, identical in every language.
     Own(&'static str),
     Said(ExportText),
@@ -117,7 +117,7 @@ fn obstacle(layout: &Layout) -> Option<ModuleObstacle> {
     match descriptor.code {
         Code::GrayExcess => Some(ModuleObstacle::GrayExcess),
         Code::Bcd => Some(ModuleObstacle::Bcd),
-        _ if descriptor.coded != Coded::Position => Some(ModuleObstacle::GrayOver),
+        _ if descriptor.coded != GrayCoverage::Position => Some(ModuleObstacle::GrayOver),
         _ if descriptor.inverted => Some(ModuleObstacle::Inverted),
         _ if descriptor.between > 0 => Some(ModuleObstacle::Between),
         _ => None,
@@ -134,7 +134,7 @@ fn code_number(layout: &Layout) -> Setting {
     Setting::Said(ExportText::Setting(number, value))
 }
 
-fn siemens(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
+fn siemens(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     let width = places.highest - places.lowest + 1;
     let (bits, bit) = (places.frame, places.highest);
     let parity = layout.descriptor().parity;
@@ -142,20 +142,20 @@ fn siemens(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     let code = if is_gray(layout) { "Gray" } else { "Dual" };
     vec![
         (
-            Label::Said(ExportText::FrameLength),
+            SheetLabel::Said(ExportText::FrameLength),
             Setting::Said(ExportText::FrameBits { bits, fits: (10..=40).contains(&bits) }),
         ),
-        (Label::Said(ExportText::CodeType), Setting::Plain(code.to_owned())),
-        (Label::Said(ExportText::Parity), Setting::Said(parity)),
-        (Label::Said(ExportText::BitNumberLowest), Setting::Plain(places.lowest.to_string())),
+        (SheetLabel::Said(ExportText::CodeType), Setting::Plain(code.to_owned())),
+        (SheetLabel::Said(ExportText::Parity), Setting::Said(parity)),
+        (SheetLabel::Said(ExportText::BitNumberLowest), Setting::Plain(places.lowest.to_string())),
         (
-            Label::Said(ExportText::BitNumberHighest),
+            SheetLabel::Said(ExportText::BitNumberHighest),
             Setting::Said(ExportText::HighestNumber { bit, fits: width <= 32 }),
         ),
     ]
 }
 
-fn beckhoff(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
+fn beckhoff_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     let frame_type = match places.frame {
         25 => ExportText::Setting(0, SettingMeaning::Multiturn),
         13 => ExportText::Setting(1, SettingMeaning::Singleturn),
@@ -165,23 +165,23 @@ fn beckhoff(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     // A parity bit has no information about the encoder.
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
-    let bits = places.behind() - fails;
+    let bits = places.lowest_bit() - fails;
     let error = if fails == 1 { Setting::Said(ExportText::LastIsError) } else { Setting::Plain("0".to_owned()) };
     let mut settings = vec![
-        (Label::Own(":06 SSI coding"), code_number(layout)),
-        (Label::Own(":0F SSI frame type"), Setting::Said(frame_type)),
-        (Label::Own(":11 SSI frame size"), Setting::Plain(places.frame.to_string())),
-        (Label::Own(":12 SSI data length"), Setting::Plain((places.frame - fails).to_string())),
-        (Label::Own(":02 Enable power failure bit"), error),
+        (SheetLabel::Own(":06 SSI coding"), code_number(layout)),
+        (SheetLabel::Own(":0F SSI frame type"), Setting::Said(frame_type)),
+        (SheetLabel::Own(":11 SSI frame size"), Setting::Plain(places.frame.to_string())),
+        (SheetLabel::Own(":12 SSI data length"), Setting::Plain((places.frame - fails).to_string())),
+        (SheetLabel::Own(":02 Enable power failure bit"), error),
     ];
     if bits > 0 {
         let divide = ExportText::Divide { by: 1_u64 << bits, bits };
-        settings.push((Label::Said(ExportText::InTheProgram), Setting::Said(divide)));
+        settings.push((SheetLabel::Said(ExportText::InTheProgram), Setting::Said(divide)));
     }
     settings
 }
 
-fn delta(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
+fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     let field = |ends: Option<(u8, u8)>| {
         Setting::Said(match ends {
             Some((low, highest)) => ExportText::Field { bits: highest - low + 1, highest },
@@ -195,14 +195,14 @@ fn delta(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     let ends = status.last().zip(status.first()).map(|(low, high)| (*low, *high));
     let code = if is_gray(layout) { ExportText::CodeName(Code::Gray) } else { ExportText::Binary };
     vec![
-        (Label::Own("Multi-turn data"), field(places.turns)),
-        (Label::Own("Single-turn data"), field(steps)),
-        (Label::Own("Status data"), field(ends)),
-        (Label::Own("Code"), Setting::Said(code)),
+        (SheetLabel::Own("Multi-turn data"), field(places.turns)),
+        (SheetLabel::Own("Single-turn data"), field(steps)),
+        (SheetLabel::Own("Status data"), field(ends)),
+        (SheetLabel::Own("Code"), Setting::Said(code)),
     ]
 }
 
-fn synapticon(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
+fn synapticon(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     // Its bits are counted from the first one received.
     let first = |ends: Option<(u8, u8)>| {
         Setting::Plain(ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string()))
@@ -215,11 +215,11 @@ fn synapticon(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
         Some(true) => (2, SettingMeaning::Even),
     };
     vec![
-        (Label::Own("Multiturn bits"), count(places.turns)),
-        (Label::Own(":11 Multiturn first bit"), first(places.turns)),
-        (Label::Own("Singleturn bits"), count(steps)),
-        (Label::Own(":9 Singleturn first bit"), first(steps)),
-        (Label::Own(":12 Parity type"), Setting::Said(ExportText::Setting(number, parity))),
-        (Label::Own(":14 Data ordering"), code_number(layout)),
+        (SheetLabel::Own("Multiturn bits"), count(places.turns)),
+        (SheetLabel::Own(":11 Multiturn first bit"), first(places.turns)),
+        (SheetLabel::Own("Singleturn bits"), count(steps)),
+        (SheetLabel::Own(":9 Singleturn first bit"), first(steps)),
+        (SheetLabel::Own(":12 Parity type"), Setting::Said(ExportText::Setting(number, parity))),
+        (SheetLabel::Own(":14 Data ordering"), code_number(layout)),
     ]
 }

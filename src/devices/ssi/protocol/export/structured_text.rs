@@ -6,9 +6,9 @@ use super::c::flags;
 use super::procedure::{Dialect, statements};
 use crate::devices::ssi::protocol::layout::Layout;
 
-struct StructuredText;
+struct StructuredTextDialect;
 
-impl Dialect for StructuredText {
+impl Dialect for StructuredTextDialect {
     type Word = String;
 
     fn name(&self, name: &'static str) -> String {
@@ -39,7 +39,7 @@ impl Dialect for StructuredText {
         if bits == 0 { a.to_owned() } else { format!("SHL({a}, {bits})") }
     }
 
-    fn equal(&self, a: &String, b: &String) -> String {
+    fn equal_expression(&self, a: &String, b: &String) -> String {
         format!("({a} = {b})")
     }
 
@@ -104,7 +104,7 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
          flags : LWORD;\n    valid : BOOL; (* the position may be used *)\nEND_VAR\nVAR\n    word_ : LWORD;\n    \
          code : LWORD;\n    fold : LWORD;\n    digit : LWORD;\nEND_VAR\n",
     );
-    for line in statements(layout, &StructuredText) {
+    for line in statements(layout, &StructuredTextDialect) {
         let _ = writeln!(text, "{}", to_local_names(&line));
     }
     text.push_str("END_FUNCTION_BLOCK\n");

@@ -1,6 +1,6 @@
 //! Pictures: the frame as a row of cells, and the timing of a burst to scale.
 
-use super::picture::{FAINT, MARGIN, PathStep, Picture, PictureLabel, PictureLength, PictureShape};
+use super::picture::{FAINT, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 use super::text::{ExportText, Say};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
@@ -85,8 +85,8 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
             let y = if begins == index && index % 2 == 1 { 104 } else { 90 };
             let middle = PictureLength::Whole(u32::midpoint(from, to));
             let path = vec![
-                PathStep::Move(PictureLength::Whole(from + 2), 77),
-                PathStep::Across(PictureLength::Whole(to - 2)),
+                PolylineSegment::Move(PictureLength::Whole(from + 2), 77),
+                PolylineSegment::Across(PictureLength::Whole(to - 2)),
             ];
             picture.shapes.extend([
                 PictureShape::Line { path, colour: FAINT },
@@ -107,25 +107,25 @@ pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str
     let period = timing.period.as_secs_f64();
     let mut picture = Picture::titled(WIDTH, 170, title);
     // The clock rests high; the first falling edge latches, each rising edge shifts a bit.
-    let mut clock = vec![PathStep::Move(x(0.0), 50)];
+    let mut clock = vec![PolylineSegment::Move(x(0.0), 50)];
     for index in 0..layout.clocks() {
         let at = f64::from(index) * period;
-        let ends = [PathStep::Across(x(at + period / 2.0)), PathStep::Across(x(at + period))];
+        let ends = [PolylineSegment::Across(x(at + period / 2.0)), PolylineSegment::Across(x(at + period))];
         let [falls, rises] = ends;
-        clock.extend([PathStep::Down(74), falls, PathStep::Down(50), rises]);
+        clock.extend([PolylineSegment::Down(74), falls, PolylineSegment::Down(50), rises]);
     }
     let end = x(burst + pause);
-    clock.push(PathStep::Across(end));
+    clock.push(PolylineSegment::Across(end));
     let monoflop = times.monoflop.1 * 1e-6;
     let idle = x((burst + monoflop).min(burst + pause));
     let first = x(period / 2.0);
     let data = vec![
-        PathStep::Move(x(0.0), 92),
-        PathStep::Across(first),
-        PathStep::Move(x(burst), 116),
-        PathStep::Across(idle),
-        PathStep::Down(92),
-        PathStep::Across(end),
+        PolylineSegment::Move(x(0.0), 92),
+        PolylineSegment::Across(first),
+        PolylineSegment::Move(x(burst), 116),
+        PolylineSegment::Across(idle),
+        PolylineSegment::Down(92),
+        PolylineSegment::Across(end),
     ];
     let width = PictureLength::Scaled(x(burst).units() - first.units());
     picture.shapes.extend([
@@ -144,8 +144,8 @@ pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str
     ];
     for (from, to, text) in spans {
         let (from, to, y) = (x(from), x(to), 130);
-        let end = |at| [PathStep::Move(at, y - 4), PathStep::Down(y + 4)];
-        let path = [&[PathStep::Move(from, y), PathStep::Across(to)][..], &end(from), &end(to)].concat();
+        let end = |at| [PolylineSegment::Move(at, y - 4), PolylineSegment::Down(y + 4)];
+        let path = [&[PolylineSegment::Move(from, y), PolylineSegment::Across(to)][..], &end(from), &end(to)].concat();
         let middle = PictureLength::Scaled(f64::midpoint(from.units(), to.units()));
         picture.shapes.extend([
             PictureShape::Line { path, colour: FAINT },

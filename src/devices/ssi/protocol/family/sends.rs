@@ -26,8 +26,8 @@ const LEAVE: [Leave; 12] = [
 impl Family {
     /// Returns the fewest settings with which this family sends exactly this frame, or `None` if it cannot. Direction
     /// and preset are not part of a frame and keep their factory setting.
-    pub fn settings_of(&self, frame: &Descriptor) -> Option<Settings> {
-        let asked = self.shown_settings(frame);
+    pub fn settings_for_frame(&self, frame: &Descriptor) -> Option<Settings> {
+        let asked = self.derived_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
         let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
         let tried = aligns.into_iter().flat_map(|align| places.map(|place| (align, place)));
@@ -52,7 +52,7 @@ impl Family {
     }
 
     /// Returns the settings that can be derived from a frame, which are all except the bit alignment.
-    fn shown_settings(&self, frame: &Descriptor) -> Settings {
+    fn derived_settings(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),
             coded: Some(frame.coded),
@@ -141,7 +141,7 @@ mod tests {
             assert!(spread.len() >= 10, "{}: {spread:?}", family.key);
             for text in spread {
                 let sent = frame(&families, &text).unwrap();
-                let found = family.settings_of(&sent).unwrap_or_else(|| panic!("{text}"));
+                let found = family.settings_for_frame(&sent).unwrap_or_else(|| panic!("{text}"));
                 assert_eq!(found.resolve(family).unwrap().layout.descriptor(), &sent, "{text}");
                 let (_, asked) = Settings::parse(&text).unwrap();
                 assert!(count(&found) <= count(&asked), "{text}: {}", found.emit(&family.key));
@@ -166,7 +166,7 @@ mod tests {
         for (text, fewest) in cases {
             let family = families.named(fewest.split(',').next().unwrap()).unwrap();
             assert_eq!(
-                family.settings_of(&frame(&families, text).unwrap()).unwrap().emit(&family.key),
+                family.settings_for_frame(&frame(&families, text).unwrap()).unwrap().emit(&family.key),
                 fewest,
                 "{text}"
             );
@@ -189,11 +189,11 @@ mod tests {
                 ("another range", Descriptor { range: Range::Bits { multiturn: 20, singleturn: 2 }, ..own.clone() }),
             ];
             for (what, other) in others {
-                assert_eq!(family.settings_of(&other), None, "{}: {what}", family.key);
+                assert_eq!(family.settings_for_frame(&other), None, "{}: {what}", family.key);
             }
         }
         let ahs36 = frame(&families, "ahs36").unwrap();
-        let sends = |key: &str| families.named(key).unwrap().settings_of(&ahs36).is_some();
+        let sends = |key: &str| families.named(key).unwrap().settings_for_frame(&ahs36).is_some();
         assert_eq!(families.iter().filter(|family| sends(&family.key)).count(), 1);
     }
 }

@@ -1,8 +1,8 @@
 //! Resolution of a family's settings to a frame: resolution, code, alignment, error bits and clocks.
 
 use super::{Align, ErrorPlace, Family, Frame, SettingName};
-use crate::devices::ssi::protocol::code::{Code, CodeError, Coding};
-use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit};
+use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode};
+use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
 
@@ -22,7 +22,7 @@ pub struct Settings {
     /// Position code.
     pub code: Option<Code>,
     /// Extent of the code word.
-    pub coded: Option<Coded>,
+    pub coded: Option<GrayCoverage>,
     /// Number of clocks in a burst.
     pub clocks: Option<u8>,
     /// Alignment of the position.
@@ -151,7 +151,7 @@ impl Settings {
         let preset = self.preset.unwrap_or(0);
         limit(family, SettingName::Preset, (0, range.last()?), preset)?;
         let code = self.code.unwrap_or_else(|| family.code());
-        let bits = Coding::new(code, range.last()?)?.bits();
+        let bits = PositionCode::new(code, range.last()?)?.bits();
         let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
         let Some(frame) = frame else {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::Frame });
@@ -189,7 +189,7 @@ impl Settings {
             clocks,
             range,
             code,
-            coded: self.coded.unwrap_or(Coded::Position),
+            coded: self.coded.unwrap_or(GrayCoverage::Position),
             // A host that cannot use error bits clocks the resolution only (manual 3.1): zeros are left out with them.
             area: if place == ErrorPlace::None { area.min(clocks) } else { area },
             lead,

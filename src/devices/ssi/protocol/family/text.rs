@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use super::{Align, ErrorPlace, Settings};
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Coded, Meaning};
+use crate::devices::ssi::protocol::descriptor::{GrayCoverage, Meaning};
 use crate::devices::ssi::protocol::range::Direction;
 use crate::devices::ssi::protocol::spec::{Setting, SpecError};
-use crate::expected::Expected;
+use crate::expected::AllowedValues;
 
 const NAMES: &[&str] = &[
     "code",
@@ -84,7 +84,7 @@ impl Settings {
             "err" => self.errors = Some(value.parse().map_err(wrong)?),
             "step" => self.step_nanometres = Some(setting.number()?),
             "direction" => self.direction = Some(value.parse().map_err(wrong)?),
-            "preset" => self.preset = Some(value.parse().map_err(|_| wrong(Expected::Whole))?),
+            "preset" => self.preset = Some(value.parse().map_err(|_| wrong(AllowedValues::Whole))?),
             _ => return Err(setting.unknown()),
         }
         Ok(())
@@ -114,9 +114,12 @@ impl Words for Code {
     ];
 }
 
-impl Words for Coded {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("position", Coded::Position), ("padded", Coded::Area), ("errors", Coded::AreaAndErrors)];
+impl Words for GrayCoverage {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("position", GrayCoverage::Position),
+        ("padded", GrayCoverage::Area),
+        ("errors", GrayCoverage::AreaAndErrors),
+    ];
 }
 
 impl Words for Direction {
@@ -152,10 +155,10 @@ macro_rules! in_words {
         }
 
         impl FromStr for $type {
-            type Err = Expected;
+            type Err = AllowedValues;
 
-            fn from_str(word: &str) -> Result<Self, Expected> {
-                Self::named(word).ok_or(Expected::words(&$expected))
+            fn from_str(word: &str) -> Result<Self, AllowedValues> {
+                Self::named(word).ok_or(AllowedValues::words(&$expected))
             }
         }
     )*};
@@ -163,7 +166,7 @@ macro_rules! in_words {
 
 in_words! {
     Code: ["binary", "gray", "gray-excess", "bcd"],
-    Coded: ["position", "padded", "errors"],
+    GrayCoverage: ["position", "padded", "errors"],
     Direction: ["cw", "ccw"],
     Meaning: ["invalid", "warning"],
     Align: ["left", "right24", "right25", "tree12_13", "tree13_12"],

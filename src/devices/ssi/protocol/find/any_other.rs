@@ -7,7 +7,7 @@ use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, crosses_zero, detect_pa
 use super::plausible::{bit_shares, widths};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
+use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
@@ -79,8 +79,8 @@ fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let mut errors = frame.errors.clone();
     errors.push(named("ERROR", parity.clock, false));
     [
-        Descriptor { coded: Coded::Area, area: parity.clock, ..none.clone() },
-        Descriptor { coded: Coded::AreaAndErrors, errors, ..none },
+        Descriptor { coded: GrayCoverage::Area, area: parity.clock, ..none.clone() },
+        Descriptor { coded: GrayCoverage::AreaAndErrors, errors, ..none },
     ]
 }
 

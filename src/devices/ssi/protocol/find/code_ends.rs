@@ -18,7 +18,7 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
     let mut found = Vec::new();
     let mut add = |code, least: Vec<u64>| {
         let reading = Reading { code, ..read.reading.clone() };
-        found.extend(best(read, &reading, &least, whole).map(|steps| (code, steps)));
+        found.extend(best_step_counts(read, &reading, &least, whole).map(|steps| (code, steps)));
     };
     let extremes = extremes(read);
     // At least the positions from 0 to the highest that occurred.
@@ -45,7 +45,7 @@ fn extremes(read: &Read) -> Vec<(u64, u64)> {
 
 /// Returns the numbers of steps with the most even motion: the most usual candidate and the last. `None` if no
 /// candidate beats the full range of the bits.
-fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
+fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
         (lowest.max(2)..whole).contains(steps) && (reading.code != Code::GrayExcess || steps.is_multiple_of(2))

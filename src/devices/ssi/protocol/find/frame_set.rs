@@ -65,7 +65,7 @@ impl FrameSet {
         if same(0) { Some(false) } else { same(ones(self.clocks)).then_some(true) }
     }
 
-    pub(super) fn different(&self) -> usize {
+    pub(super) fn distinct_count(&self) -> usize {
         self.counts().len()
     }
 

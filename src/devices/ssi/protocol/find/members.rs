@@ -3,7 +3,7 @@
 use super::any_other::any_other;
 use super::frame_set::FrameSet;
 use super::of_family::of_family;
-use super::probe::{Probe, Trial};
+use super::probe::{LayoutProbe, Trial};
 use super::reading::{Read, Reading};
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
@@ -17,7 +17,7 @@ pub(super) const PADDED: f64 = 1.5;
 const NEVER_ODD: f64 = 8.0;
 
 #[derive(Clone, Debug)]
-pub(super) struct Member {
+pub(super) struct LayoutCandidate {
     pub(super) family: Option<(String, Settings)>,
     pub(super) layout: Layout,
     pub(super) weight: f64,
@@ -29,17 +29,17 @@ pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 
 
 /// Returns the layouts that match the given reading and reproduce the probe's motion, in no particular order.
 pub(super) fn group_members(
-    probe: &Probe<'_>,
+    probe: &LayoutProbe<'_>,
     read: &Read,
     words: &FrameSet,
     repeat: Option<Repeat>,
     families: Option<&Families>,
-) -> Vec<Member> {
+) -> Vec<LayoutCandidate> {
     let mut found = Vec::new();
     let mut take = |family: Option<(String, Settings)>, layout: Layout, weight: f64| {
         if let Some(trial) = probe.trial(&layout) {
             let weight = weight + if trial.never_odd { NEVER_ODD } else { 0.0 };
-            found.push(Member { family, layout, weight, trial });
+            found.push(LayoutCandidate { family, layout, weight, trial });
         }
     };
     let inverted = possible_inversions(read);

@@ -64,7 +64,7 @@ impl Motion {
     }
 
     /// Returns the number of frames that follow from the previous frame or lead to the next.
-    pub(super) fn explained(&self) -> usize {
+    pub(super) fn explained_frame_count(&self) -> usize {
         let frames = self.steps.len() + 1;
         (0..frames).filter(|index| self.is_good(*index)).count()
     }

@@ -5,7 +5,7 @@ use super::members::{EXCHANGED, PADDED, Take, crosses_zero, sum};
 use super::plausible::widths;
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor};
+use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage};
 use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
@@ -27,11 +27,11 @@ pub(super) fn of_family(
         Some((least, _, most)) => (least..=most).map(Some).collect(),
     };
     let shifts: &[bool] = if family.shift { &[false, true] } else { &[false] };
-    let coded: &[Coded] = match reading.code {
+    let coded: &[GrayCoverage] = match reading.code {
         Code::Gray if crosses_zero(reading, inverted).is_some() => {
-            &[Coded::Position, Coded::Area, Coded::AreaAndErrors]
+            &[GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors]
         }
-        _ => &[Coded::Position],
+        _ => &[GrayCoverage::Position],
     };
     let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
     for (at, align) in family.align.iter().enumerate() {
@@ -75,7 +75,7 @@ pub(super) fn of_family(
                             Range::Bits { multiturn, singleturn } => widths(multiturn, singleturn) / 2.0,
                             _ => 0.0,
                         };
-                        let weights = [(inverted, EXCHANGED), (*coded != Coded::Position, PADDED)];
+                        let weights = [(inverted, EXCHANGED), (*coded != GrayCoverage::Position, PADDED)];
                         let weight = CHANGED * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
                         take(Some((family.key.clone(), settings)), layout, weight);
                     }

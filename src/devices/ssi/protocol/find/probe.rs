@@ -19,14 +19,14 @@ pub(super) struct Trial {
 }
 
 /// Frames and the steps between them, against which layouts are tried.
-pub(super) struct Probe<'a> {
+pub(super) struct LayoutProbe<'a> {
     seen: &'a FrameSet,
     read: &'a Read,
     /// Indices of frames whose successor follows evenly, each with whether the range wraps between the two.
     pairs: Vec<(usize, bool)>,
 }
 
-impl<'a> Probe<'a> {
+impl<'a> LayoutProbe<'a> {
     /// Creates a probe. `read` must have been made from `words`, which are the frames of `seen` or their first words.
     pub(super) fn new(seen: &'a FrameSet, words: &FrameSet, repeat: Option<Repeat>, read: &'a Read) -> Self {
         let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
@@ -47,13 +47,13 @@ impl<'a> Probe<'a> {
             both && read.motion.is_even(*index)
         };
         let even: Vec<usize> = (0..read.motion.steps.len()).filter(fits).collect();
-        let ends = even.iter().filter(|index| read.passes_end(**index)).take(TRIED / 4).map(|index| (*index, true));
+        let ends = even.iter().filter(|index| read.wraps_after(**index)).take(TRIED / 4).map(|index| (*index, true));
         let every = (even.len() / TRIED).max(1);
         let mut pairs: Vec<(usize, bool)> =
-            even.iter().step_by(every).map(|index| (*index, read.passes_end(*index))).chain(ends).collect();
+            even.iter().step_by(every).map(|index| (*index, read.wraps_after(*index))).chain(ends).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        Probe { seen, read, pairs }
+        LayoutProbe { seen, read, pairs }
     }
 
     pub(super) fn clocks(&self) -> u8 {

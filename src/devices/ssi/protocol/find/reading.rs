@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use super::code_ends::{ends, unusual_step_cost};
 use super::frame_set::{FrameSet, binary_entropy};
 use super::motion::Motion;
-use crate::devices::ssi::protocol::code::{Code, Coding, gray_to_binary, ones};
+use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, ones};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
 /// Number of frames in the first trial of each reading, taken in runs of consecutive frames.
@@ -92,7 +92,7 @@ impl Reading {
 
     /// Returns the number in each word, or `None` where the bits are not valid digits.
     pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
-        let digits = Coding::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
+        let digits = PositionCode::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
         let all = ones(self.last + 1 - self.first);
         let allowed = self.allowed();
         let number = |word: &u64| {
@@ -160,7 +160,7 @@ impl Reading {
     }
 
     /// Returns the parity bit after the position, if any.
-    fn parity_behind(&self, seen: &FrameSet) -> Option<Parity> {
+    fn trailing_parity(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
         let fits = |even| right(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
@@ -178,7 +178,7 @@ impl Read {
         // briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
         let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.is_usual(seen, index));
-        read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.passes_end(index) && usual(index));
+        read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after(index) && usual(index));
         read
     }
 
@@ -188,7 +188,7 @@ impl Read {
     }
 
     /// Returns whether the numbers wrap between the given frame and the next while the motion continues.
-    pub(super) fn passes_end(&self, index: usize) -> bool {
+    pub(super) fn wraps_after(&self, index: usize) -> bool {
         let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
         let step = self.motion.steps.get(index).copied().flatten();
         pair.zip(step).is_some_and(|((one, other), step)| (other as i64).wrapping_sub(one as i64) != step)
@@ -268,7 +268,7 @@ fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
                 if code == Code::Bcd && reading.width() < 8 {
                     continue;
                 }
-                let parity = reading.parity_behind(seen);
+                let parity = reading.trailing_parity(seen);
                 let gap = gap(seen, *first, *last).filter(|_| code != Code::Bcd);
                 ways.extend(gap.map(|gap| Reading { gap: Some(gap), parity, ..reading.clone() }));
                 ways.push(Reading { parity, ..reading });

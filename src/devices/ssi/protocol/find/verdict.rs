@@ -1,7 +1,7 @@
 //! Verdict on the classes: the confidence, the quality of each class, and the motion that would decide.
 
 use super::frame_set::FrameSet;
-use super::members::{Member, never_odd};
+use super::members::{LayoutCandidate, never_odd};
 use super::probe::Trial;
 use super::reading::Read;
 use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
@@ -32,7 +32,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
         return Some(Uncertainty::Close);
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
-    let sure = sure && !has_uniform_jumps(&first.read) && words.different() >= SURE_DIFFERENT;
+    let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= SURE_DIFFERENT;
     // Regardless of how improbable the others are.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven_properties(words, first).is_empty();
@@ -127,7 +127,7 @@ pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> 
         last = evidence.score;
         let open = open(words, &group);
         let members = group.members.into_iter().take(MEMBERS);
-        let members = members.map(|Member { family, layout, .. }| Proposal { family, layout }).collect();
+        let members = members.map(|LayoutCandidate { family, layout, .. }| Proposal { family, layout }).collect();
         classes.push(Class { members, evidence, open });
     }
     classes
@@ -140,7 +140,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     let weight = members.first().map_or(0.0, |member| member.weight);
     let fit =
         1.0 - (read.bits + WEIGHT_BITS * weight) / (random + read.unexplained.len() as f64 * frames as f64).max(1.0);
-    let explained = read.motion.explained();
+    let explained = read.motion.explained_frame_count();
     let outside = words.bits().filter(|(clock, bit)| !read.reading.has(*clock) && !bit.moves);
     let misfits = outside.map(|(_, bit)| bit.unusual).max().unwrap_or(0).max(read.motion.nones);
     Evidence {
@@ -158,11 +158,11 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;
-    let differ = |what: fn(&Member) -> Vec<u8>| {
+    let differ = |what: fn(&LayoutCandidate) -> Vec<u8>| {
         let mut all = members.iter().map(what);
         all.next().is_some_and(|first| all.any(|other| other != first))
     };
-    let turns = |member: &Member| match member.layout.descriptor().range {
+    let turns = |member: &LayoutCandidate| match member.layout.descriptor().range {
         Range::Bits { multiturn, singleturn } => vec![u8::from(multiturn > 0), singleturn],
         _ => Vec::new(),
     };

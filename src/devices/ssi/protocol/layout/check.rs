@@ -1,8 +1,8 @@
 //! Validation of a frame, and computation of its shifts and masks.
 
 use super::{Flags, Layout, Part};
-use crate::devices::ssi::protocol::code::{Code, CodeError, Coding, ones};
-use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
+use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, ones};
+use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
 /// The reason why a frame is impossible.
@@ -163,11 +163,11 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     }
     let last = descriptor.range.last()?;
     let code = match (descriptor.coded, descriptor.code) {
-        (Coded::Position, code) => code,
-        (Coded::Area | Coded::AreaAndErrors, Code::Gray) => Code::Binary,
-        (Coded::Area | Coded::AreaAndErrors, _) => return Err(LayoutError::NotGray),
+        (GrayCoverage::Position, code) => code,
+        (GrayCoverage::Area | GrayCoverage::AreaAndErrors, Code::Gray) => Code::Binary,
+        (GrayCoverage::Area | GrayCoverage::AreaAndErrors, _) => return Err(LayoutError::NotGray),
     };
-    let coding = Coding::new(code, last)?;
+    let coding = PositionCode::new(code, last)?;
     let parts = parts(&descriptor, &coding)?;
     let [_, lower] = parts;
     let lost = descriptor.shift_right && lower.in_word == word - descriptor.area;
@@ -183,7 +183,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     for bit in &descriptor.errors {
         taken.take(bit.clock, ClockUse::Error(bit.name.clone()))?;
         let done = match descriptor.coded {
-            Coded::Area => Some(WordOperation::Coded),
+            GrayCoverage::Area => Some(WordOperation::Coded),
             _ if descriptor.shift_right => Some(WordOperation::Shifted),
             _ => None,
         };
@@ -197,9 +197,11 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         }
     }
     let coded_clocks = match descriptor.coded {
-        Coded::Position => 0,
-        Coded::Area => descriptor.area,
-        Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
+        GrayCoverage::Position => 0,
+        GrayCoverage::Area => descriptor.area,
+        GrayCoverage::AreaAndErrors => {
+            descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area)
+        }
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
         taken.take(clock, ClockUse::Parity)?;
@@ -244,7 +246,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
 }
 
 /// Returns the location of the code word's bits within a word.
-fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutError> {
+fn parts(descriptor: &Descriptor, coding: &PositionCode) -> Result<[Part; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
     let needed = u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits);

@@ -17,13 +17,13 @@ pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
         (1..=64_u8).prop_map(|bits| Range::Length { bits, step_nanometres: 1000 }),
     ];
     let code = prop_oneof![Just(Code::Binary), Just(Code::Gray), Just(Code::GrayExcess), Just(Code::Bcd)];
-    let coded = prop_oneof![Just(Coded::Position), Just(Coded::Area), Just(Coded::AreaAndErrors)];
+    let coded = prop_oneof![Just(GrayCoverage::Position), Just(GrayCoverage::Area), Just(GrayCoverage::AreaAndErrors)];
     let zeros = (0..6_u8, 0..4_u8, 0..6_u8);
     let more = (0..3_u8, any::<bool>(), any::<bool>(), any::<bool>(), any::<Option<bool>>(), any::<bool>());
     (range, code, coded, zeros, more).prop_filter_map(
         "cannot work",
         |(range, code, coded, (lead, between, tail), (errors, shift_right, inverted, active_low, even, twice))| {
-            let bits = Coding::new(code, range.last().ok()?).ok()?.bits();
+            let bits = PositionCode::new(code, range.last().ok()?).ok()?.bits();
             let area = lead + between + tail + bits;
             let parity = even.map(|even| Parity { clock: area + errors + 1, even });
             let word = area + errors + u8::from(parity.is_some());
@@ -150,7 +150,14 @@ fn impossible_layouts_are_refused_with_a_reason() {
         ),
         (
             "parity bit in the Gray code",
-            Descriptor { clocks: 27, area: 27, code: Code::Gray, coded: Coded::Area, parity: parity(27), ..plain() },
+            Descriptor {
+                clocks: 27,
+                area: 27,
+                code: Code::Gray,
+                coded: GrayCoverage::Area,
+                parity: parity(27),
+                ..plain()
+            },
             "the parity bit on clock 27 is among the 27 clocks that are coded as a whole",
         ),
         (
@@ -174,8 +181,8 @@ fn gray_decodes_with_and_without_the_error_bit() {
         errors: vec![bit("ERROR", 25)],
         ..Descriptor::plain(0, 24)
     };
-    let plain = Layout::new(descriptor(Coded::Position)).unwrap();
-    let whole = Layout::new(descriptor(Coded::AreaAndErrors)).unwrap();
+    let plain = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
+    let whole = Layout::new(descriptor(GrayCoverage::AreaAndErrors)).unwrap();
     assert_eq!(plain.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5631));
     assert_eq!(whole.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5630));
     let mistaken = whole.decode(0x1FC_5631);
@@ -187,8 +194,8 @@ fn gray_decodes_with_and_without_the_error_bit() {
 #[test]
 fn gray_may_cover_the_position_or_also_the_zeros() {
     let descriptor = |coded| Descriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..Descriptor::plain(0, 12) };
-    let position = Layout::new(descriptor(Coded::Position)).unwrap();
-    let area = Layout::new(descriptor(Coded::Area)).unwrap();
+    let position = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
+    let area = Layout::new(descriptor(GrayCoverage::Area)).unwrap();
     // 101 = binary 1100101, gray 1010111; with two zeros after it: gray of 110010100 = 101011110.
     assert_eq!(position.encode(101, Flags::NONE), Some(0b1_0101_1100));
     assert_eq!(area.encode(101, Flags::NONE), Some(0b1_0101_1110));

@@ -1,6 +1,6 @@
 //! Resizing a frame for other positions or another code: it grows and shrinks as a user would redraw it.
 
-use crate::devices::ssi::protocol::{Code, Coding, Descriptor, LayoutError, Range};
+use crate::devices::ssi::protocol::{Code, Descriptor, LayoutError, PositionCode, Range};
 
 /// Returns the frame with other positions in the given code. Zeros after the position absorb the change, if present;
 /// otherwise the parts after the position move, and the frame becomes longer or shorter.
@@ -43,7 +43,7 @@ pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> R
 }
 
 fn bits(range: &Range, code: Code) -> Result<u8, LayoutError> {
-    Ok(Coding::new(code, range.last()?)?.bits())
+    Ok(PositionCode::new(code, range.last()?)?.bits())
 }
 
 #[cfg(test)]

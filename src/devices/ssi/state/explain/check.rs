@@ -1,6 +1,6 @@
 //! Texts for the device check.
 
-use super::finding as said;
+use super::finding_text as said;
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
@@ -8,7 +8,7 @@ use crate::devices::ssi::procedures::check::{CheckFinding, CheckStep, SsiStepRes
 use crate::devices::ssi::state::TEXTS;
 
 pub fn check(lines: &[SsiStepResult]) -> Vec<CheckLine> {
-    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+    lines.iter().map(|line| CheckLine::of(line, step, finding_text)).collect()
 }
 
 fn step(step: CheckStep) -> Text {
@@ -22,7 +22,7 @@ fn step(step: CheckStep) -> Text {
     })
 }
 
-fn finding(finding: &CheckFinding) -> Text {
+fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Adapter(name, firmware) => plain(format!("{name} {firmware}")),
         CheckFinding::Clock { asked, got } if asked == got => {

@@ -25,7 +25,7 @@ pub fn export(text: &ExportText) -> Text {
         ExportText::NoParity => own("ssi_form.parity_none"),
         ExportText::Monoflop => own("ssi_sheet.monoflop"),
         ExportText::MonoflopTimes { least, most } => {
-            own("ssi_sheet.monoflop_times").with_digits("least", least).with_digits("most", most)
+            own("ssi_sheet.monoflop_times").with_formatted_number("least", least).with_formatted_number("most", most)
         }
         ExportText::HighestClock => own("ssi_sheet.highest_clock"),
         ExportText::ClockLimit { kilohertz } => own("ssi_sheet.clock_limit").with("khz", kilohertz),

@@ -4,21 +4,21 @@ use std::time::Duration;
 
 use crate::app::Language::German;
 use crate::app::explain::{document, in_both_languages, url};
-use crate::app::{DeviceType, Kinds};
+use crate::app::{DeviceType, KindRegistry};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{ClockUse, LayoutError, RepeatedPart};
 use crate::devices::ssi::state::Encoder;
 use crate::devices::ssi::state::explain::layout;
-use crate::link::Query;
-use crate::profile::{Document, Formats, Profile};
+use crate::link::UrlQuery;
+use crate::profile::{Profile, ProfileDocument, ProfileFormats};
 
-const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
+const KINDS: KindRegistry = KindRegistry::new(ProfileFormats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn link_errors_are_explained_in_both_languages() {
     for text in ["margin=x", "clock=1", "pause=0", "voltage=48"] {
-        let query: Query = text.parse().unwrap();
+        let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
         in_both_languages(&url(&error), &error);
     }
@@ -29,7 +29,7 @@ fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
         singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",
         word: "ones", meaning: "invalid")]))"#;
-    assert!(Document::parse(good, SsiProfile::FORMATS).is_ok());
+    assert!(ProfileDocument::parse(good, SsiProfile::FORMATS).is_ok());
     let cases = [
         ("frame:", "fram:"),
         ("clocks: 15", "clocks: 256"),
@@ -63,7 +63,7 @@ fn profile_errors_are_explained_in_both_languages() {
         ("\"ones\"", "0x8000"),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
+        let error = ProfileDocument::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
     }
 }

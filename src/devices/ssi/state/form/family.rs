@@ -1,12 +1,12 @@
 //! Form rows of a family: the settings of its encoders.
 
-use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
+use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Align, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::design::Designer;
+use crate::devices::ssi::state::design::LayoutDesigner;
 
-pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) -> Vec<Group> {
+pub(super) fn groups(designer: &LayoutDesigner, family: &Family, settings: &Settings) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
     let kinds = kinds(family);
     let position = position_rows(&kinds, family.multiturn.is_some(), descriptor);
@@ -23,7 +23,7 @@ pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) 
     let places = places(designer, family);
     if places.len() > 1 {
         let own = resolved.as_ref().map_or(ErrorPlace::None, |resolved| resolved.errors);
-        let all: Vec<(ErrorPlace, Text)> = places.iter().map(|place| (*place, place_words(*place))).collect();
+        let all: Vec<(ErrorPlace, Text)> = places.iter().map(|place| (*place, error_place_text(*place))).collect();
         frame.push(Row::choice(Field::Errors, "ssi_form.errors", &all, &own));
     }
     frame.push(Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""));
@@ -32,16 +32,16 @@ pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) 
 
 /// Returns the family settings after an entry, or `None` if the field does not apply.
 pub(super) fn entered(
-    designer: &Designer,
+    designer: &LayoutDesigner,
     family: &Family,
     settings: &Settings,
     field: Field,
-    input: &Input,
+    input: &FieldInput,
 ) -> Option<Settings> {
     let mut next = settings.clone();
     let range = designer.design().profile.descriptor.range;
     match (field, input) {
-        (Field::Range, Input::Choice(kind)) => {
+        (Field::Range, FieldInput::Choice(kind)) => {
             let others = Settings {
                 multiturn: None,
                 singleturn: None,
@@ -65,11 +65,11 @@ pub(super) fn entered(
                 next.code = None;
             }
         }
-        (Field::Multiturn, Input::Number(bits)) => next.multiturn = Some(byte(*bits)?),
-        (Field::Singleturn | Field::Bits, Input::Number(bits)) => next.singleturn = Some(byte(*bits)?),
-        (Field::Steps, Input::Number(steps)) => next.steps = Some(word(*steps)?),
-        (Field::Turns, Input::Number(turns)) => next.turns = Some(word(*turns)?),
-        (Field::RevolutionsAbove | Field::RevolutionsBelow, Input::Number(number)) => {
+        (Field::Multiturn, FieldInput::Number(bits)) => next.multiturn = Some(byte(*bits)?),
+        (Field::Singleturn | Field::Bits, FieldInput::Number(bits)) => next.singleturn = Some(byte(*bits)?),
+        (Field::Steps, FieldInput::Number(steps)) => next.steps = Some(word(*steps)?),
+        (Field::Turns, FieldInput::Number(turns)) => next.turns = Some(word(*turns)?),
+        (Field::RevolutionsAbove | Field::RevolutionsBelow, FieldInput::Number(number)) => {
             let Range::RoundAxis { revolutions, .. } = range else { return None };
             let number = word(*number)?;
             next.revolutions = Some(match field {
@@ -77,22 +77,22 @@ pub(super) fn entered(
                 _ => Fraction { denominator: number, ..revolutions },
             });
         }
-        (Field::StepLength, Input::Number(length)) => next.step_nanometres = Some(word(*length)?),
-        (Field::Code, Input::Choice(code)) => {
+        (Field::StepLength, FieldInput::Number(length)) => next.step_nanometres = Some(word(*length)?),
+        (Field::Code, FieldInput::Choice(code)) => {
             next.code = Some(*CODES.get(*code)?);
             if next.code != Some(Code::Gray) {
                 next.coded = None;
             }
         }
-        (Field::Over, Input::Choice(over)) => next.coded = Some(*OVER.get(*over)?),
-        (Field::Align, Input::Choice(align)) => next.align = Some(*family.align.get(*align)?),
-        (Field::Shift, Input::Switch(is_on)) => next.shift = *is_on,
-        (Field::Errors, Input::Choice(place)) => {
+        (Field::Over, FieldInput::Choice(over)) => next.coded = Some(*OVER.get(*over)?),
+        (Field::Align, FieldInput::Choice(align)) => next.align = Some(*family.align.get(*align)?),
+        (Field::Shift, FieldInput::Switch(is_on)) => next.shift = *is_on,
+        (Field::Errors, FieldInput::Choice(place)) => {
             next.errors = Some(*places(designer, family).get(*place)?);
             // With them the frame has its own length again.
             next.clocks = None;
         }
-        (Field::Clocks, Input::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
+        (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
         _ => return None,
     }
     // A number of clocks that was not requested follows the resolution.
@@ -113,7 +113,7 @@ fn kinds(family: &Family) -> Vec<RangeKind> {
     std::iter::once(RangeKind::Bits).chain(steps).chain(round).collect()
 }
 
-fn places(designer: &Designer, family: &Family) -> Vec<ErrorPlace> {
+fn places(designer: &LayoutDesigner, family: &Family) -> Vec<ErrorPlace> {
     let bits = designer.layout().coding().bits();
     let frame: Option<&Frame> = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
     frame.map(|frame| frame.place.clone()).unwrap_or_default()
@@ -129,7 +129,7 @@ fn align_words(align: Align) -> Text {
     })
 }
 
-fn place_words(place: ErrorPlace) -> Text {
+fn error_place_text(place: ErrorPlace) -> Text {
     TEXTS.text(match place {
         ErrorPlace::None => "ssi_form.errors_none",
         ErrorPlace::Fix => "ssi_form.errors_fix",

@@ -1,14 +1,14 @@
 //! Form rows of a frame without a family, or of one that its family cannot send.
 
-use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
+use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
 use crate::devices::ssi::state::TEXTS;
-use crate::devices::ssi::state::design::{Designer, Edit};
+use crate::devices::ssi::state::design::{Edit, LayoutDesigner};
 
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
 const MOST_ERRORS: usize = 8;
 
-pub(super) fn groups(designer: &Designer) -> Vec<Group> {
+pub(super) fn groups(designer: &LayoutDesigner) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
     let position = position_rows(&KINDS, true, descriptor);
     let mut groups = vec![
@@ -67,57 +67,61 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
 }
 
 /// Applies an entry to a frame without a family, or returns `None` if the field does not apply.
-pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Option<Edit> {
+pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
         return Some(Edit::Position(range, before.code));
     }
-    if let (Field::Code, Input::Choice(code)) = (field, input) {
+    if let (Field::Code, FieldInput::Choice(code)) = (field, input) {
         return Some(Edit::Position(before.range, *CODES.get(*code)?));
     }
     let mut next = before.clone();
     match (field, input) {
-        (Field::Over, Input::Choice(over)) => next.coded = *OVER.get(*over)?,
-        (Field::Clocks, Input::Number(clocks)) => next.clocks = byte(*clocks)?,
+        (Field::Over, FieldInput::Choice(over)) => next.coded = *OVER.get(*over)?,
+        (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = byte(*clocks)?,
         // The parts after the position move with it.
-        (Field::Lead, Input::Number(lead)) => {
+        (Field::Lead, FieldInput::Number(lead)) => {
             return Some(Edit::Frame(Box::new(with_padding(before, byte(*lead)?, before.between)?)));
         }
-        (Field::Between, Input::Number(between)) => {
+        (Field::Between, FieldInput::Number(between)) => {
             return Some(Edit::Frame(Box::new(with_padding(before, before.lead, byte(*between)?)?)));
         }
-        (Field::Area, Input::Number(area)) => next.area = byte(*area)?,
-        (Field::Shift, Input::Switch(is_on)) => next.shift_right = *is_on,
-        (Field::Inverted, Input::Switch(is_on)) => next.inverted = *is_on,
-        (Field::Parity, Input::Choice(choice)) => next = with_parity(next, *choice)?,
-        (Field::ParityClock, Input::Number(clock)) => next.parity.as_mut()?.clock = byte(*clock)?,
-        (Field::Repeat, Input::Switch(true)) if before.repeat.is_none() => {
+        (Field::Area, FieldInput::Number(area)) => next.area = byte(*area)?,
+        (Field::Shift, FieldInput::Switch(is_on)) => next.shift_right = *is_on,
+        (Field::Inverted, FieldInput::Switch(is_on)) => next.inverted = *is_on,
+        (Field::Parity, FieldInput::Choice(choice)) => next = with_parity(next, *choice)?,
+        (Field::ParityClock, FieldInput::Number(clock)) => next.parity.as_mut()?.clock = byte(*clock)?,
+        (Field::Repeat, FieldInput::Switch(true)) if before.repeat.is_none() => {
             next.repeat = Some(Repeat { word: before.clocks, gap: 1 });
             next.clocks = before.clocks.checked_mul(2)?.checked_add(1)?;
         }
-        (Field::Repeat, Input::Switch(false)) => {
+        (Field::Repeat, FieldInput::Switch(false)) => {
             next.clocks = before.word();
             next.repeat = None;
         }
-        (Field::Gap, Input::Number(gap)) => {
+        (Field::Gap, FieldInput::Number(gap)) => {
             let repeat = next.repeat.as_mut()?;
             repeat.gap = byte(*gap)?;
             next.clocks = repeat.word.checked_mul(2)?.checked_add(repeat.gap)?;
         }
-        (Field::ErrorName(index), Input::Words(name)) => name.trim().clone_into(&mut next.errors.get_mut(index)?.name),
-        (Field::ErrorClock(index), Input::Number(clock)) => next.errors.get_mut(index)?.clock = byte(*clock)?,
-        (Field::ErrorMeaning(index), Input::Choice(choice)) => {
+        (Field::ErrorName(index), FieldInput::Words(name)) => {
+            name.trim().clone_into(&mut next.errors.get_mut(index)?.name)
+        }
+        (Field::ErrorClock(index), FieldInput::Number(clock)) => next.errors.get_mut(index)?.clock = byte(*clock)?,
+        (Field::ErrorMeaning(index), FieldInput::Choice(choice)) => {
             next.errors.get_mut(index)?.meaning = if *choice == 0 { Meaning::Invalid } else { Meaning::Warning };
         }
-        (Field::ErrorLow(index), Input::Switch(is_on)) => next.errors.get_mut(index)?.active_low = *is_on,
-        (Field::ErrorCleared(index), Input::Switch(is_on)) => next.errors.get_mut(index)?.cleared_by_transfer = *is_on,
+        (Field::ErrorLow(index), FieldInput::Switch(is_on)) => next.errors.get_mut(index)?.active_low = *is_on,
+        (Field::ErrorCleared(index), FieldInput::Switch(is_on)) => {
+            next.errors.get_mut(index)?.cleared_by_transfer = *is_on
+        }
         _ => return None,
     }
     Some(Edit::Frame(Box::new(next)))
 }
 
-fn apply_range_input(range: &Range, field: Field, input: &Input) -> Option<Range> {
-    if let (Field::Range, Input::Choice(kind)) = (field, input) {
+fn apply_range_input(range: &Range, field: Field, input: &FieldInput) -> Option<Range> {
+    if let (Field::Range, FieldInput::Choice(kind)) = (field, input) {
         let bits = range.bits().unwrap_or(12);
         return Some(match KINDS.get(*kind)? {
             RangeKind::Bits => Range::Bits { multiturn: bits.saturating_sub(13), singleturn: bits.min(13) },
@@ -128,7 +132,7 @@ fn apply_range_input(range: &Range, field: Field, input: &Input) -> Option<Range
             RangeKind::Length => Range::Length { bits, step_nanometres: 1_000 },
         });
     }
-    let Input::Number(number) = input else { return None };
+    let FieldInput::Number(number) = input else { return None };
     Some(match (*range, field) {
         (Range::Bits { singleturn, .. }, Field::Multiturn) => Range::Bits { multiturn: byte(*number)?, singleturn },
         (Range::Bits { multiturn, .. }, Field::Singleturn) => Range::Bits { multiturn, singleturn: byte(*number)? },
@@ -193,7 +197,7 @@ fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
     Some(next)
 }
 
-impl Designer {
+impl LayoutDesigner {
     /// Returns the frame with another error bit appended, or `None` if the maximum has been reached.
     pub fn with_error_bit(&self) -> Option<Descriptor> {
         let mut next = self.design().profile.descriptor.clone();

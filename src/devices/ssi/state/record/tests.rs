@@ -40,7 +40,7 @@ fn words_around_a_gap_are_not_consecutive() {
     // Two runs of three words were not taken in time.
     record.add(vec![run(11, &[6, 7]), run(13, &[8])], 2);
     assert_eq!((record.words(21), record.count(21)), (vec![6, 7, 8], 3));
-    assert_eq!((record.dropped(), record.count(20)), (6, 0));
+    assert_eq!((record.dropped_count(), record.count(20)), (6, 0));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! the sample rate, and writes a row for each sample, with or without a time.
 
 use crate::app::Text;
-use crate::devices::ssi::protocol::Levels;
+use crate::devices::ssi::protocol::LineLevels;
 use crate::devices::ssi::state::TEXTS;
 
 /// Numbered rows of a file and the heading above them.
@@ -31,7 +31,7 @@ const DATA: [&str; 2] = ["dat", "miso"];
 ///
 /// # Errors
 /// The export is unusable. The message names the line, the reason and a remedy.
-pub(super) fn levels(text: &str) -> Option<Result<Vec<Levels>, Text>> {
+pub(super) fn levels(text: &str) -> Option<Result<Vec<LineLevels>, Text>> {
     let table = Table::of(text)?;
     Some(table.times().and_then(|times| table.levels(times)))
 }
@@ -86,7 +86,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    fn levels(&self, times: Times) -> Result<Vec<Levels>, Text> {
+    fn levels(&self, times: Times) -> Result<Vec<LineLevels>, Text> {
         let skipped = match times {
             Times::Column(_) => 1,
             Times::Samples(_) => 0,
@@ -130,10 +130,10 @@ impl<'t> Table<'t> {
         }
         let (clock, data) = self.lines(skipped, &read)?;
         let of = |bits: &[Option<bool>], channel: usize| bits.get(channel).copied().flatten();
-        let mut levels: Vec<Levels> = Vec::new();
+        let mut levels: Vec<LineLevels> = Vec::new();
         for (at, bits) in &read {
             let (Some(clock), Some(data)) = (of(bits, clock), of(bits, data)) else { continue };
-            levels.push(Levels { at: *at, clock, data });
+            levels.push(LineLevels { at: *at, clock, data });
         }
         Ok(levels)
     }

@@ -2,7 +2,7 @@
 //! one, the first possible one is used.
 
 use super::{Handle, Parts, has_words};
-use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};
+use crate::devices::ssi::protocol::{Descriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
 
 /// Returns the frame after moving a part to a clock, or as close to it as possible. Parts beyond its neighbours stay,
 /// except that error and parity bits directly after the position move with its end if `following` is set. A bit moved
@@ -75,14 +75,14 @@ pub(super) fn bit_chain(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
     let mut chain = Vec::new();
-    while let Some(single) = single_on(descriptor, next) {
+    while let Some(single) = single_bit_at(descriptor, next) {
         chain.push(single);
         next += 1;
     }
     chain
 }
 
-fn single_on(descriptor: &Descriptor, clock: u8) -> Option<Single> {
+fn single_bit_at(descriptor: &Descriptor, clock: u8) -> Option<Single> {
     let error = descriptor.errors.iter().position(|bit| bit.clock == clock).map(Single::Error);
     error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
 }
@@ -96,7 +96,7 @@ pub(super) fn end(layout: &Layout) -> u8 {
 
 /// Returns whether the end of the area affects the frame.
 const fn area_counts(descriptor: &Descriptor) -> bool {
-    descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
+    descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
 /// Returns the frame with a part moved from one clock to another, which may be invalid, or `None` if it cannot be
@@ -181,7 +181,7 @@ fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Optio
 
 /// Moves a bit to another clock, swapping it with any bit already at that clock.
 fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
-    let other = single_on(descriptor, to);
+    let other = single_bit_at(descriptor, to);
     set(descriptor, single, to);
     if let Some(other) = other {
         set(descriptor, other, at);

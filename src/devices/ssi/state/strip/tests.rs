@@ -38,14 +38,14 @@ fn layouts() -> impl Strategy<Value = Layout> {
     ];
     let code =
         prop_oneof![3 => Just(Code::Binary), 3 => Just(Code::Gray), 1 => Just(Code::GrayExcess), 1 => Just(Code::Bcd)];
-    let coded = prop_oneof![3 => Just(Coded::Position), 1 => Just(Coded::Area), 1 => Just(Coded::AreaAndErrors)];
+    let coded = prop_oneof![3 => Just(GrayCoverage::Position), 1 => Just(GrayCoverage::Area), 1 => Just(GrayCoverage::AreaAndErrors)];
     let zeros = (0..6_u8, 0..4_u8, 0..6_u8, 0..4_u8);
     let bits = (prop::collection::vec(0..20_u8, 0..4), prop::option::of((0..20_u8, any::<bool>())));
     let rest = (any::<bool>(), any::<bool>(), prop::option::of((0..3_u8, 0..3_u8)));
     (range, code, coded, zeros, bits, rest).prop_filter_map(
         "cannot work",
         |(range, code, coded, (lead, between, tail, late), (errors, parity), (shift_right, inverted, twice))| {
-            let bits = crate::devices::ssi::protocol::Coding::new(code, range.last().ok()?).ok()?.bits();
+            let bits = crate::devices::ssi::protocol::PositionCode::new(code, range.last().ok()?).ok()?.bits();
             let between = if matches!(range, Range::Bits { multiturn: 1.., singleturn: 1.. }) { between } else { 0 };
             let needed = lead + between + bits;
             let area = needed + tail;
@@ -76,7 +76,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
 /// Returns the frame without an area that has no effect: here it is the whole word.
 fn without_area(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
-    if !descriptor.shift_right && descriptor.coded == Coded::Position {
+    if !descriptor.shift_right && descriptor.coded == GrayCoverage::Position {
         descriptor.area = descriptor.word();
     }
     descriptor

@@ -2,7 +2,7 @@
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Coded, Meaning, Role};
+use crate::devices::ssi::protocol::{GrayCoverage, Meaning, Role};
 use crate::devices::ssi::state::TEXTS;
 
 /// Returns the content of a clock as a sentence that names the clock.
@@ -88,7 +88,7 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
         Handle::TurnsEnd => "ssi.strip_turns_end",
         Handle::BetweenEnd => "ssi.strip_between_end",
         Handle::StepsEnd => "ssi.strip_steps_end",
-        Handle::AreaEnd if strip.layout().descriptor().coded == Coded::Position => "ssi.strip_shifted_end",
+        Handle::AreaEnd if strip.layout().descriptor().coded == GrayCoverage::Position => "ssi.strip_shifted_end",
         Handle::AreaEnd => "ssi.strip_coded_end",
         Handle::WordEnd => "ssi.strip_word_end",
         Handle::GapEnd => "ssi.strip_gap_end",

@@ -26,9 +26,9 @@ use crate::devices::ssi::protocol::{Meaning, Role as Carries};
 use crate::devices::ssi::state::strip::{self, CellState, Handle, Strip};
 use crate::ui::Theme;
 
-pub(super) use paint::ink as field_ink;
+pub(super) use paint::display_colour as field_ink;
 
-use names::Tag;
+use names::NameTag;
 use rows::Rows;
 
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +90,7 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     view.fields(&tags);
     let pressed = view.press(&tags);
     view.paint(&tags);
-    let moved = if model.movable { grips::grips(&view, drag) } else { None };
+    let moved = if model.movable { grips::draw_handles(&view, drag) } else { None };
     moved.or(pressed).or(chosen)
 }
 
@@ -165,7 +165,7 @@ impl StripContext<'_> {
         }
     }
 
-    fn press(&self, tags: &[Tag]) -> Option<StripEvent> {
+    fn press(&self, tags: &[NameTag]) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let mut event = None;
         for tag in tags {
@@ -190,7 +190,7 @@ impl StripContext<'_> {
     }
 
     /// Registers the field labels for screen readers.
-    fn fields(&self, tags: &[Tag]) {
+    fn fields(&self, tags: &[NameTag]) {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
             let (run, _) = names::widest(self.rows, field);

@@ -25,7 +25,7 @@ use crate::devices::ssi::state::timing::{Diagram, skipped_operations};
 use crate::ui::Theme;
 
 use axis::Axis;
-use place::{Bar, Flag, Put};
+use place::{Bar, LabelExtent, LabelPlacement};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
@@ -75,7 +75,8 @@ fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
     flags.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let sizes: Vec<Flag> = flags.iter().map(|(x, galley, _)| Flag { x: *x, width: galley.size().x }).collect();
+    let sizes: Vec<LabelExtent> =
+        flags.iter().map(|(x, galley, _)| LabelExtent { x: *x, width: galley.size().x }).collect();
     let flags_put = place::flags(&sizes, (0.0, width));
 
     let bars = diagram.spans().iter().map(|span| caption(&diagram.words(span), text));
@@ -84,7 +85,7 @@ fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let sizes = ends.zip(&bars).map(|(ends, galley)| Bar { ends, width: galley.size().x });
     let bars_put = place::bars(&sizes.collect::<Vec<_>>(), (0.0, width));
 
-    let count = |put: &[Put]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
+    let count = |put: &[LabelPlacement]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
     let values: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
@@ -102,7 +103,7 @@ fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
         for (galley, row) in lines.into_iter().zip([rows.clock, rows.data]) {
             painter.galley(pos2(outer.left(), row.center() - galley.size().y / 2.0), galley, muted);
         }
-        picture.guides(&flags, &flags_put);
+        picture.draw_guides(&flags, &flags_put);
         picture.clock(outer.left() + gutter);
         picture.data(outer.left() + gutter);
         picture.names();
@@ -147,7 +148,7 @@ impl Picture<'_> {
     }
 
     /// Draws the labels of moments and breaks, and a vertical line through all rows for each moment.
-    fn guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[Put]) {
+    fn draw_guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[LabelPlacement]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
             let at = pos2(self.left + put.left, top);
@@ -271,7 +272,7 @@ impl Picture<'_> {
     }
 
     /// Draws each time as a bar with end marks, dashed between its earliest and latest end.
-    fn bars(&self, words: &[Arc<Galley>], put: &[Put]) {
+    fn bars(&self, words: &[Arc<Galley>], put: &[LabelPlacement]) {
         let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {
             let y = self.rows.lanes + (put.level as f32 + 0.5) * LANE;

@@ -19,17 +19,17 @@ fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 #[test]
 fn limits_are_confirmed_with_the_scale_of_the_drive() {
     let (mut axis, mut seen) = until_jog();
-    press(&mut axis, &mut seen, Button::Take);
+    press(&mut axis, &mut seen, AxisButton::Take);
     assert_eq!(axis.may_move(&seen), Ok(()));
     // Another master has changed the scale.
     seen.scale = Some(PositionScale::FACTORY);
     back_to(&mut axis, &seen, AxisStep::Scale);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_scale");
-    press(&mut axis, &mut seen, Button::Do);
+    press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Confirm);
     assert!(axis.check_can_continue(&seen).is_err(), "what was confirmed before was for another scale");
     // Locked, although it was confirmed once: the lock counts.
-    press(&mut axis, &mut seen, Button::Confirm);
+    press(&mut axis, &mut seen, AxisButton::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
     seen.locks = vec![Lock::LimitsUnconfirmed];
     back_to(&mut axis, &seen, AxisStep::Confirm);
@@ -78,14 +78,14 @@ fn steps_after_a_changed_value_are_undone() {
         assert_eq!((axis.invalidated_text(), done(&axis)), (Some(falls), falls.index()), "{label}");
         assert!(axis.outcome(TestTarget::Middle).is_none(), "{label}");
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
-        assert!(axis.ask(Button::Go(TestTarget::Upper), &seen).is_err(), "{label}");
+        assert!(axis.ask(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
     // The same by the run itself: back to the reference, 13.44 mm from the one before. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
     (0..3).for_each(|_| axis.back(&seen));
     assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
     axis.edit(Entries { reference: "15".to_owned(), ..axis.entries().clone() });
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::SetPosition(1472));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::SetPosition(1472));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
@@ -96,7 +96,7 @@ fn steps_after_a_changed_value_are_undone() {
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, AxisStep::Upper);
     assert!(axis.outcome(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
+    assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.invalidated_text(), None, "the review of their plan confirms them");
     // Going back to look, and forward again, loses nothing.
@@ -112,7 +112,7 @@ fn steps_after_a_changed_value_are_undone() {
 #[test]
 fn only_motion_while_the_pad_is_held_is_a_jog() {
     let (mut axis, mut seen) = until_jog();
-    press(&mut axis, &mut seen, Button::Take);
+    press(&mut axis, &mut seen, AxisButton::Take);
     for position in [0, 5000, -5000, 0] {
         at(&mut seen, position);
         axis.look(&seen);
@@ -152,11 +152,11 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     };
     // Nothing was marked: the user has to state it, and the result says so.
     let (mut axis, mut seen) = until_power();
-    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
+    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
     assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
-    press(&mut axis, &mut seen, Button::Restarted);
+    press(&mut axis, &mut seen, AxisButton::Restarted);
     assert!(
         axis.survived() && found(&axis, &seen).contains("You confirmed the power-off. The program did not detect it"),
         "{}",
@@ -164,10 +164,10 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     );
     // It was marked, and still is: the user cannot state the opposite.
     let (mut axis, mut seen) = until_power();
-    press(&mut axis, &mut seen, Button::Do);
+    press(&mut axis, &mut seen, AxisButton::Do);
     again(&mut axis, &seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.not_restarted");
-    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     // Then it really is off.
     axis.lose();
     seen.values.insert(182, 1000);
@@ -177,7 +177,7 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let (mut axis, mut seen) = until_power();
     seen.values.insert(182, 500);
     axis.look(&seen);
-    assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), "hd_axis.already");
+    assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
@@ -188,17 +188,17 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
 #[test]
 fn a_fault_is_shown_and_can_be_acknowledged() {
     let (axis, mut seen) = until_test();
-    assert_eq!(axis.ask(Button::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
+    assert_eq!(axis.ask(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
     // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
     for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
-        seen.actual = seen.actual.map(|actual| Actual { status: StatusWord::new(word), ..actual });
+        seen.actual = seen.actual.map(|actual| ActualValues { status: StatusWord::new(word), ..actual });
         seen.error = None;
         assert_eq!(words::fault(&seen).unwrap().id(), "hd_axis.fault_unread");
         seen.error = Some(ErrorCode::BLOCK_REVERSE);
         assert!(words::fault(&seen).unwrap().words(Language::English).starts_with("Fault 8300: "));
         assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(Button::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(Button::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
+        assert_eq!(axis.ask(AxisButton::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
+        assert_eq!(axis.ask(AxisButton::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
     }
 }
 
@@ -207,7 +207,7 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
 #[test]
 fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
-    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+    assert_eq!(axis.ask(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
     seen.unsaved = BTreeMap::from([(154, 256), (156, 1), (158, -1000), (198, 0)]);
     let told = words::differences(&seen).unwrap().words(Language::English);
@@ -220,7 +220,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
         "{told}"
     );
     let back = vec![(154, 256), (156, 1)];
-    assert_eq!(axis.ask(Button::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
+    assert_eq!(axis.ask(AxisButton::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
     axis.begin(DriveRequest::Restore(back), &seen);
     axis.written();
     let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().words(Language::English);
@@ -228,21 +228,25 @@ fn differences_from_saved_values_are_shown_and_restored() {
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
-    let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
+    let told = words::unrestored_position_text(&axis, &seen).unwrap().words(Language::English);
     assert!(
         told.starts_with(
             "The previous position (parameter 198) is not restored, because it would set a wrong zero point"
         ),
         "{told}"
     );
-    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
+    assert_eq!(
+        axis.ask(AxisButton::Recall, &seen).unwrap_err().id(),
+        "hd_axis.place_left",
+        "and not that nothing differs"
+    );
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
     let text = report(&axis, &seen, &device, Language::German).unwrap();
     assert!(text.contains("Die vorherige Position (Parameter 198) wird nicht wiederhergestellt"), "{text}");
     seen.values.insert(198, 0);
-    assert_eq!(words::place_left(&axis, &seen), None);
-    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+    assert_eq!(words::unrestored_position_text(&axis, &seen), None);
+    assert_eq!(axis.ask(AxisButton::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
 /// Issue 21.6 (f): an unconfirmed pitch is no spindle: 65536 steps per turn stay steps until there is one.
@@ -250,7 +254,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
 fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &DriveFacts| words::millimetres(seen.ruler(), 400).words(Language::English);
-    press(&mut axis, &mut seen, Button::Do);
+    press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Scale);
     // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.
     seen.scale = PositionScale::new(400, 256).ok();

@@ -12,7 +12,7 @@ const MOVES: u16 = 0x0A37;
 /// A reading at that moment of the session.
 fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
     at(seen, position);
-    seen.actual = seen.actual.map(|own| Actual { status: StatusWord::new(word), ..own });
+    seen.actual = seen.actual.map(|own| ActualValues { status: StatusWord::new(word), ..own });
     seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
 }
 
@@ -79,7 +79,7 @@ fn a_known_position_change_is_not_a_jump() {
     let (mut axis, mut seen) = at_standstill();
     (0..3).for_each(|_| axis.back(&seen));
     axis.edit(Entries { reference: "1".to_owned(), ..axis.entries().clone() });
-    press(&mut axis, &mut seen, Button::Do);
+    press(&mut axis, &mut seen, AxisButton::Do);
     read(&mut seen, 10_020, 128, STANDS);
     axis.look(&seen);
     next(&mut axis, &seen, AxisStep::Lower);

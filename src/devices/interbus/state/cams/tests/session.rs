@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 use crate::app::PendingEdits;
-use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
+use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, pulled};
 use crate::devices::interbus::state::staged::{Edit, Staged};
@@ -225,7 +225,7 @@ fn chart_and_table_agree_after_ten_thousand_edits() {
                 zero_shift: 0,
             });
             image.programs = [Some(Program { cams: [Some(none); 8], mask: 0 }); 8];
-            let mut staged = Staged::of_profile(image, Names::default());
+            let mut staged = Staged::for_profile(image, CamNames::default());
             let mut model = Model { range, past: vec![[[(0, 1, false); 8]; 8]], at: 0 };
             for (count, step) in steps.iter().enumerate() {
                 play_event(&mut staged, step, range);

@@ -7,13 +7,13 @@ use super::LanePainter;
 use super::paint::Grip;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::Cam;
-use crate::devices::interbus::state::cams::{Hold, Lane, Stretch, words};
+use crate::devices::interbus::state::cams::{DragTarget, Lane, Stretch, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl LanePainter<'_> {
     /// Draws all handles and returns the user's action. Handles stay grabbable at the positions they had before the
     /// drag.
-    pub(super) fn grips(&self, drag: Option<Drag>) -> Option<CamEvent> {
+    pub(super) fn draw_handles(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
             event = self.switch(lane).or(event);
@@ -32,7 +32,7 @@ impl LanePainter<'_> {
         let draws = self.model.movable && !lane.on;
         let sense = if draws { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(self.place.lane(lane.cam), id, sense);
-        let hold = Hold::New(lane.cam);
+        let hold = DragTarget::New(lane.cam);
         let event = self.pulled(&response, hold, drag).filter(|_| draws);
         if draws && response.hovered() {
             self.ui.set_cursor_icon(CursorIcon::Crosshair);
@@ -48,7 +48,7 @@ impl LanePainter<'_> {
     fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let stretches = lane.stretches(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
-        let hold = Hold::Whole(lane.cam);
+        let hold = DragTarget::Whole(lane.cam);
         let mut event = None;
         for stretch in &stretches {
             let is_widest = Some(*stretch) == widest;
@@ -95,7 +95,7 @@ impl LanePainter<'_> {
     }
 
     fn edge(&self, lane: &Lane, cam: Cam, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
-        let hold = Hold::Edge(lane.cam, edge);
+        let hold = DragTarget::Edge(lane.cam, edge);
         let (rect, x) = self.grip(cam, lane, edge)?;
         let shown = self.place.shows(x);
         let id = self.base.with("edge").with(hold);
@@ -171,7 +171,7 @@ impl LanePainter<'_> {
     }
 
     /// Handles the pointer, and returns the drag preview or its result.
-    fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
+    fn pulled(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
         }

@@ -8,7 +8,7 @@ use super::LanePainter;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::cams::{Lane, OutputState, words};
 use crate::devices::interbus::views::say;
-use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, ink};
+use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, display_colour};
 use crate::ui::widgets::focus_ring;
 use crate::ui::{controls, icons};
 
@@ -124,7 +124,7 @@ impl LanePainter<'_> {
         });
         let painter = self.ui.painter();
         let middle = pos2(rect.right() - 9.0, rect.center().y);
-        let colour = ink(theme, lane.cam);
+        let colour = display_colour(theme, lane.cam);
         match lamp.lit() {
             Some(true) => {
                 painter.circle_filled(middle, 8.0, colour.gamma_multiply(0.25));

@@ -5,9 +5,9 @@ use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, 
 use super::LanePainter;
 use crate::devices::interbus::profile::{Edge, Scale, Unit};
 use crate::devices::interbus::protocol::CamNumber;
-use crate::devices::interbus::state::cams::{Hold, Lane, Tick, ticks, words};
-use crate::devices::interbus::views::widgets::cam_chart::{Drag, ink};
-use crate::ui::widgets::{focus_ring, hatch};
+use crate::devices::interbus::state::cams::{DragTarget, Lane, Tick, ticks, words};
+use crate::devices::interbus::views::widgets::cam_chart::{Drag, display_colour};
+use crate::ui::widgets::{draw_hatching, focus_ring};
 
 /// Minimum distance between ruler numbers, in points.
 const APART: f64 = 64.0;
@@ -49,7 +49,7 @@ impl LanePainter<'_> {
     /// Draws grid lines and numbers: steps above, machine units below.
     fn rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
-        let apart = APART * place.steps_in_point();
+        let apart = APART * place.steps_per_point();
         let lines = |scale: &Scale| ticks(scale, &place.view, model.chart.range, apart);
         let plain = Scale::default();
         let has_units = model.scale.unit() != Unit::Steps;
@@ -81,7 +81,7 @@ impl LanePainter<'_> {
 
     fn cam(&self, painter: &Painter, lane: &Lane) {
         let (theme, place) = (self.theme, self.place);
-        let colour = ink(theme, lane.cam);
+        let colour = display_colour(theme, lane.cam);
         let range = self.shown.range;
         for stretch in lane.stretches(range) {
             let Some(bar) = place.bar(lane.cam, stretch) else { continue };
@@ -89,7 +89,7 @@ impl LanePainter<'_> {
             if lane.on {
                 painter.rect_filled(bar, corners, colour.gamma_multiply(0.42));
                 if lane.clashes {
-                    hatch(painter, theme, bar, theme.palette.bad.into());
+                    draw_hatching(painter, theme, bar, theme.palette.bad.into());
                 }
                 let edge = if lane.clashes { theme.palette.bad.into() } else { colour };
                 painter.rect_stroke(bar, corners, Stroke::new(1.5, edge), StrokeKind::Inside);
@@ -113,7 +113,7 @@ impl LanePainter<'_> {
             let lane = place.lane(lane.cam).shrink2(Vec2::new(0.0, 3.0));
             let x = place.x(f64::from(range)).min(place.plot.right());
             let end = Rect::from_x_y_ranges(x - BEYOND..=x, lane.y_range());
-            hatch(painter, theme, end, theme.palette.bad.into());
+            draw_hatching(painter, theme, end, theme.palette.bad.into());
             painter.rect_stroke(end, CornerRadius::ZERO, Stroke::new(1.0, theme.palette.bad), StrokeKind::Inside);
         }
     }
@@ -154,7 +154,7 @@ impl LanePainter<'_> {
         let (theme, place) = (self.theme, self.place);
         let lane = place.lane(drag.hold.cam());
         let x = match drag.hold {
-            Hold::Edge(_, Edge::Stop) => place.x(f64::from(to.stop.get()) + 1.0),
+            DragTarget::Edge(_, Edge::Stop) => place.x(f64::from(to.stop.get()) + 1.0),
             _ => place.x(f64::from(to.start.get())),
         };
         let painter = self.ui.painter();

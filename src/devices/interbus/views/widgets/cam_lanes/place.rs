@@ -48,7 +48,7 @@ impl PlotArea {
         }
     }
 
-    pub(super) fn steps_in_point(&self) -> f64 {
+    pub(super) fn steps_per_point(&self) -> f64 {
         self.view.span() / f64::from(self.plot.width().max(1.0))
     }
 

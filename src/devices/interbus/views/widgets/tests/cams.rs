@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::devices::interbus::profile::{Direction, Image, Names, Parameters, Scale};
+use crate::devices::interbus::profile::{CamNames, Direction, Image, Parameters, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange};
 use crate::devices::interbus::state::staged::{Edit, Staged};
@@ -38,7 +38,7 @@ fn edges(start: u32, stop: u32) -> Cam {
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = Staged::of_profile(Image::of(parameters), Names::default());
+    let mut staged = Staged::for_profile(Image::of(parameters), CamNames::default());
     for (number, start, stop, on) in [(0, 100, 299, true), (3, 900, 49, true), (4, 600, 700, false)] {
         staged.edit(&Edit::Cam { program: program(), cam: cam(number), start, stop, on }).unwrap();
     }

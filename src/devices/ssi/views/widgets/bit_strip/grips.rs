@@ -18,7 +18,7 @@ const SECOND_TAB: f32 = 8.0;
 /// Fraction at each end of a field that does not drag the field as a whole.
 const ENDS: f32 = 0.25;
 
-pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
+pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
     for handle in model.strip.strip_handles() {

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
 use crate::ui::{Theme, controls};
 
-pub(super) struct Tag {
+pub(super) struct NameTag {
     /// Index of the named field in the strip.
     pub(super) field: usize,
     line: usize,
@@ -46,7 +46,7 @@ struct OverflowingName {
 
 impl OverflowingName {
     /// Moves the name to a free spot beside the names already placed.
-    fn placed(self, tags: &[Tag]) -> Tag {
+    fn placed(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
         let is_in = (-APART..=self.room + APART - width).contains(&middle);
@@ -64,19 +64,19 @@ impl OverflowingName {
             (left, free.or_else(apart).unwrap_or(LEVELS))
         };
         let leader = Some(self.x).filter(|_| level > 0);
-        Tag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
+        NameTag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
     }
 
     /// Returns whether the name would overlap no other name at the given offset and level.
-    fn is_apart(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+    fn is_apart(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
-        own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
+        own.map(NameTag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
     }
 
     /// Returns whether the name would overlap no other name, cross no leader line of a lower name, and have a clear
     /// path for its own leader line.
-    fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+    fn is_free(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
         let crossed = others.any(|tag| {
@@ -91,7 +91,7 @@ impl OverflowingName {
     }
 }
 
-impl Tag {
+impl NameTag {
     fn span(&self) -> (f32, f32) {
         (self.left, self.left + self.galley.size().x)
     }
@@ -119,7 +119,7 @@ pub(super) fn tags(
     strip: &Strip,
     rows: &Rows,
     meaning_of: impl Fn(&Field) -> Option<Meaning>,
-) -> (Vec<Tag>, Vec<usize>) {
+) -> (Vec<NameTag>, Vec<usize>) {
     let galley = |own: &Field, words: String| {
         let size = theme.sizes.caption;
         let (font, words) = match meaning_of(own) {
@@ -130,7 +130,7 @@ pub(super) fn tags(
         job.wrap = TextWrapping::truncate_at_width(WIDEST);
         ui.painter().layout_job(job)
     };
-    let mut tags: Vec<Tag> = Vec::new();
+    let mut tags: Vec<NameTag> = Vec::new();
     let mut narrow = Vec::new();
     for (index, own) in strip.fields().iter().enumerate() {
         let (run, line) = widest(rows, own);
@@ -139,7 +139,7 @@ pub(super) fn tags(
         match fits {
             Some(galley) => {
                 let left = run.center().x - galley.size().x / 2.0;
-                tags.push(Tag { field: index, line, level: 0, left, leader: None, galley });
+                tags.push(NameTag { field: index, line, level: 0, left, leader: None, galley });
             }
             None => narrow.push((index, own, run, line)),
         }

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 
 use super::grips::{edge, tab};
-use super::names::{Tag, verdict, widest};
+use super::names::{NameTag, verdict, widest};
 use super::rows::Rows;
 use super::{Drag, StripContext, tells};
 use crate::devices::ssi::protocol::Meaning;
@@ -12,7 +12,7 @@ use crate::ui::widgets::{BitCell, focus_ring, series};
 use crate::ui::{Theme, controls};
 
 /// Returns the colour of a field; zeros are muted.
-pub(crate) fn ink(theme: &Theme, kind: Kind) -> Color32 {
+pub(crate) fn display_colour(theme: &Theme, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => theme.palette.muted.into(),
         Kind::Turns => series(theme, 0),
@@ -28,7 +28,7 @@ fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
 }
 
 impl StripContext<'_> {
-    pub(super) fn paint(&self, tags: &[Tag]) {
+    pub(super) fn paint(&self, tags: &[NameTag]) {
         let painter = self.ui.painter();
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
@@ -61,7 +61,7 @@ impl StripContext<'_> {
         let shown = self.shown_at(clock);
         let cell_meaning = shown.and_then(|cell| cell.tells);
         let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
-        let ink = cell_meaning.map_or_else(|| ink(theme, field.kind), |meaning| colour(theme, meaning));
+        let ink = cell_meaning.map_or_else(|| display_colour(theme, field.kind), |meaning| colour(theme, meaning));
         let bit = shown.map(|cell| cell.bit);
         BitCell { ink, bit, blank: &blank, alarm: cell_meaning.is_some() }.paint(painter, theme, cell);
         let is_selected = self.model.selected == Some(clock);
@@ -72,7 +72,7 @@ impl StripContext<'_> {
 
     /// Draws the bracket below a field's cells, thick if the field can be moved as a whole.
     fn bracket(&self, field: &Field, lane: Rect) {
-        let ink = ink(self.theme, field.kind);
+        let ink = display_colour(self.theme, field.kind);
         let is_moved = self.model.movable
             && (field.is_single() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
         let stroke = Stroke::new(if is_moved { 3.0 } else { 1.0 }, ink);

@@ -1,13 +1,13 @@
 //! Placement of labels without overlaps: labels of moments above their lines, labels of times next to theirs.
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Flag {
+pub(super) struct LabelExtent {
     pub(super) x: f32,
     pub(super) width: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Put {
+pub(super) struct LabelPlacement {
     pub(super) level: usize,
     pub(super) left: f32,
 }
@@ -17,19 +17,19 @@ const APART: f32 = 6.0;
 
 /// Places the labels of moments on as few lines as possible, so that no label overlaps another or crosses the line of a
 /// higher one. Labels that cannot be separated get lines of their own.
-pub(super) fn flags(flags: &[Flag], (from, to): (f32, f32)) -> Vec<Put> {
+pub(super) fn flags(flags: &[LabelExtent], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     for levels in 1..=flags.len() {
         let mut put = Vec::new();
         if fill(flags, (from, to), levels, &mut put) {
             return put;
         }
     }
-    let left = |flag: &Flag| (flag.x + APART).min(to - flag.width).max(from);
-    flags.iter().enumerate().map(|(level, flag)| Put { level, left: left(flag) }).collect()
+    let left = |flag: &LabelExtent| (flag.x + APART).min(to - flag.width).max(from);
+    flags.iter().enumerate().map(|(level, flag)| LabelPlacement { level, left: left(flag) }).collect()
 }
 
 /// Places the remaining labels and returns whether all of them fit.
-fn fill(flags: &[Flag], (from, to): (f32, f32), levels: usize, put: &mut Vec<Put>) -> bool {
+fn fill(flags: &[LabelExtent], (from, to): (f32, f32), levels: usize, put: &mut Vec<LabelPlacement>) -> bool {
     let Some(flag) = flags.get(put.len()) else { return true };
     let right = flag.x + APART;
     let before = flag.x - APART - flag.width;
@@ -37,7 +37,7 @@ fn fill(flags: &[Flag], (from, to): (f32, f32), levels: usize, put: &mut Vec<Put
     for level in 0..levels {
         for left in [right, before, clamped] {
             let is_in = left >= from && left + flag.width <= to.max(from + flag.width);
-            let own = Put { level, left };
+            let own = LabelPlacement { level, left };
             let agrees = flags.iter().zip(&*put).all(|(other, at)| agree((flag, &own), (other, at)));
             if is_in && agrees {
                 put.push(own);
@@ -51,9 +51,9 @@ fn fill(flags: &[Flag], (from, to): (f32, f32), levels: usize, put: &mut Vec<Put
     false
 }
 
-fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
+fn agree((a, at): (&LabelExtent, &LabelPlacement), (b, bt): (&LabelExtent, &LabelPlacement)) -> bool {
     let over = at.left < bt.left + b.width + APART && bt.left < at.left + a.width + APART;
-    let crosses = |higher: &Flag, lower: &Flag, put: &Put| {
+    let crosses = |higher: &LabelExtent, lower: &LabelExtent, put: &LabelPlacement| {
         put.left - APART / 2.0 < higher.x && higher.x < put.left + lower.width + APART / 2.0
     };
     match at.level.cmp(&bt.level) {
@@ -70,7 +70,7 @@ pub(super) struct Bar {
 }
 
 /// Places times on lanes. Each label starts within its bar if it fits, otherwise beside it.
-pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<Put> {
+pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
     for bar in bars {
@@ -89,7 +89,7 @@ pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<Put> {
         });
         let (level, _, left) = free.next().unwrap_or((bars.len(), true, from));
         taken.push((level, begin.min(left), end.max(left + bar.width)));
-        put.push(Put { level, left });
+        put.push(LabelPlacement { level, left });
     }
     put
 }
@@ -99,30 +99,33 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn flag((x, width): (f32, f32)) -> Flag {
-        Flag { x, width }
+    fn flag((x, width): (f32, f32)) -> LabelExtent {
+        LabelExtent { x, width }
     }
 
     #[test]
     fn labels_of_moments_are_next_to_their_lines() {
         let two = [flag((10.0, 80.0)), flag((300.0, 60.0))];
-        assert_eq!(flags(&two, (0.0, 400.0)), [Put { level: 0, left: 16.0 }, Put { level: 0, left: 306.0 }]);
+        assert_eq!(
+            flags(&two, (0.0, 400.0)),
+            [LabelPlacement { level: 0, left: 16.0 }, LabelPlacement { level: 0, left: 306.0 }]
+        );
         // At the end there is only space before the line.
-        assert_eq!(flags(&two[1..], (0.0, 350.0)), [Put { level: 0, left: 234.0 }]);
+        assert_eq!(flags(&two[1..], (0.0, 350.0)), [LabelPlacement { level: 0, left: 234.0 }]);
     }
 
     #[test]
     fn durations_are_placed_in_lanes() {
         let bar = |begin, end, width| Bar { ends: (begin, end), width };
         let put = bars(&[bar(0.0, 200.0, 100.0), bar(200.0, 210.0, 50.0), bar(0.0, 5.0, 40.0)], (0.0, 300.0));
-        let expected = [(0, 50.0), (0, 216.0), (1, 11.0)].map(|(level, left)| Put { level, left });
+        let expected = [(0, 50.0), (0, 216.0), (1, 11.0)].map(|(level, left)| LabelPlacement { level, left });
         assert_eq!(put, expected);
     }
 
     proptest! {
         #[test]
         fn labels_of_moments_never_overlap(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
-            let all: Vec<Flag> = places.into_iter().map(flag).collect();
+            let all: Vec<LabelExtent> = places.into_iter().map(flag).collect();
             let put = flags(&all, (0.0, 520.0));
             for (one, (a, at)) in all.iter().zip(&put).enumerate() {
                 prop_assert!(at.left >= 0.0 && at.left + a.width <= 520.0);
@@ -138,7 +141,7 @@ mod tests {
             let bar = |(a, b, width): &(f32, f32, f32)| Bar { ends: (a.min(*b), a.max(*b)), width: *width };
             let all: Vec<Bar> = ends.iter().map(bar).collect();
             let put = bars(&all, (0.0, 500.0));
-            let span = |bar: &Bar, put: &Put| (bar.ends.0.min(put.left), bar.ends.1.max(put.left + bar.width));
+            let span = |bar: &Bar, put: &LabelPlacement| (bar.ends.0.min(put.left), bar.ends.1.max(put.left + bar.width));
             for (one, (a, at)) in all.iter().zip(&put).enumerate() {
                 let (from, to) = span(a, at);
                 for (b, bt) in all.iter().zip(&put).skip(one + 1) {
