@@ -221,7 +221,7 @@ impl AllowedValues {
 
 impl Limit {
     /// Creates a number from its value in thousandths.
-    pub const fn thousandths(thousandths: i128) -> Self {
+    pub const fn from_thousandths(thousandths: i128) -> Self {
         Limit { thousandths }
     }
 
@@ -264,10 +264,10 @@ mod tests {
             (AllowedValues::words(&["auto", "on", "off"]), "auto, on or off"),
             (AllowedValues::range(Quantity::Milliseconds, 0, 2000), "a time in milliseconds from 0 to 2000"),
             (
-                AllowedValues::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
+                AllowedValues::range(Quantity::Volts, Limit::from_thousandths(4750), Limit::from_thousandths(12_500)),
                 "a voltage in volts from 4.75 to 12.5",
             ),
-            (AllowedValues::Seconds { low: Limit::thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
+            (AllowedValues::Seconds { low: Limit::from_thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
             (AllowedValues::BusAddress { last: 0x5F }, "an address from 0x40 to 0x5F"),
         ];
         for (expected, words) in cases {

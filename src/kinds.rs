@@ -26,7 +26,7 @@ pub fn program() -> Program {
 }
 
 /// Returns the virtual devices that can be attached to the virtual adapter. Those that take a speed (`rpm`) come last.
-pub fn at_adapter() -> &'static [&'static dyn AttachableKind] {
+pub fn attachable_kinds() -> &'static [&'static dyn AttachableKind] {
     static DEVICES: OnceLock<Vec<&'static dyn AttachableKind>> = OnceLock::new();
     DEVICES.get_or_init(|| {
         let mut devices: Vec<_> = KINDS.iter().filter_map(|kind| kind.at_adapter).collect();

@@ -14,7 +14,7 @@ pub struct Moment(Duration);
 impl Moment {
     pub const START: Moment = Moment(Duration::ZERO);
 
-    pub const fn after_start(elapsed: Duration) -> Self {
+    pub const fn from_elapsed(elapsed: Duration) -> Self {
         Moment(elapsed)
     }
 

@@ -120,7 +120,7 @@ impl AnglePath {
 
     /// Records a direction that has become apparent or has changed at the angle `at`.
     fn turn_at(&mut self, at: UnwrappedAngle, direction: Direction) {
-        self.keep_ends();
+        self.update_extremes();
         if self.direction != Direction::Unknown {
             self.path += (at.periods() - self.turned.periods()).abs();
             self.turned = at;
@@ -142,12 +142,12 @@ impl AnglePath {
     }
 
     fn end_stretch(&mut self) {
-        self.keep_ends();
+        self.update_extremes();
         self.path += (self.here.periods() - self.turned.periods()).abs();
         self.travel += self.here.periods() - self.begun.periods();
     }
 
-    fn keep_ends(&mut self) {
+    fn update_extremes(&mut self) {
         self.top = if self.high.is_ahead_of(&self.top) { self.high } else { self.top };
         self.bottom = if self.bottom.is_ahead_of(&self.low) { self.low } else { self.bottom };
     }

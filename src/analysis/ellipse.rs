@@ -139,7 +139,7 @@ impl Ellipse {
             let Ok(better) = solve(&moved) else { break };
             (moments, found) = (moved, better);
         }
-        Ok(moments.in_volts(&found))
+        Ok(moments.ellipse_in_volts(&found))
     }
 
     pub fn at(&self, angle: f64) -> (f64, f64) {
@@ -158,7 +158,7 @@ impl Ellipse {
 
     /// Returns the given number of points of the outline as (cosine, sine) in volts, with the first point repeated at
     /// the end.
-    pub fn outline(&self, points: usize) -> Vec<(f64, f64)> {
+    pub fn outline_points(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
             let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
             (cosine, sine)

@@ -136,7 +136,7 @@ impl SampleDensity {
     }
 
     /// Returns the number of samples in the fullest cell.
-    pub fn most(&self) -> u32 {
+    pub fn max_count(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
@@ -211,7 +211,7 @@ mod tests {
             assert_eq!((found, density.outside()), (cell, u64::from(cell.is_none())), "{sine} {cosine}");
         }
         density.add(&[f64::NAN, 0.1, f64::INFINITY], &[0.1, f64::NAN, 0.1]);
-        assert_eq!((density.invalid_count(), density.most()), (3, 0));
+        assert_eq!((density.invalid_count(), density.max_count()), (3, 0));
     }
 
     #[test]
@@ -236,7 +236,7 @@ mod tests {
         near(lengths[18], 0.4, 0.5);
         near(lengths[40], 0.5, 0.65);
         near(lengths[60], 0.5, 2.0);
-        assert_eq!((density.outside(), density.most() > 1), (1, true));
+        assert_eq!((density.outside(), density.max_count() > 1), (1, true));
         density.clear();
         assert_eq!(density.vector_lengths()[0], VectorLengths { least_v: f64::INFINITY, most_v: 0.0 });
     }

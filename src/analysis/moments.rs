@@ -153,7 +153,7 @@ impl Moments {
     }
 
     /// Converts an ellipse found at the moments' scale to volts.
-    pub(super) fn in_volts(&self, ellipse: &Ellipse) -> Ellipse {
+    pub(super) fn ellipse_in_volts(&self, ellipse: &Ellipse) -> Ellipse {
         Ellipse {
             amplitude_v: ellipse.amplitude_v * self.scale.unit,
             offset_cosine_v: ellipse.offset_cosine_v * self.scale.unit + self.scale.x,

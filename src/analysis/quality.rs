@@ -114,7 +114,7 @@ impl Limits {
 
     /// Judges the length of a single amplitude vector; `None` without a signal. A single vector also contains offset
     /// and gain errors, so judge the minimum and maximum over a period.
-    pub fn vector(&self, sine: f64, cosine: f64) -> Option<Verdict> {
+    pub fn vector_verdict(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude_verdict(length)) }
     }
@@ -174,10 +174,10 @@ mod tests {
             (f64::NAN, 0.5, None),
         ];
         for (sine, cosine, expected) in cases {
-            assert_eq!(limits.vector(sine, cosine), expected, "{sine} {cosine}");
+            assert_eq!(limits.vector_verdict(sine, cosine), expected, "{sine} {cosine}");
         }
-        assert_eq!(Limits::AFS_AFM60.vector(0.0, 0.4), Some(Verdict::Ok));
-        assert_eq!(Limits::TTK70.vector(0.0, 0.4), Some(Verdict::Warn));
+        assert_eq!(Limits::AFS_AFM60.vector_verdict(0.0, 0.4), Some(Verdict::Ok));
+        assert_eq!(Limits::TTK70.vector_verdict(0.0, 0.4), Some(Verdict::Warn));
     }
 
     /// Section 1.

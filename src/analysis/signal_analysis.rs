@@ -113,7 +113,7 @@ impl Analysis {
     }
 
     /// Returns whether there are enough samples per period to track the angle, and therefore the frequency.
-    pub fn is_followed(&self) -> bool {
+    pub fn is_angle_tracked(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }
 }

@@ -53,8 +53,8 @@ mod tests {
     #[test]
     fn a_moment_keeps_its_nanoseconds() {
         let ten_days = Duration::new(864_000, 1);
-        assert_eq!(SampleTime::from(Moment::after_start(ten_days)).nanoseconds(), 864_000_000_000_001);
-        assert_eq!(SampleTime::from(Moment::after_start(Duration::MAX)).nanoseconds(), i64::MAX);
+        assert_eq!(SampleTime::from(Moment::from_elapsed(ten_days)).nanoseconds(), 864_000_000_000_001);
+        assert_eq!(SampleTime::from(Moment::from_elapsed(Duration::MAX)).nanoseconds(), i64::MAX);
     }
 
     #[test]

@@ -44,7 +44,7 @@ impl Studio {
             motion.stop();
         }
         if device.is_busy() || device.is_dirty() || device.has_recorded_much() {
-            let text = match (device.source(), device.is_dirty() && !device.keeps_edits()) {
+            let text = match (device.source(), device.is_dirty() && !device.preserves_edits()) {
                 (_, true) => "question.session_lost",
                 _ if device.is_busy() => "question.session_busy",
                 _ if !device.is_dirty() => "question.session_recording",
@@ -61,7 +61,7 @@ impl Studio {
 
     fn remove(&mut self, id: SessionId) {
         self.with_device(id, |device, services| {
-            device.leave_draft(services);
+            device.release_draft(services);
             device.let_go(JobState::Cancelled, services);
         });
         self.diverged.take_if(|diverged| diverged.session() == id);
@@ -75,7 +75,7 @@ impl Studio {
         let edits = self.devices.iter().any(|device| device.is_dirty());
         let recorded = self.devices.iter().any(|device| device.has_recorded_much());
         if busy || edits || recorded {
-            let lost = |device: &&AnyDevice| device.is_dirty() && !device.keeps_edits();
+            let lost = |device: &&AnyDevice| device.is_dirty() && !device.preserves_edits();
             let text = match self.devices.iter().map(Box::as_ref).find(lost) {
                 Some(device) => Text::new("question.session_lost").with("name", device.name()),
                 None if busy => Text::new("question.busy"),

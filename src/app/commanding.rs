@@ -65,7 +65,7 @@ impl Studio {
         let Some(tab) = self.device(target).map(AnyDevice::tab) else { return };
         self.show(tab, target);
         let Some(at) = self.devices.iter().position(|device| device.id() == target) else { return };
-        let taken = self.devices.get_mut(at).map(|device| device.adopt_body(body, &mut self.services));
+        let taken = self.devices.get_mut(at).map(|device| device.apply_profile(body, &mut self.services));
         if let Some(Err(error)) = taken {
             let place = self.device(id).map(AnyDevice::place).unwrap_or_default();
             let text = read_error(place.as_ref(), &ReadError::Profile(error), self.services.world.kinds);

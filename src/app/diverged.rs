@@ -110,7 +110,7 @@ impl ProfileConflict {
 
     /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot be
     /// overwritten, because its unknown content would be lost.
-    pub fn can_keep_mine(&self) -> bool {
+    pub fn can_overwrite_file(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
 
@@ -119,7 +119,7 @@ impl ProfileConflict {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
 
-    fn merged(&self, kinds: KindRegistry) -> Result<ProfileDocument, Text> {
+    fn merged_document(&self, kinds: KindRegistry) -> Result<ProfileDocument, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
         let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
@@ -190,15 +190,17 @@ impl Studio {
                 return;
             }
             ConflictResolution::Reload => return self.reload(diverged),
-            ConflictResolution::KeepMine if diverged.can_keep_mine() => diverged.overwrite_file(None),
-            ConflictResolution::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds) {
-                Ok(document) => diverged.overwrite_file(Some(document)),
-                Err(why) => {
-                    diverged.problem = Some(why);
-                    self.diverged = Some(diverged);
-                    return;
+            ConflictResolution::KeepMine if diverged.can_overwrite_file() => diverged.overwrite_file(None),
+            ConflictResolution::Merge if diverged.can_merge() => {
+                match diverged.merged_document(self.services.world.kinds) {
+                    Ok(document) => diverged.overwrite_file(Some(document)),
+                    Err(why) => {
+                        diverged.problem = Some(why);
+                        self.diverged = Some(diverged);
+                        return;
+                    }
                 }
-            },
+            }
             ConflictResolution::KeepMine | ConflictResolution::Merge => {
                 self.diverged = Some(diverged);
                 return;

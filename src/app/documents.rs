@@ -39,7 +39,7 @@ impl Studio {
                     self.with_device(id, |device, _| device.apply_document(file, *document));
                 } else {
                     let (path, found) = (file.path.clone(), document.device());
-                    let Some(opens) = opens else { return self.cannot_show(&path, found) };
+                    let Some(opens) = opens else { return self.report_unsupported_kind(&path, found) };
                     let device = opens(id, file, *document, &mut self.services);
                     self.devices.push(device);
                 }
@@ -56,7 +56,7 @@ impl Studio {
     }
 
     /// Reports that a profile belongs to a kind of device that the window does not support.
-    fn cannot_show(&mut self, path: &Path, found: &str) {
+    fn report_unsupported_kind(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),
             known: self.services.world.kinds.formats.kinds().collect(),

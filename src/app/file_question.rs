@@ -106,7 +106,7 @@ impl FileQuestion {
         }
     }
 
-    pub fn suggested(&self) -> Option<&Path> {
+    pub fn suggested_path(&self) -> Option<&Path> {
         match self {
             FileQuestion::Open
             | FileQuestion::Restore(_)

@@ -39,7 +39,7 @@ impl Studio {
 
     /// Handles a typed path. An existing file is not replaced without asking.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
-        if question.suggested().is_none() {
+        if question.suggested_path().is_none() {
             return self.chosen(question, path);
         }
         self.services.tasks.run("look", move || {
@@ -104,7 +104,7 @@ impl Studio {
     }
 
     pub(super) fn ask_table_path(&mut self, owner: RecorderOwner, visible: bool) {
-        let suggested = self.suggested(Some(owner), "csv");
+        let suggested = self.suggested_path(Some(owner), "csv");
         self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
@@ -114,12 +114,12 @@ impl Studio {
     }
 
     pub(super) fn ask_picture_path(&mut self, picture: Picture) {
-        let suggested = self.suggested(None, "png");
+        let suggested = self.suggested_path(None, "png");
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
     /// Suggests a file name with the encoder and the time of day, so that recordings get different names.
-    fn suggested(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
+    fn suggested_path(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
             Some(RecorderOwner::Tool(_)) => None,

@@ -51,7 +51,7 @@ impl KindRegistry {
     /// Returns a link in a form that may be displayed and stored. Parameters that are secret for any kind
     /// of device are removed, since the link may have been given for a different kind.
     pub fn display_link(self, url: &LinkUrl) -> String {
-        let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secrets()).collect();
+        let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secret_parameters()).collect();
         let query: Vec<String> =
             url.query.without(&secrets).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
         let question = if query.is_empty() { "" } else { "?" };

@@ -4,7 +4,7 @@ use super::devices::MotionControl;
 use super::studio::Studio;
 
 impl Studio {
-    fn motions(&self) -> impl Iterator<Item = &dyn MotionControl> {
+    fn motion_controls(&self) -> impl Iterator<Item = &dyn MotionControl> {
         self.devices.iter().filter_map(|device| device.motion())
     }
 
@@ -19,23 +19,23 @@ impl Studio {
 
     /// Returns whether a drive is known to be moving or is going to move.
     pub fn moves(&self) -> bool {
-        self.motions().any(MotionControl::is_moving)
+        self.motion_controls().any(MotionControl::is_moving)
     }
 
     /// Returns whether a motion requested in this window is running. Such a motion is the first to be stopped by
     /// Escape.
     pub fn is_turned_by_hand(&self) -> bool {
-        self.motions().any(MotionControl::is_turned_by_hand)
+        self.motion_controls().any(MotionControl::is_turned_by_hand)
     }
 
     /// Returns whether a motion requested in this window has not ended yet.
     pub fn is_under_way(&self) -> bool {
-        self.motions().any(MotionControl::is_under_way)
+        self.motion_controls().any(MotionControl::is_under_way)
     }
 
     /// Returns whether drives are under control, in which case their values arrive without being requested.
     pub fn is_in_control(&self) -> bool {
-        self.motions().any(MotionControl::is_in_control)
+        self.motion_controls().any(MotionControl::is_in_control)
     }
 
     /// Returns whether STOP has an effect on drives: this window controls some, or a motion requested here has not

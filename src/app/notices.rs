@@ -71,9 +71,9 @@ impl NoticeLog {
 
     pub fn add_to_log(&mut self, notice: Notice) {
         if notice.severity >= Severity::Warning {
-            tracing::warn!("{}", terminal(&notice));
+            tracing::warn!("{}", terminal_text(&notice));
         } else {
-            tracing::info!("{}", terminal(&notice));
+            tracing::info!("{}", terminal_text(&notice));
         }
         self.notices.push_back(notice);
         if self.notices.len() > Self::CAPACITY {
@@ -111,9 +111,9 @@ impl NoticeLog {
     }
 }
 
-fn terminal(notice: &Notice) -> String {
-    let words: Vec<String> = notice.texts.iter().map(Text::terminal).collect();
-    format!("{}{}", notice.prefix(Text::terminal), words.join(" "))
+fn terminal_text(notice: &Notice) -> String {
+    let words: Vec<String> = notice.texts.iter().map(Text::terminal_text).collect();
+    format!("{}{}", notice.prefix(Text::terminal_text), words.join(" "))
 }
 
 #[cfg(test)]

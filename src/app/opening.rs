@@ -57,7 +57,7 @@ impl Studio {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
         if let Some(id) = self.session_at(tab, &url) {
-            self.attempt_to_open(id, url, was_asked);
+            self.start_open_attempt(id, url, was_asked);
         }
     }
 
@@ -89,7 +89,7 @@ impl Studio {
             None => {
                 let id = self.new_id();
                 let kind = self.services.world.kinds.kind_for_tab(tab)?;
-                let device = kind.at_link(id, url.clone(), &mut self.services);
+                let device = kind.for_link(id, url.clone(), &mut self.services);
                 self.devices.push(device);
                 id
             }
@@ -135,7 +135,7 @@ impl Studio {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
         if !kinds.kind_for_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
-            return self.attempt_to_open(id, url, false);
+            return self.start_open_attempt(id, url, false);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
         self.question = Some(Question::other_master(kinds.display_link(&url), Then::OpenLink(id)));
@@ -143,12 +143,12 @@ impl Studio {
 
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
         if let Some(Source::Link(url)) = self.device(id).map(|device| device.source()) {
-            self.attempt_to_open(id, url.clone(), true);
+            self.start_open_attempt(id, url.clone(), true);
         }
     }
 
     /// Opens a link again for a session. Only the result of the new attempt counts.
-    fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
+    fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
         let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) else { return };

@@ -22,7 +22,7 @@ fn settings_match_the_recorded_file() {
         Tab::named("Signals"),
     ];
     assert!(tabs.iter().all(|tab| settings.links(*tab).len() == 1));
-    assert_eq!(Settings::salvage(SETTINGS), settings);
+    assert_eq!(Settings::parse_partial(SETTINGS), settings);
 }
 
 /// Checks that a draft of a kind is read and written back unchanged under the name of the kind.

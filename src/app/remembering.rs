@@ -55,7 +55,7 @@ impl Studio {
     /// Records that the settings could not be read. No drive under control moves until they have been read.
     pub(super) fn handle_settings_error(&mut self, error: &FileError) {
         tracing::warn!("{error}");
-        self.settings_store.fail_read();
+        self.settings_store.handle_read_failure();
         self.controlled_drives().for_each(|drives| drives.set_read_state(SettingsReadState::Unread));
     }
 

@@ -68,7 +68,7 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    pub(crate) fn writing(&self) -> Option<&K::Prepared> {
+    pub(crate) fn plan_in_progress(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
 
@@ -81,13 +81,13 @@ impl<K: Reviewable> Review<K> {
     }
 
     /// Returns whether the plan has neither been started nor failed.
-    pub(in crate::app) fn is_plan(&self) -> bool {
+    pub(in crate::app) fn is_pending_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
     /// Ends the review early, with `done` completed operations if execution had begun.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
-        let cut_off = self.writing().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
+        let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
@@ -103,7 +103,7 @@ impl<K: Reviewable> Review<K> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::OtherType => self.is_for_another_type,
-            Permit::Mounting => self.prepared().is_some_and(K::leaves_mounting),
+            Permit::Mounting => self.prepared().is_some_and(K::skips_mounting_values),
             Permit::Recreate => true,
             // It is shown as a question.
             Permit::Copy(_) => false,
@@ -233,7 +233,7 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
     /// Returns whether mounting values differ and are left unchanged.
-    fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
+    fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
     }
 
@@ -251,14 +251,14 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     }
 
     /// Returns the actions that the plan requires from the user at the device.
-    fn needs(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
+    fn requirements(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
     fn cost(prepared: &Self::Prepared) -> Text;
 
     /// Returns whether the plan makes the device reach its limit of write cycles.
-    fn is_worn(prepared: &Self::Prepared) -> bool {
+    fn reaches_wear_limit(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
@@ -343,13 +343,13 @@ impl<K: Reviewable> Review<K> {
             stage,
             lines: carried.map(lines).unwrap_or_default(),
             warnings: shown.map(K::warnings).unwrap_or_default(),
-            needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
+            needs: shown.map(|own| K::requirements(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
             execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.permit_toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
-            force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),
+            force_wear: costs.filter(|own| uncounted(own) || K::reaches_wear_limit(own)).map(|_| self.force_wear),
             is_uncounted: costs.is_some_and(uncounted),
         }
     }

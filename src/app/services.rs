@@ -86,7 +86,7 @@ impl Services {
     const JOBS: usize = 500;
 
     /// Returns the data shared by the sessions of one kind of device, or `None` if no data have been shared yet.
-    pub fn shared<T: Any>(&self) -> Option<&T> {
+    pub fn shared_data<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 

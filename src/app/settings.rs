@@ -75,7 +75,7 @@ impl Settings {
 
     /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry. For example, an unknown
     /// tab does not cause the links to be lost.
-    pub(super) fn salvage(text: &str) -> Self {
+    pub(super) fn parse_partial(text: &str) -> Self {
         macro_rules! entry {
             ($name:ident: $type:ty, $usual:expr) => {{
                 #[derive(Deserialize)]
@@ -273,10 +273,10 @@ mod tests {
         settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         let broken = settings.emit().replace("tab: First", "tab: 7");
         assert_eq!(Settings::parse(&broken), None);
-        assert_eq!(Settings::salvage(&broken), settings);
-        assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, ColorScheme::Light);
-        assert_eq!(Settings::salvage("(links: [\"sim:\"])").links(Tab::default()), ["sim:"], "from before");
-        assert!(Settings::salvage("no settings").links(HIPERFACE).is_empty());
+        assert_eq!(Settings::parse_partial(&broken), settings);
+        assert_eq!(Settings::parse_partial("(theme: Light, links: 7)").theme, ColorScheme::Light);
+        assert_eq!(Settings::parse_partial("(links: [\"sim:\"])").links(Tab::default()), ["sim:"], "from before");
+        assert!(Settings::parse_partial("no settings").links(HIPERFACE).is_empty());
     }
 
     /// A tab that belongs to a different version of the program is unknown here, but its entries are kept.
@@ -371,7 +371,7 @@ mod tests {
     fn marks_are_read_from_a_broken_entry() {
         let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
         assert_eq!(Settings::parse(broken), None);
-        assert_eq!(Settings::salvage(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
+        assert_eq!(Settings::parse_partial(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
     }
 
     /// Issue 21.11: links used by other windows in the meantime are kept, after those that were used here.

@@ -189,7 +189,7 @@ impl SettingsStore {
     }
 
     /// Handles a failure to read the settings. They are treated as not read, since they may contain locks.
-    pub(crate) fn fail_read(&mut self) {
+    pub(crate) fn handle_read_failure(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
@@ -248,7 +248,7 @@ fn understood(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Op
         Ok(text) => {
             let (mut settings, is_whole) = match Settings::parse(&text) {
                 Some(settings) => (settings, true),
-                None => (Settings::salvage(&text), false),
+                None => (Settings::parse_partial(&text), false),
             };
             settings.settle(kinds);
             Ok(Some((settings, is_whole)))

@@ -80,7 +80,7 @@ impl Studio {
     }
 
     pub fn act(&mut self, action: Action) {
-        self.devices.iter_mut().for_each(|device| device.may_have_changed());
+        self.devices.iter_mut().for_each(|device| device.mark_draft_due());
         match self.with_absolute_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::New(tab) => self.new_profile(tab),
@@ -135,7 +135,9 @@ impl Studio {
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
             Action::AskPicture(picture) => self.ask_picture_path(picture),
             Action::PictureCut => self.notify_picture_truncated(),
-            Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
+            Action::Review(id, action) => {
+                self.with_device(id, |device, services| device.apply_review_action(action, services))
+            }
             Action::Command(id, command) => self.command(id, command),
             Action::Device(id, action) => self.apply_device_action(id, action),
             Action::Tool(tab, action) => self.apply_tool_action(tab, action),
@@ -242,7 +244,7 @@ impl Studio {
     /// Creates an unsaved profile, if the kind of device supports that.
     fn new_profile(&mut self, tab: Tab) {
         let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return };
-        let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
+        let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested_path()).collect();
         let id = self.new_id();
         let is_taken = |name: &Path| taken.iter().any(|own| own == name);
         if let Some(device) = kind.new_profile(id, &is_taken, &mut self.services) {
@@ -264,13 +266,13 @@ impl Studio {
 
     /// Returns whether any session has a job or polling that can be stopped.
     pub fn can_stop(&self) -> bool {
-        self.devices.iter().any(|device| device.is_active()) || self.searches() || self.can_stop_tools()
+        self.devices.iter().any(|device| device.is_active()) || self.has_active_search() || self.can_stop_tools()
     }
 
     /// Returns whether a job or a measurement is running. Polling does not count.
     pub fn is_working(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
-        self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()
+        self.devices.iter().map(Box::as_ref).any(device) || self.has_active_search() || self.can_stop_tools()
     }
 
     /// Returns whether live values are arriving, in which case the window must be redrawn continuously.
@@ -278,7 +280,7 @@ impl Studio {
         self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
 
-    fn searches(&self) -> bool {
+    fn has_active_search(&self) -> bool {
         self.connect.as_ref().is_some_and(ConnectDialog::is_searching)
     }
 
@@ -310,7 +312,7 @@ impl Studio {
         match done {
             Done::Opened(attempt) => self.opened(attempt),
             Done::Device(id, done) => self.finish_device_action(id, done),
-            Done::Finder(tab, done) => self.finder_done(tab, done),
+            Done::Finder(tab, done) => self.handle_finder_result(tab, done),
             Done::Shared(with) => with(&mut self.services, &mut self.devices),
             Done::Ports(ports) => {
                 if let Some(connect) = &mut self.connect {

@@ -150,7 +150,7 @@ impl Text {
     }
 
     /// Returns the text for the command line, which is always English and contains hints for command-line users.
-    pub fn terminal(&self) -> String {
+    pub fn terminal_text(&self) -> String {
         self.text_for(Output::Terminal)
     }
 
@@ -303,7 +303,7 @@ mod tests {
         let text = Text::new("link.busy").with_number("target", 1.25, 1);
         assert!(text.words(Language::English).starts_with("1.2 is"));
         assert!(text.words(Language::German).starts_with("1,2 wird"));
-        assert!(text.terminal().starts_with("1.2 is"));
+        assert!(text.terminal_text().starts_with("1.2 is"));
         let list = [Text::new("parity.even"), Text::new("parity.odd")];
         let text = Text::new("link.other").with("target", "COM3").with_list("why", list);
         assert!(text.words(Language::German).contains("gerade, ungerade"), "{}", text.words(Language::German));
@@ -313,13 +313,16 @@ mod tests {
     fn the_command_line_has_separate_hints() {
         let cause = Text::new("link.not_found").with("target", "COM3");
         let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
-        assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
+        assert!(text.terminal_text().contains("\"encoder-studio ports\" lists"), "{}", text.terminal_text());
         assert!(
             text.words(Language::English).contains("\"Connect…\" dialog lists"),
             "{}",
             text.words(Language::English)
         );
-        assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
+        assert_eq!(
+            Text::new("encoder.cancelled").terminal_text(),
+            Text::new("encoder.cancelled").words(Language::English)
+        );
     }
 
     #[test]

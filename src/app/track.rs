@@ -175,7 +175,7 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     pub fn add(&mut self, sightings: &[PositionSample], meaning: &Meaning) {
-        self.see(meaning);
+        self.observe(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
             self.add_sample(sighting, &mut columns);
@@ -205,12 +205,12 @@ impl<W: Watchable> DeviceRecorder<W> {
             return columns.push(time, self.last, MotionRates::default(), Flags::BAD);
         };
         if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.continues_track(time, self.apart)) {
-            self.lose_track();
+            self.reset_tracking();
         }
         self.last = word;
         let Some(follower) = &mut self.follower else { return };
         let Some((next, rates)) = follower.next(time, word).filter(|_| !sighting.is_bad) else {
-            self.lose_track();
+            self.reset_tracking();
             return columns.push(time, word, MotionRates::default(), Flags::BAD);
         };
         let mut flags = if next.broken { Flags::BREAK } else { Flags::NONE };
@@ -324,7 +324,7 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     /// Sets the meaning of later positions. Recordings with a different meaning are kept unchanged in lines that end at
     /// this point.
-    fn see(&mut self, meaning: &Meaning) {
+    fn observe(&mut self, meaning: &Meaning) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
             if own.meaning != *meaning {
                 own.meaning = meaning.clone();
@@ -345,8 +345,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         let mut lines = meaning.lines(group).into_iter().zip(before);
         self.lines = before.map(|old| {
             let Some((line, _)) = lines.next() else { return old };
-            let name = self.name_of_ended(old);
-            let new = self.recorder.succeed(old, line, name);
+            let name = self.ended_line_name(old);
+            let new = self.recorder.continue_line(old, line, name);
             if !has_samples {
                 self.recorder.remove_line(old);
             }
@@ -356,12 +356,12 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     fn end(&mut self, line: SeriesId) {
-        let (name, heading) = self.name_of_ended(line);
+        let (name, heading) = self.ended_line_name(line);
         self.recorder.end_line(line, name, heading);
     }
 
     /// Returns the name and heading of a line that ends now.
-    fn name_of_ended(&self, line: SeriesId) -> (Text, String) {
+    fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
         let newest = self.newest.map_or(0, SampleTime::nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
         let until =
@@ -375,12 +375,12 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     pub fn gap(&mut self) {
         self.recorder.break_all();
-        self.lose_track();
+        self.reset_tracking();
     }
 
-    fn lose_track(&mut self) {
+    fn reset_tracking(&mut self) {
         if let Some(follower) = &mut self.follower {
-            follower.lose_track();
+            follower.reset_tracking();
         }
     }
 

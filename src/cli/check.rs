@@ -17,12 +17,12 @@ pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
 /// Prints the results of the check like `show`, with the line quality if it was measured.
 pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
-    let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
+    let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();
     let (mut list, mut results) = (Vec::new(), Vec::new());
     let mut text = Lines::default();
     for line in lines {
-        let (step, word) = (line.step.terminal(), word(line.verdict));
-        let verdict = verdict(line.verdict).terminal();
+        let (step, word) = (line.step.terminal_text(), word(line.verdict));
+        let verdict = verdict(line.verdict).terminal_text();
         let found = findings(line);
         // A sentence ends with the line, not in the middle of it.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();

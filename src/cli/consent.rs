@@ -14,14 +14,14 @@ use crate::worker::{self, NotBegun};
 /// Requires consent. Without a terminal the user cannot be asked, so the command is refused before anything is
 /// opened.
 pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
-    if consent.yes || can_ask() {
+    if consent.yes || can_prompt() {
         return Ok(());
     }
     Err(Failure::Usage("this writes to the device: add --yes, or run it on a terminal; nothing was changed".to_owned()))
 }
 
 /// Returns whether a user can answer at a terminal.
-pub(crate) fn can_ask() -> bool {
+pub(crate) fn can_prompt() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
@@ -57,14 +57,14 @@ where
 
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal the file
 /// is replaced, as other tools do, and [`ReplacementNotice::report`] states so.
-pub(super) fn replaces(path: &Path, force: bool) -> Result<ReplacementNotice> {
+pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device is written to, and has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
     if !is_there || force {
         return Ok(ReplacementNotice { message: None });
     }
     let name = path.display();
-    if !can_ask() {
+    if !can_prompt() {
         return Ok(ReplacementNotice { message: Some(format!("{name} already existed and was replaced.")) });
     }
     if ask(&format!("{name} already exists. Replace it? [y/N] ")) {

@@ -30,7 +30,7 @@ pub use consent::{check_wear, confirm_plan, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
 pub use profiles::{UnrestoredItems, profile_to_restore, restore_options, save_profile, write_restore};
-pub use runner::{JobFailure, Runner, Runs, failed, unexpected};
+pub use runner::{JobFailure, Runner, Runs, failed, unexpected_output};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;
 
@@ -171,7 +171,7 @@ fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
         (Command::Simulate(simulate), _) => simulate::simulate(output, simulate),
         (Command::Decode(decode), Some(protocol)) => protocol.decode(output, decode),
         (Command::Save(save), _) => {
-            let replaces = consent::replaces(&save.file, save.force)?;
+            let replaces = consent::confirm_replacement(&save.file, save.force)?;
             let done = run()?;
             replaces.report(output);
             Ok(done)

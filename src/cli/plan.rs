@@ -100,6 +100,6 @@ impl WriteSummary {
 
 pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
-        output.remark(&explain::logbook(why).terminal());
+        output.remark(&explain::logbook(why).terminal_text());
     }
 }

@@ -34,9 +34,9 @@ pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
 }
 
 fn remark(output: &Output, path: &Path, document: &ProfileDocument) -> Result<()> {
-    explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
+    explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal_text())));
     if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
-        say(&format!("{}: {}\n", path.display(), words.terminal()));
+        say(&format!("{}: {}\n", path.display(), words.terminal_text()));
     }
     Ok(())
 }
@@ -184,7 +184,7 @@ impl UnrestoredItems {
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {
-            output.remark(&text.terminal());
+            output.remark(&text.terminal_text());
         }
     }
 }

@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::CommonArgs;
 use super::commands::DeviceCommands;
-use super::consent::{answer, can_ask};
+use super::consent::{answer, can_prompt};
 use super::output::say;
 use super::slow_reply_notice::{Pace, SlowReplyNotice};
 use super::{Failure, Result};
@@ -110,7 +110,7 @@ impl<D: Runs> Runner<D> {
         }
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
-            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
+            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal_text()),
             error => failed(&D::open_error(&error)),
         })?;
         let kept = D::begin(&mut session, &given);
@@ -222,7 +222,7 @@ impl<D: Runs> JobFailure<D> {
     pub fn into_failure(self) -> Failure {
         match self {
             JobFailure::Job(error) => {
-                Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal).collect()))
+                Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal_text).collect()))
             }
             JobFailure::Interrupted => failed(&Text::new("encoder.cancelled")),
             JobFailure::Lost(error) => failed(&explain::link(&error)),
@@ -243,7 +243,7 @@ fn lines(mut sentences: Vec<String>) -> Vec<String> {
 }
 
 pub fn failed(text: &Text) -> Failure {
-    Failure::Failed(vec![text.terminal()])
+    Failure::Failed(vec![text.terminal_text()])
 }
 
 /// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of
@@ -253,20 +253,20 @@ macro_rules! result_of {
     ($result:expr, $wanted:pat => $value:expr) => {
         match $result {
             $wanted => $value,
-            other => return Err($crate::cli::unexpected(&other)),
+            other => return Err($crate::cli::unexpected_output(&other)),
         }
     };
 }
 
 /// Returns the failure for a job result of an unexpected type, which is a defect of this program and is reported as
 /// such.
-pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
+pub fn unexpected_output(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
 /// Asks whether a drive is on the line if the program runs on a terminal and the user has not confirmed yet.
 fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
-    if common.only_master || !can_ask() {
+    if common.only_master || !can_prompt() {
         return Ok(());
     }
     let reply = answer("Is a drive or controller connected to this line, or powered? [yes/no/not sure] ");

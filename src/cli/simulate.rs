@@ -110,7 +110,7 @@ impl Device {
             let wait = self.simulated.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
             let outcome = client.read(&mut buffer, wait)?;
             let now = self.clock.now();
-            self.follow_format(client.baud());
+            self.apply_client_baud(client.baud());
             match outcome {
                 ReadOutcome::Bytes(count) => self.simulated.on_bytes(now, buffer.get(..count).unwrap_or_default()),
                 ReadOutcome::Nothing => {}
@@ -129,7 +129,7 @@ impl Device {
 
     /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate,
     /// so the client's format is then assumed to be correct.
-    fn follow_format(&mut self, baud: Option<Baud>) {
+    fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.format(now) {
             let format = CharacterFormat { baud: baud.unwrap_or(own.baud), parity: own.parity };
@@ -138,7 +138,7 @@ impl Device {
     }
 
     /// Prints the line that scripts wait for.
-    fn ready(&self, place: &str) -> Result<()> {
+    fn print_ready(&self, place: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
         writeln!(out, "ready {} {place}", self.kind)
             .and_then(|()| out.flush())
@@ -220,7 +220,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
             .try_for_each(|packets| packets.start(scope, ended))
             .and_then(|()| listener.local_addr())
             .map_err(cannot)
-            .and_then(|at| device.ready(&at.to_string()));
+            .and_then(|at| device.print_ready(&at.to_string()));
         // The program has not started, so no thread waits for its end.
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
@@ -280,7 +280,7 @@ mod terminal {
             ErrorKind::NotFound => cannot("the folder does not exist; create it, or choose another path".into()),
             _ => cannot(error.to_string()),
         })?;
-        device.ready(&path.display().to_string())?;
+        device.print_ready(&path.display().to_string())?;
         while !ended.load(Ordering::SeqCst) {
             device.serve(&mut master, ended).map_err(|error| cannot(error.to_string()))?;
             wait_for_client(&mut master, ended);

@@ -11,7 +11,7 @@ pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
     /// The virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
-    /// offers the program's built-in list (`kinds::at_adapter`), which excludes external kinds.
+    /// offers the program's built-in list (`kinds::attachable_kinds`), which excludes external kinds.
     pub at_adapter: Option<&'static dyn AttachableKind>,
 }
 

@@ -27,7 +27,7 @@ impl RealClock {
 
 impl Clock for RealClock {
     fn now(&self) -> Moment {
-        Moment::after_start(self.0.elapsed())
+        Moment::from_elapsed(self.0.elapsed())
     }
 
     fn sleep_until(&self, moment: Moment) {
@@ -46,7 +46,7 @@ pub struct VirtualClock {
 
 impl Clock for VirtualClock {
     fn now(&self) -> Moment {
-        Moment::after_start(Duration::from_nanos(self.nanoseconds.load(Ordering::SeqCst)))
+        Moment::from_elapsed(Duration::from_nanos(self.nanoseconds.load(Ordering::SeqCst)))
     }
 
     fn sleep_until(&self, moment: Moment) {
@@ -62,8 +62,8 @@ mod tests {
     #[test]
     fn virtual_time_only_moves_forward() {
         let clock = VirtualClock::default();
-        clock.sleep_until(Moment::after_start(Duration::from_secs(3600)));
-        clock.sleep_until(Moment::after_start(Duration::from_secs(1)));
-        assert_eq!(clock.now(), Moment::after_start(Duration::from_secs(3600)));
+        clock.sleep_until(Moment::from_elapsed(Duration::from_secs(3600)));
+        clock.sleep_until(Moment::from_elapsed(Duration::from_secs(1)));
+        assert_eq!(clock.now(), Moment::from_elapsed(Duration::from_secs(3600)));
     }
 }

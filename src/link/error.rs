@@ -55,7 +55,7 @@ impl LinkError {
 
     /// Converts an I/O error on an open connection. Any error that does not clearly have another cause is treated as a
     /// lost connection.
-    pub(super) fn during_use(target: &str, error: &io::Error) -> Self {
+    pub(super) fn from_io_error(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),
             _ => LinkErrorKind::Lost,

@@ -75,7 +75,7 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Sets whether cancellation is ignored, and returns the previous setting.
-    pub(crate) fn shield(&mut self, shielded: bool) -> bool {
+    pub(crate) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
         std::mem::replace(&mut self.shielded, shielded)
     }
 
@@ -142,7 +142,7 @@ impl<'a> SerialLine<'a> {
                 return Ok(());
             }
             self.trace_hidden_bytes(self.now(), stray.len());
-            self.pass(&stray);
+            self.skip_bytes(&stray);
             stray.clear();
             self.wait_for_silence(state, quiet)?;
         }
@@ -183,7 +183,7 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Skips bytes that are not part of the reply. If the noise is continuous, only its first bytes are kept.
-    pub(crate) fn pass(&mut self, bytes: &[u8]) {
+    pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
         }
@@ -199,7 +199,7 @@ impl<'a> SerialLine<'a> {
 
     /// Counts an unanswered attempt and returns whether another attempt is allowed. `longest` is the maximum duration
     /// of an attempt.
-    pub(crate) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
+    pub(crate) fn may_retry(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
         // The first try counts as well: at 600 bit/s it alone may take three seconds.
@@ -218,7 +218,12 @@ impl<'a> SerialLine<'a> {
     ///
     /// # Errors
     /// See [`LineError`].
-    pub(crate) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn receive_late_bytes(
+        &mut self,
+        state: &mut LineState,
+        tries: u32,
+        quiet: Duration,
+    ) -> Result<(), LineError> {
         // A device known to be silent for a long time is requested often.
         let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
@@ -234,7 +239,7 @@ impl<'a> SerialLine<'a> {
             self.ctx.wire.receive(slice, &mut late)?;
         }
         self.trace_hidden_bytes(self.now(), late.len());
-        self.pass(&late);
+        self.skip_bytes(&late);
         self.discard_late_answers(state, quiet)
     }
 
@@ -251,7 +256,7 @@ impl<'a> SerialLine<'a> {
         while self.now() < passed {
             late.clear();
             self.ctx.wire.receive(passed, &mut late)?;
-            self.pass(&late);
+            self.skip_bytes(&late);
         }
         self.wait_for_silence(state, quiet)?;
         state.extend_allowance(lateness);
@@ -272,7 +277,7 @@ impl<'a> SerialLine<'a> {
                 state.quiet_until = self.now();
                 return Ok(());
             }
-            self.pass(&stray);
+            self.skip_bytes(&stray);
             if self.now() > give_up {
                 return Err(LineError::NeverSilent);
             }

@@ -62,7 +62,7 @@ impl SerialLink {
     /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
     /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or another error of the system.
     pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
-        Self::open_as(path, format, clock, |builder| builder)
+        Self::open_configured(path, format, clock, |builder| builder)
     }
 
     /// Opens the port of an adapter and keeps DTR asserted, because an edge of DTR resets many microcontrollers. Linux
@@ -71,10 +71,10 @@ impl SerialLink {
     /// # Errors
     /// The same as for [`open`](Self::open).
     pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
-        Self::open_as(path, format, clock, |builder| builder.dtr_on_open(true))
+        Self::open_configured(path, format, clock, |builder| builder.dtr_on_open(true))
     }
 
-    fn open_as(
+    fn open_configured(
         path: &str,
         format: CharacterFormat,
         clock: Arc<dyn Clock>,
@@ -83,7 +83,7 @@ impl SerialLink {
         let builder = serialport::new(path, format.baud.bits_per_second())
             .parity(parity(format.parity))
             .timeout(Duration::from_millis(10));
-        let port = lines(builder).open().map_err(|error| LinkError::new(path, opening(path, &error)))?;
+        let port = lines(builder).open().map_err(|error| LinkError::new(path, open_error_kind(path, &error)))?;
         let link = SerialLink { port, target: path.to_owned(), clock };
         link.warn_of_parity(format);
         // Bytes from before the opening belong to no reply; if they cannot be cleared, the first frame is damaged and
@@ -105,7 +105,7 @@ impl SerialLink {
     }
 
     fn lost(&self, error: &std::io::Error) -> LinkError {
-        LinkError::during_use(&self.target, error)
+        LinkError::from_io_error(&self.target, error)
     }
 }
 
@@ -166,13 +166,13 @@ fn parity(parity: Parity) -> serialport::Parity {
 /// System error message for a device without a baud rate, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
-fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
+fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {
     match error.kind {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => LinkErrorKind::NotFound,
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::permission_error(path),
         serialport::ErrorKind::NoDevice if platform::exists(path) => LinkErrorKind::Busy,
         serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
-        _ if platform::is_no_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
+        _ if platform::is_not_serial_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
         serialport::ErrorKind::InvalidInput => LinkErrorKind::Format(error.description.clone()),
         _ => LinkErrorKind::Other(error.description.clone()),
     }
@@ -197,7 +197,7 @@ mod platform {
         Path::new(path).exists()
     }
 
-    pub(super) fn is_no_port(path: &str) -> bool {
+    pub(super) fn is_not_serial_port(path: &str) -> bool {
         std::fs::metadata(path).is_ok_and(|file| !file.file_type().is_char_device())
     }
 
@@ -234,7 +234,7 @@ mod platform {
             .is_ok_and(|ports| ports.iter().any(|port| port.port_name.eq_ignore_ascii_case(path)))
     }
 
-    pub(super) fn is_no_port(_path: &str) -> bool {
+    pub(super) fn is_not_serial_port(_path: &str) -> bool {
         false
     }
 
@@ -251,11 +251,11 @@ mod tests {
     fn every_open_failure_has_a_distinct_kind() {
         let error = |kind| serialport::Error::new(kind, "words of the system");
         let io = |kind| error(serialport::ErrorKind::Io(kind));
-        assert_eq!(opening("/dev/nope", &io(ErrorKind::NotFound)), LinkErrorKind::NotFound);
-        assert_eq!(opening("/dev/null", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::Busy);
-        assert_eq!(opening("/dev/nope", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::NotFound);
-        let denied = opening("/dev/null", &io(ErrorKind::PermissionDenied));
+        assert_eq!(open_error_kind("/dev/nope", &io(ErrorKind::NotFound)), LinkErrorKind::NotFound);
+        assert_eq!(open_error_kind("/dev/null", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::Busy);
+        assert_eq!(open_error_kind("/dev/nope", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::NotFound);
+        let denied = open_error_kind("/dev/null", &io(ErrorKind::PermissionDenied));
         assert!(matches!(denied, LinkErrorKind::Permission { .. }), "{denied:?}");
-        assert_eq!(opening("/", &error(serialport::ErrorKind::Unknown)), LinkErrorKind::NotAPort);
+        assert_eq!(open_error_kind("/", &error(serialport::ErrorKind::Unknown)), LinkErrorKind::NotAPort);
     }
 }

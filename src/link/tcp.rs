@@ -56,7 +56,7 @@ impl TcpLink {
     }
 
     fn lost(&self, error: &std::io::Error) -> LinkError {
-        LinkError::during_use(&self.target, error)
+        LinkError::from_io_error(&self.target, error)
     }
 }
 

@@ -138,7 +138,7 @@ fn read_entry(text: &str, line: usize) -> Result<TraceEntry, TraceFileError> {
         _ => return Err(malformed()),
     };
     let bytes = bytes.parse().map_err(|source| TraceFileError::Hex { line, source })?;
-    Ok(TraceEntry { at: Moment::after_start(elapsed), direction, bytes })
+    Ok(TraceEntry { at: Moment::from_elapsed(elapsed), direction, bytes })
 }
 
 #[cfg(test)]
@@ -150,7 +150,7 @@ mod tests {
         let text = "# encoder-studio trace 1\n0.031204 > 40 4F 02 ** ** **\n0.047511 < 40 4F 02 0D\n";
         let entries = read_trace(text).unwrap();
         assert_eq!(entries.len(), 2);
-        assert_eq!(entries[1].at, Moment::after_start(Duration::from_micros(47_511)));
+        assert_eq!(entries[1].at, Moment::from_elapsed(Duration::from_micros(47_511)));
         let mut written = Vec::new();
         write_header(&mut written).unwrap();
         for entry in &entries {

@@ -159,7 +159,7 @@ impl DatagramChannel for UdpChannel {
             Ok(_) => Ok(()),
             // The error belongs to an earlier packet.
             Err(error) if is_transient(&error) => Ok(()),
-            Err(error) => Err(LinkError::during_use(&self.name, &error)),
+            Err(error) => Err(LinkError::from_io_error(&self.name, &error)),
         }
     }
 

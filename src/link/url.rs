@@ -43,7 +43,7 @@ impl LinkScheme {
     }
 
     /// Returns a description of what has to follow the colon, with an example.
-    fn needs(self) -> &'static str {
+    fn requirements(self) -> &'static str {
         match self {
             LinkScheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
             LinkScheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
@@ -99,7 +99,7 @@ pub enum UrlError {
         known: &'static str,
     },
     /// The port, host or file is missing.
-    #[error("{}: needs {}", scheme.word(), scheme.needs())]
+    #[error("{}: needs {}", scheme.word(), scheme.requirements())]
     Target {
         /// Kind of connection.
         scheme: LinkScheme,

@@ -77,7 +77,7 @@ pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
 }
 
 /// Returns the unit symbol shown next to a value in a form.
-const fn sign(quantity: Quantity) -> &'static str {
+const fn unit_symbol(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Milliseconds => "ms",
         Quantity::Microseconds => "µs",
@@ -103,7 +103,7 @@ impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> Values for Whole<T> {
     }
 
     fn unit(&self) -> &'static str {
-        sign(self.0)
+        unit_symbol(self.0)
     }
 }
 
@@ -115,7 +115,7 @@ impl Values for Decimal {
     }
 
     fn allowed(&self) -> AllowedValues {
-        let limit = |number: &f64| Limit::thousandths((number * 1000.0).round() as i128);
+        let limit = |number: &f64| Limit::from_thousandths((number * 1000.0).round() as i128);
         AllowedValues::range(self.0, limit(self.1.start()), limit(self.1.end()))
     }
 
@@ -124,7 +124,7 @@ impl Values for Decimal {
     }
 
     fn unit(&self) -> &'static str {
-        sign(self.0)
+        unit_symbol(self.0)
     }
 
     fn is_decimal(&self) -> bool {
@@ -148,7 +148,7 @@ impl Values for Milliseconds {
     }
 
     fn unit(&self) -> &'static str {
-        sign(Quantity::Milliseconds)
+        unit_symbol(Quantity::Milliseconds)
     }
 }
 
@@ -163,7 +163,7 @@ impl Values for Millivolts {
     }
 
     fn allowed(&self) -> AllowedValues {
-        let limit = |millivolts: u16| Limit::thousandths(millivolts.into());
+        let limit = |millivolts: u16| Limit::from_thousandths(millivolts.into());
         AllowedValues::range(Quantity::Volts, limit(*self.0.start()), limit(*self.0.end()))
     }
 
@@ -172,7 +172,7 @@ impl Values for Millivolts {
     }
 
     fn unit(&self) -> &'static str {
-        sign(Quantity::Volts)
+        unit_symbol(Quantity::Volts)
     }
 
     fn is_decimal(&self) -> bool {

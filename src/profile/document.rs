@@ -77,16 +77,16 @@ impl ProfileDocument {
 
     fn read(value: Value, reading: &Rc<Reading>, formats: ProfileFormats) -> Result<Self, ProfileError> {
         let mut entries = Entries::open("", value, reading)?;
-        let schema: u32 = entries.required("schema", AllowedValues::Whole)?;
+        let schema: u32 = entries.take_required("schema", AllowedValues::Whole)?;
         if schema == 0 {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
         }
         if schema > SCHEMA {
             reading.set_newer_schema(schema);
         }
-        let device: String = entries.required("device", AllowedValues::Text)?;
-        let saved = entries.optional("saved", AllowedValues::Text)?;
-        let note = entries.optional("note", AllowedValues::Text)?;
+        let device: String = entries.take_required("device", AllowedValues::Text)?;
+        let saved = entries.take_optional("saved", AllowedValues::Text)?;
+        let note = entries.take_optional("note", AllowedValues::Text)?;
         let body = formats.parse(device, &mut entries)?;
         let unknown = entries.rest()?;
         Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.beyond() })

@@ -36,9 +36,9 @@ impl<Item> MountingMark<Item> {
         item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Self, ProfileError> {
         let path = entries.path_of("item");
-        let text: String = entries.required("item", expected)?;
+        let text: String = entries.take_required("item", expected)?;
         let item = item(&text).map_err(|error| ProfileError::refused(path, error))?;
-        let meaning = entries.optional("meaning", AllowedValues::Text)?.unwrap_or_default();
+        let meaning = entries.take_optional("meaning", AllowedValues::Text)?.unwrap_or_default();
         Ok(MountingMark { item, meaning, unknown: entries.rest()? })
     }
 }
@@ -54,7 +54,7 @@ impl<Item: ToString> MountingMark<Item> {
         for mark in marks {
             let (item, meaning) = (quoted(&mark.item.to_string()), quoted(&mark.meaning));
             let unknown = entries_text(&mark.unknown);
-            writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
+            writer.write_list_element(&format!("(item: {item}, meaning: {meaning}{unknown})"));
         }
         writer.close(']');
     }

@@ -6,7 +6,7 @@ use super::{ProfileDocument, ProfileError, ProfileFormats};
 impl ProfileDocument {
     /// Returns `text` updated to the content of the document. Unchanged entries remain as written, with comments, order
     /// and line endings.
-    pub fn emit_over(&self, text: &str, formats: ProfileFormats) -> Carried {
+    pub fn rewrite_text(&self, text: &str, formats: ProfileFormats) -> Carried {
         let own = self.emit();
         let before = ProfileDocument::parse(text, formats).map(|before| before.emit());
         let carried = before.as_ref().ok().and_then(|before| carry(text, before, &own));

@@ -83,7 +83,7 @@ impl Entries {
     }
 
     /// Takes a plain value, or returns `None` if the value is missing.
-    pub fn optional<T: DeserializeOwned>(
+    pub fn take_optional<T: DeserializeOwned>(
         &mut self,
         name: &str,
         expected: AllowedValues,
@@ -99,8 +99,12 @@ impl Entries {
     }
 
     /// Takes a required plain value.
-    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: AllowedValues) -> Result<T, ProfileError> {
-        self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
+    pub fn take_required<T: DeserializeOwned>(
+        &mut self,
+        name: &str,
+        expected: AllowedValues,
+    ) -> Result<T, ProfileError> {
+        self.take_optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
     /// Takes a required structure.
@@ -122,7 +126,7 @@ impl Entries {
     /// Takes bytes, given as one hex string or a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.path_of(name);
-        let Some(value) = self.optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
+        let Some(value) = self.take_optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
         let lines = match value {
             Value::String(line) => vec![line],
             value => value
@@ -247,7 +251,7 @@ impl Writer {
     }
 
     /// Writes a list element verbatim.
-    pub fn entry_in_list(&mut self, value: &str) {
+    pub fn write_list_element(&mut self, value: &str) {
         self.line(&format!("{value},"));
     }
 

@@ -9,13 +9,13 @@ pub(crate) fn edited<P: Profile>(
 ) -> (ProfileDocument, Carried) {
     let mut document = ProfileDocument::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());
-    let carried = document.emit_over(text, P::FORMATS);
+    let carried = document.rewrite_text(text, P::FORMATS);
     assert_eq!(ProfileDocument::parse(&carried.text, P::FORMATS).unwrap().emit(), document.emit());
     (document, carried)
 }
 
 /// Checks that an edit only replaces `from` with `to` in the text, or changes nothing if neither is given.
-pub(crate) fn changed_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
+pub(crate) fn assert_edit_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edited(text, |_, _: &mut P| {});
     assert_eq!(same, Carried { text: text.to_owned(), lost: Vec::new() });
     let (_, carried) = edited(text, |_, own| edit(own));

@@ -1,6 +1,6 @@
 //! Tests of documents of invented kinds: a light with its steps, and a fan.
 
-use super::testing::{changed_in_place, edited};
+use super::testing::{assert_edit_in_place, edited};
 use super::*;
 use crate::expected::AllowedValues;
 
@@ -15,10 +15,10 @@ impl Profile for Lamp {
     const KIND: &'static str = "lamp";
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let colour = entries.required("colour", AllowedValues::Text)?;
+        let colour = entries.take_required("colour", AllowedValues::Text)?;
         let mut steps = Vec::new();
         for mut entries in entries.structures("steps")? {
-            steps.push((entries.required("level", AllowedValues::between(0, 255))?, entries.rest()?));
+            steps.push((entries.take_required("level", AllowedValues::between(0, 255))?, entries.rest()?));
         }
         Ok(Lamp { colour, steps })
     }
@@ -132,7 +132,7 @@ fn user_entries_and_newer_schema_entries_are_kept() {
 /// Issues 22.25 and 22.26: a document is saved over a user's text, and merged with the changes of another user.
 #[test]
 fn a_document_is_merged_into_text_and_with_another() {
-    changed_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
+    assert_edit_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
     let (_, carried) = edited(TEXT, |note, own: &mut Lamp| {
         *note = Some("as of today".to_owned());
         own.steps.remove(0);

@@ -111,7 +111,7 @@ impl SimulatedFaults {
     }
 
     /// Passes a byte over the noisy line.
-    pub fn passage(&self, rng: &mut Rng, byte: u8) -> ByteTransfer {
+    pub fn transmit_byte(&self, rng: &mut Rng, byte: u8) -> ByteTransfer {
         let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
         let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {
             true => Carried { byte: byte ^ 1 << rng.u8(..8), flipped: true },
@@ -211,9 +211,9 @@ mod tests {
         let noisy: SimulatedFaults = "flip:1,garbage:1".parse().unwrap();
         for byte in 0..=255 {
             let whole = Some(Carried { byte, flipped: false });
-            assert_eq!(quiet.passage(&mut rng, byte), ByteTransfer { inserted: None, carried: whole });
-            assert_eq!(lossy.passage(&mut rng, byte).carried, None);
-            let passage = noisy.passage(&mut rng, byte);
+            assert_eq!(quiet.transmit_byte(&mut rng, byte), ByteTransfer { inserted: None, carried: whole });
+            assert_eq!(lossy.transmit_byte(&mut rng, byte).carried, None);
+            let passage = noisy.transmit_byte(&mut rng, byte);
             assert!(passage.inserted.is_some());
             assert_eq!((passage.carried.unwrap().byte ^ byte).count_ones(), 1);
         }

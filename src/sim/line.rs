@@ -107,7 +107,7 @@ impl Wires {
     pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> SentCharacters {
         let mut sent = SentCharacters { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
-            let passage = self.faults.passage(&mut self.rng, *byte);
+            let passage = self.faults.transmit_byte(&mut self.rng, *byte);
             let next = |start: Moment, byte, flipped| SerialCharacter { start, end: start + character, byte, flipped };
             if let Some(extra) = passage.inserted {
                 let extra = next(sent.end, extra, false);

@@ -64,7 +64,8 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     let target = resolve_links(path).map_err(|e| failed(e.into()))?;
     let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, &target);
     let folder = folder_of(&target).map_err(failed)?;
-    let staged = stage(folder, write, permissions).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
+    let staged =
+        write_temp_file(folder, write, permissions).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist(&target).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -77,8 +78,8 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
     let folder = folder_of(path).map_err(failed)?;
-    let staged =
-        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
+    let staged = write_temp_file(folder, |file| file.write_all(content), None)
+        .map_err(|e| failed(FileErrorKind::from_create_error(e)))?;
     staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -177,7 +178,7 @@ fn folder_of(path: &Path) -> Result<&Path, FileErrorKind> {
 }
 
 /// Writes and flushes a temporary file in the target's folder. The file is removed when dropped.
-fn stage(
+fn write_temp_file(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     permissions: Option<Permissions>,

@@ -23,7 +23,7 @@ impl BaseFolders {
     }
 
     /// Returns the folder that relative paths start from, or `None` if the system does not report it.
-    pub fn working(&self) -> Option<&Path> {
+    pub fn working_folder(&self) -> Option<&Path> {
         self.working.as_deref()
     }
 

@@ -16,7 +16,7 @@ const DEPTH: usize = 3;
 
 /// Removes the files left behind in one folder. Files that cannot be removed do no harm and stay.
 pub(super) fn remove_in_folder(folder: &Path) {
-    entries(folder).filter(is_left).for_each(remove);
+    entries(folder).filter(is_stale_temporary).for_each(remove);
 }
 
 /// Removes the files left behind in a folder of the program and the folders below.
@@ -28,7 +28,7 @@ fn remove_to_depth(folder: &Path, depth: usize) {
     for entry in entries(folder) {
         match entry.file_type() {
             Ok(kind) if kind.is_dir() && depth > 0 => remove_to_depth(&entry.path(), depth - 1),
-            Ok(kind) if kind.is_file() && is_left(&entry) => remove(entry),
+            Ok(kind) if kind.is_file() && is_stale_temporary(&entry) => remove(entry),
             _ => {}
         }
     }
@@ -38,7 +38,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok)
 }
 
-fn is_left(entry: &DirEntry) -> bool {
+fn is_stale_temporary(entry: &DirEntry) -> bool {
     let name = entry.file_name();
     let is_temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
     let modified = || entry.metadata().and_then(|data| data.modified()).ok();

@@ -64,7 +64,7 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
             paragraph(ui, theme.label(theme.say("backups_card.words")));
             for backup in backups {
                 ui.horizontal(|ui| {
-                    ui.label(theme.mono(time(backup.taken)));
+                    ui.label(theme.monospace(time(backup.taken)));
                     let restore = enabled_button(
                         ui,
                         device.is_ready(),
@@ -112,7 +112,7 @@ fn statuses_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
         for status in device.statuses() {
             ui.horizontal(|ui| {
-                ui.label(theme.mono(time(status.at)));
+                ui.label(theme.monospace(time(status.at)));
                 ui.add(egui::Label::new(&status.codes).truncate());
             });
         }
@@ -133,11 +133,11 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
         None => (icons::QUESTION, palette.warn, theme.say("writes_card.open")),
     };
     ui.horizontal(|ui| {
-        ui.label(theme.mono(time(write.at)));
+        ui.label(theme.monospace(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
         let cycles = write.conclusion.as_ref().map_or(write.planned_cycles, |end| end.cycles_spent);
         let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", cycles);
         ui.label(theme.label(theme.words(&cycles)));
-        ui.add(egui::Label::new(theme.mono(&write.description)).truncate());
+        ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
     });
 }

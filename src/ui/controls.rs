@@ -100,7 +100,7 @@ pub(super) fn modal<R>(
 
 /// Draws the buttons at the end of a dialog, right-aligned with the first one at the far right, on a line as high as a
 /// button. Buttons centred in the remaining space would keep the dialog from shrinking.
-pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
@@ -115,7 +115,7 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
 }
 
 /// Draws a button. If the button is disabled, its tooltip gives the reason.
-pub(crate) fn allowed_button(
+pub(crate) fn button_with_reason(
     ui: &mut Ui,
     theme: &Theme,
     allowed: &Result<(), crate::app::Text>,
@@ -129,7 +129,7 @@ pub(crate) fn allowed_button(
     }
 }
 
-pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
+pub(crate) fn primary_button(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));

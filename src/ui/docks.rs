@@ -60,7 +60,7 @@ impl Docks {
         views: &mut Views,
         actions: &mut Vec<Action>,
     ) {
-        self.fit_live(studio.settings.values_alone, ui.available_width());
+        self.resize_live_panel(studio.settings.values_alone, ui.available_width());
         let hidden = if studio.settings.lower_open { Vec::new() } else { self.lower_tiles() };
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, false));
         let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
@@ -72,7 +72,7 @@ impl Docks {
 
     /// Resizes the Live panel when its plot appears or disappears. Without the plot, the panel is as wide as its
     /// values; with the plot, it regains its previous width.
-    fn fit_live(&mut self, alone: bool, width: f32) {
+    fn resize_live_panel(&mut self, alone: bool, width: f32) {
         if self.alone.replace(alone).is_none_or(|before| before == alone) {
             return;
         }
@@ -101,19 +101,19 @@ impl Docks {
     fn lower_tiles(&self) -> Vec<TileId> {
         let mut lower = Vec::new();
         if let Some(root) = self.tree.root() {
-            self.find_lower(root, &mut lower);
+            self.collect_lower_tiles(root, &mut lower);
         }
         lower
     }
 
     /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
     /// panel is not included.
-    fn find_lower(&self, tile: TileId, lower: &mut Vec<TileId>) {
+    fn collect_lower_tiles(&self, tile: TileId, lower: &mut Vec<TileId>) {
         if self.is_lower(tile) {
             lower.push(tile);
         } else if let Some(Container::Linear(_) | Container::Grid(_)) = self.tree.tiles.get_container(tile) {
             let children = self.tree.tiles.get_container(tile).map(Container::children_vec).unwrap_or_default();
-            children.into_iter().for_each(|child| self.find_lower(child, lower));
+            children.into_iter().for_each(|child| self.collect_lower_tiles(child, lower));
         }
     }
 

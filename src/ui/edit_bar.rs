@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui, WidgetInfo};
 
-use super::controls::{enabled_button, icon_button, name, primary};
+use super::controls::{enabled_button, icon_button, name, primary_button};
 use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
@@ -44,13 +44,13 @@ pub fn edit_bar_ui(
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if *device.phase() == Phase::Offline {
-                if primary(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+                if primary_button(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                     actions.push(Action::Save(device.id()));
                 }
                 write_into_ui(ui, theme, studio, device, actions);
             } else {
                 let word = theme.say("memory.review");
-                let write = primary(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
+                let write = primary_button(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
                 if write.on_hover_text(theme.say("memory.review_hint")).clicked() {
                     actions.push(device.command(DeviceCommand::Review));
                 }

@@ -9,7 +9,7 @@ use crate::app::Text;
 /// Inner margin that makes a text entry as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
-    entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
+    sized_entry(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }
 
 pub(crate) fn mono_entry(
@@ -20,10 +20,10 @@ pub(crate) fn mono_entry(
     label: &str,
     hint: &str,
 ) -> Response {
-    entry_in(ui, text, width, label, hint, egui::FontId::monospace(theme.sizes.body).into())
+    sized_entry(ui, text, width, label, hint, egui::FontId::monospace(theme.sizes.body).into())
 }
 
-fn entry_in(
+fn sized_entry(
     ui: &mut Ui,
     text: &mut String,
     width: f32,

@@ -104,8 +104,8 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
 fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
-    let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
-        .font(theme.strong(theme.sizes.section));
+    let text = RichText::new(format!("{}  {}", shortened_text(&shown, most), icons::CARET_DOWN))
+        .font(theme.bold_font(theme.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
         ui.label(theme.caption(theme.say("shell.sessions")));
@@ -155,7 +155,7 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
 
 /// Returns a name shortened for the header. The serial number is kept, because it distinguishes devices of the same
 /// kind.
-fn shortened(name: &str, most: usize) -> String {
+fn shortened_text(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
         _ => text.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
@@ -207,7 +207,8 @@ fn is_read_only(device: &AnyDevice) -> bool {
 fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let Some(device) = studio.selected_device() else { return };
     let words = device.place();
-    let label = egui::Label::new(theme.mono(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
+    let label =
+        egui::Label::new(theme.monospace(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
     let hint = format!("{words}\n{}", theme.say("shell.copy_link"));
     if ui.add(label).on_hover_text(hint).clicked() {
         ui.copy_text(words);

@@ -14,7 +14,7 @@ impl DeferredInput {
     pub(super) fn split_frame_events(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);
         let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);
-        let is_followed = self.0.iter().skip(after_first).any(is_typed);
+        let is_followed = self.0.iter().skip(after_first).any(is_typing_event);
         let later = if at_once || !is_followed { Vec::new() } else { self.0.split_off(after_first) };
         *events = std::mem::replace(&mut self.0, later);
         !self.0.is_empty()
@@ -28,7 +28,7 @@ fn may_move_focus(event: &Event) -> bool {
     )
 }
 
-fn is_typed(event: &Event) -> bool {
+fn is_typing_event(event: &Event) -> bool {
     matches!(event, Event::Text(_) | Event::Paste(_) | Event::Ime(_) | Event::Key { pressed: true, .. })
 }
 

@@ -20,7 +20,7 @@ pub(super) fn navigation_ui(
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     for tab in views.tabs.tabs() {
         let word = views.tabs.title(theme, tab);
-        let text = egui::RichText::new(&word).font(theme.strong(theme.sizes.body));
+        let text = egui::RichText::new(&word).font(theme.bold_font(theme.sizes.body));
         if entry_ui(ui, false, text, &word).clicked() {
             views.plot.restore_size();
             actions.push(Action::ShowTab(tab));

@@ -20,7 +20,7 @@ pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
 
 /// Draws a page that scrolls as a whole. `id` distinguishes the page from others. The scroll bar lies in the margin, so
 /// nothing shifts when the bar appears.
-pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
+pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, theme));
     ui.scope(|ui| {
         let inside = std::mem::take(&mut ui.spacing_mut().scroll.floating_allocated_width);

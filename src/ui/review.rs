@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
-use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
+use super::controls::{enabled_button, modal, paragraph, primary_button, right_aligned, row, spinner};
 use super::page::apart;
 use super::{Theme, icons};
 use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, PermitToggle, Question, ReviewSheet, Stage};
@@ -68,8 +68,14 @@ fn content_ui(
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permission it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
-                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.execution_mode.button_id()))
-                    .clicked()
+                if primary_button(
+                    ui,
+                    theme,
+                    device.is_ready() && may_wear,
+                    icon,
+                    &theme.say(sheet.execution_mode.button_id()),
+                )
+                .clicked()
                 {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
@@ -81,7 +87,7 @@ fn content_ui(
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
             redo_ui(ui, theme, sheet);
             let stopping = device.running().is_some_and(|running| running.stopping);
-            at_the_right(ui, |ui| {
+            right_aligned(ui, |ui| {
                 let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
                 if enabled_button(ui, !stopping, icons::X, &word).clicked() {
                     actions.push(Action::Stop);
@@ -99,7 +105,7 @@ fn content_ui(
             });
             redo_ui(ui, theme, sheet);
             if let Some(backup) = backup {
-                row(ui, theme, &theme.say("review.backup"), theme.mono(backup.display().to_string()));
+                row(ui, theme, &theme.say("review.backup"), theme.monospace(backup.display().to_string()));
             }
             if let Some(why) = logbook {
                 remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.words(why));
@@ -139,7 +145,7 @@ fn buttons_ui(
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
 ) {
     theme.gap(ui);
-    at_the_right(ui, |ui| {
+    right_aligned(ui, |ui| {
         primary(ui, actions);
         if enabled_button(ui, true, "", &theme.say(close)).clicked() {
             actions.push(Action::Review(device.id(), ReviewAction::Close));
@@ -150,7 +156,7 @@ fn buttons_ui(
 /// Draws the operations and, during a write, the number of completed operations. Values are never truncated.
 fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
     let palette = theme.palette;
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             for (at, line) in lines.iter().enumerate() {
                 if at > 0 {
@@ -214,7 +220,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
             ui.add_space(theme.space.around);
-            ui.label(theme.mono(theme.words(part)));
+            ui.label(theme.monospace(theme.words(part)));
         });
     }
     let words = [(&change.old, theme.palette.muted), (&change.new, ink)];
@@ -224,7 +230,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
             ui.add_space(theme.space.around);
             let head = ui.label(theme.caption(theme.say(head)));
             ui.add_space((HEADS - head.rect.width()).max(0.0));
-            paragraph(ui, theme.mono(theme.words(words)).color(colour));
+            paragraph(ui, theme.monospace(theme.words(words)).color(colour));
         });
     }
 }

@@ -19,7 +19,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
     }
-    let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
+    let store = Store::for_user().map_err(|error| explain::store(&error).terminal_text())?;
     let log = LogFile::begin(&store.log_path());
     let cleaned = store.clone();
     // Not awaited: a slow disk does not delay the window.

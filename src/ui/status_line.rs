@@ -76,8 +76,8 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
             ui.allocate_exact_size(vec2(28.0, 28.0), Sense::hover());
         }
     });
-    let works = device.filter(|device| is_at_work(*device));
-    let lost = device.and_then(lost_of);
+    let works = device.filter(|device| has_running_job(*device));
+    let lost = device.and_then(connection_problem);
     apart(ui, "activity", |ui| {
         if let Some(device) = works {
             let share = if notice.is_some() { SHARE } else { 1.0 };
@@ -108,12 +108,12 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
 
 /// Returns whether a job is running or a link is being opened. An open review does not count, because it shows its own
 /// progress.
-fn is_at_work(device: &AnyDevice) -> bool {
+fn has_running_job(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running().is_some() && !device.is_reviewing()
 }
 
 /// Returns the device and the reason if the connection was lost or the device is silent.
-fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
+fn connection_problem(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
     match device.phase() {
         Phase::Lost(why) | Phase::Silent(why) => Some((device, why)),
         Phase::Opening | Phase::Connected | Phase::Offline => None,
@@ -173,7 +173,7 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
         (_, Some(notice)) => {
             let (icon, colour) = severity(theme, notice.severity);
             let time = notice.at.strftime(TIME).to_string();
-            ui.label(theme.mono(time).size(theme.sizes.caption).color(theme.palette.muted));
+            ui.label(theme.monospace(time).size(theme.sizes.caption).color(theme.palette.muted));
             ui.label(RichText::new(icon).color(colour));
             let words = theme.label(notice_text(theme, notice));
             ui.add(egui::Label::new(words).truncate());
@@ -200,12 +200,12 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
         Some(TraceFault::Reported) => palette.warn,
         None => palette.muted,
     };
-    ui.label(theme.mono(time).size(theme.sizes.caption).color(palette.muted));
-    ui.label(theme.mono(arrow).color(palette.accent));
+    ui.label(theme.monospace(time).size(theme.sizes.caption).color(palette.muted));
+    ui.label(theme.monospace(arrow).color(palette.accent));
     let most = (ui.available_width() * 0.4).max(0.0);
     ui.scope(|ui| {
         ui.set_max_width(most);
-        ui.add(egui::Label::new(theme.mono(&line.bytes).color(colour)).truncate());
+        ui.add(egui::Label::new(theme.monospace(&line.bytes).color(colour)).truncate());
     });
     ui.add(egui::Label::new(RichText::new(line.words(theme.language)).color(colour)).truncate());
 }

@@ -78,11 +78,11 @@ impl Theme {
 
     /// Returns the heading of a section or a card.
     pub fn heading(&self, words: impl Into<String>) -> RichText {
-        RichText::new(words).font(self.strong(self.sizes.section))
+        RichText::new(words).font(self.bold_font(self.sizes.section))
     }
 
     /// Returns monospaced text for bytes, registers and changing numbers.
-    pub fn mono(&self, words: impl Into<String>) -> RichText {
+    pub fn monospace(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.body))
     }
 
@@ -91,7 +91,7 @@ impl Theme {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
 
-    pub fn strong(&self, size: f32) -> FontId {
+    pub fn bold_font(&self, size: f32) -> FontId {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }
 
@@ -105,7 +105,7 @@ impl Theme {
     }
 
     /// Returns the frame of read-only content such as plots, bytes and the trace.
-    pub fn sunken(&self) -> egui::Frame {
+    pub fn sunken_frame(&self) -> egui::Frame {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
 
@@ -120,7 +120,7 @@ impl Theme {
                 (TextStyle::Small, FontId::proportional(self.sizes.caption)),
                 (TextStyle::Body, FontId::proportional(self.sizes.body)),
                 (TextStyle::Button, FontId::proportional(self.sizes.body)),
-                (TextStyle::Heading, self.strong(self.sizes.section)),
+                (TextStyle::Heading, self.bold_font(self.sizes.section)),
                 (TextStyle::Monospace, FontId::monospace(self.sizes.body)),
             ]
             .into();

@@ -81,7 +81,7 @@ impl Window {
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
             theme.apply_to(&ctx);
         }
-        self.shell(ui, &theme, &mut actions);
+        self.draw_panels(ui, &theme, &mut actions);
         self.dialogs(&ctx, &theme, &mut actions);
         header::stop_overlay_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
@@ -105,7 +105,7 @@ impl Window {
         self.views.file = Some(FileView::new(question, self.studio.folders()));
     }
 
-    fn shell(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
+    fn draw_panels(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         let flat = |fill: crate::app::Rgb| egui::Frame::NONE.fill(fill.into());
         let palette = theme.palette;
         let Window { studio, views, .. } = self;

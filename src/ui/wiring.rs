@@ -17,7 +17,7 @@ pub(crate) fn wires_ui(
     for (wire, words) in wires {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            let name = ui.label(theme.mono(*wire));
+            let name = ui.label(theme.monospace(*wire));
             ui.add_space((width - name.rect.width()).max(0.0));
             paragraph(ui, theme.label(theme.words(&texts.text(words))));
         });

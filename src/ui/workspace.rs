@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, Ui, vec2};
 
-use super::controls::{button, primary};
+use super::controls::{button, primary_button};
 use super::device_view::DeviceView;
 use super::page::apart;
 use super::panels::plot_ui;
@@ -45,7 +45,7 @@ fn nothing_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions
         theme.gap(ui);
         let size = vec2(OPTION.min(ui.available_width()), 0.0);
         ui.allocate_ui_with_layout(size, Layout::top_down_justified(Align::Center), |ui| {
-            if primary(ui, theme, true, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+            if primary_button(ui, theme, true, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
                 actions.push(Action::Connect(connect::ConnectAction::Open));
             }
             if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {

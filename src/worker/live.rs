@@ -37,7 +37,7 @@ impl Live {
     }
 
     /// Directs later stops to the given job.
-    pub(super) fn next_job(&self, cancel: CancelToken) {
+    pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
 
@@ -83,7 +83,7 @@ impl Live {
         self.sampling.request();
     }
 
-    pub(super) fn sampling(&self) -> &CancelToken {
+    pub(super) fn sampling_cancel(&self) -> &CancelToken {
         &self.sampling
     }
 
@@ -148,12 +148,12 @@ impl<W: Clone + PartialEq> WatchList<W> {
     pub(super) fn changed_entries(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;
-        changed.then(|| list.asked_for())
+        changed.then(|| list.active_entries())
     }
 
     /// Returns the watched values and their intervals, except those that the device has refused.
-    pub(super) fn asked_for(&self) -> Vec<(W, Duration)> {
-        self.lock().asked_for()
+    pub(super) fn active_entries(&self) -> Vec<(W, Duration)> {
+        self.lock().active_entries()
     }
 
     /// Records that the device lacks the given value.
@@ -171,7 +171,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
 }
 
 impl<W: Clone> WatchEntries<W> {
-    fn asked_for(&self) -> Vec<(W, Duration)> {
+    fn active_entries(&self) -> Vec<(W, Duration)> {
         let asked = self.entries.iter().filter(|entry| !entry.refused);
         asked.map(|entry| (entry.value.clone(), entry.interval)).collect()
     }
@@ -222,9 +222,9 @@ mod tests {
         assert_eq!(watches.changed_entries(&mut known), Some(vec![("b", second)]));
         assert_eq!(watches.changed_entries(&mut known), None, "known by now");
         watches.set_entries(vec![("a", second), ("b", Duration::MAX)]);
-        assert_eq!(watches.asked_for(), [("b", LONGEST)]);
+        assert_eq!(watches.active_entries(), [("b", LONGEST)]);
         watches.set_entries(vec![]);
         watches.set_entries(vec![("a", second)]);
-        assert_eq!(watches.asked_for(), [("a", second)]);
+        assert_eq!(watches.active_entries(), [("a", second)]);
     }
 }

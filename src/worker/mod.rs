@@ -72,7 +72,7 @@ pub trait Device: Send + 'static {
 
     /// Sets the interval of subsequent samples, or `None` for no sampling. Data that the device sends without request
     /// begin with the next sample and end on `None`.
-    fn pace(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
+    fn set_sample_interval(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
     /// Takes one sample with as few exchanges as possible. Messages that the device sends meanwhile belong to the
     /// sample.
@@ -253,7 +253,7 @@ impl<D: Device> Worker<D> {
         self.next += 1;
         // Each job has its own cancellation, so that an earlier one does not affect it, and none is reset.
         let cancel = CancelToken::default();
-        self.live.next_job(cancel.clone());
+        self.live.set_job_cancel(cancel.clone());
         if self.orders.try_send(Order { id, job, cancel }).is_err() {
             self.busy.store(false, Ordering::SeqCst);
             return Err(SubmitError::Ended);
@@ -293,7 +293,7 @@ impl<D: Device> Worker<D> {
 
     /// Returns the watched values in the requested order, without those that the device has refused.
     pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
-        self.watches.asked_for()
+        self.watches.active_entries()
     }
 
     /// Returns the buffer of at most 4096 samples. A new sample does not call `wake`.

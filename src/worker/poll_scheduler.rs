@@ -60,13 +60,13 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 
     /// Records that the request was made and that its reply arrived at `now`.
-    pub(super) fn taken(&mut self, due: &DueRequest<W>, now: Instant) {
+    pub(super) fn mark_completed(&mut self, due: &DueRequest<W>, now: Instant) {
         self.sample_was_last = *due == DueRequest::Sample;
         match due {
-            DueRequest::Sample => self.sample.taken(now),
+            DueRequest::Sample => self.sample.mark_completed(now),
             DueRequest::Watch(what) => {
                 if let Some(watch) = self.watches.iter_mut().find(|watch| watch.value == *what) {
-                    watch.pace.taken(now);
+                    watch.pace.mark_completed(now);
                 }
             }
         }
@@ -90,7 +90,7 @@ impl Pace {
         self.next
     }
 
-    fn taken(&mut self, now: Instant) {
+    fn mark_completed(&mut self, now: Instant) {
         self.next = match (self.next, self.interval) {
             (Some(due), Some(interval)) => Some((due + interval).max(now)),
             _ => None,
@@ -112,14 +112,14 @@ mod tests {
         let mut pace = Pace::default();
         assert_eq!(pace.due(None, start), None);
         assert_eq!(pace.due(Some(step), start), Some(start));
-        pace.taken(start + ms(25));
+        pace.mark_completed(start + ms(25));
         assert_eq!(pace.due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
-        pace.taken(start + ms(500));
+        pace.mark_completed(start + ms(500));
         assert_eq!(pace.due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
-        pace.taken(start + ms(525));
+        pace.mark_completed(start + ms(525));
         assert_eq!(pace.due(Some(step), start + ms(525)), Some(start + ms(600)));
         assert_eq!(pace.due(None, start + ms(530)), None);
-        pace.taken(start + ms(530));
+        pace.mark_completed(start + ms(530));
         assert_eq!(pace.due(None, start + ms(530)), None);
     }
 
@@ -138,7 +138,7 @@ mod tests {
             let name = if let DueRequest::Watch(what) = due { what } else { '.' };
             said.push(format!("{name}{now}"));
             now += 25;
-            agenda.taken(&due, start + ms(now));
+            agenda.mark_completed(&due, start + ms(now));
         }
     }
 
@@ -166,24 +166,24 @@ mod tests {
         agenda.watch(vec![('a', ms(200))]);
         assert_eq!(agenda.next(None, start), None);
         assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), DueRequest::Sample)));
-        agenda.taken(&DueRequest::Sample, start + ms(20));
+        agenda.mark_completed(&DueRequest::Sample, start + ms(20));
         assert_eq!(agenda.next(Some(ms(100)), start + ms(20)), Some((start + ms(10), DueRequest::Watch('a'))));
-        agenda.taken(&DueRequest::Watch('a'), start + ms(30));
-        agenda.taken(&DueRequest::Sample, start + ms(120));
+        agenda.mark_completed(&DueRequest::Watch('a'), start + ms(30));
+        agenda.mark_completed(&DueRequest::Sample, start + ms(120));
         agenda.watch(vec![('b', ms(50)), ('a', ms(200))]);
         assert_eq!(
             agenda.next(Some(ms(100)), start + ms(120)),
             Some((start + ms(120), DueRequest::Watch('b'))),
             "b begins"
         );
-        agenda.taken(&DueRequest::Watch('b'), start + ms(130));
+        agenda.mark_completed(&DueRequest::Watch('b'), start + ms(130));
         agenda.watch(vec![('a', ms(200))]);
         assert_eq!(
             agenda.next(Some(ms(100)), start + ms(130)),
             Some((start + ms(210), DueRequest::Sample)),
             "110 + 100"
         );
-        agenda.taken(&DueRequest::Sample, start + ms(220));
+        agenda.mark_completed(&DueRequest::Sample, start + ms(220));
         assert_eq!(
             agenda.next(Some(ms(100)), start + ms(220)),
             Some((start + ms(210), DueRequest::Watch('a'))),

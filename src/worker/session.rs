@@ -104,8 +104,8 @@ impl<D: Device> Session<D> {
     }
 
     /// Sets the sampling interval, or stops sampling.
-    pub fn pace(&mut self, interval: Option<Duration>) {
-        self.device.pace(&mut self.context, interval);
+    pub fn set_sample_interval(&mut self, interval: Option<Duration>) {
+        self.device.set_sample_interval(&mut self.context, interval);
     }
 
     /// Takes a sample immediately.

@@ -131,7 +131,7 @@ impl<P: Producer> Stream<P> {
         });
         let (alive, ended) = bounded(0);
         let (own, end) = (shared.clone(), ExitSignal { alive: Some(alive), wake });
-        std::thread::Builder::new().name("stream".to_owned()).spawn(move || work(producer, &own, &*clock, &end))?;
+        std::thread::Builder::new().name("stream".to_owned()).spawn(move || run_loop(producer, &own, &*clock, &end))?;
         Ok(Stream { shared, ended })
     }
 
@@ -227,7 +227,7 @@ impl Drop for ExitSignal {
     }
 }
 
-fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &ExitSignal) {
+fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &ExitSignal) {
     let (mut woken, mut unread) = (None, false);
     while !shared.stop.load(Ordering::SeqCst) {
         let request = lock(&shared.request).take();

@@ -46,7 +46,7 @@ pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io
     std::thread::Builder::new().name("session".to_owned()).spawn(move || {
         let _alive = alive;
         let _slot = Slot(bench.busy.clone());
-        work(bench);
+        run_loop(bench);
     })?;
     Ok(())
 }
@@ -60,7 +60,7 @@ impl Drop for Slot {
     }
 }
 
-fn work<D: Device>(mut bench: Bench<D>) {
+fn run_loop<D: Device>(mut bench: Bench<D>) {
     let mut agenda = PollScheduler::default();
     let mut known = 0;
     let mut paced = None;
@@ -68,7 +68,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
     let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
         // The token first, then the requests that it was set for: see `Live::interrupt_sample`.
-        bench.live.sampling().reset();
+        bench.live.sampling_cancel().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
                 bench.carry_out(order);
@@ -85,7 +85,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
         }
         let polling = bench.live.polling();
         if std::mem::replace(&mut paced, polling) != polling {
-            bench.session.pace(polling);
+            bench.session.set_sample_interval(polling);
         }
         let now = Instant::now();
         let due = agenda.next(polling, now);
@@ -93,7 +93,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             && *at <= now
         {
             if bench.take(due) {
-                agenda.taken(due, Instant::now());
+                agenda.mark_completed(due, Instant::now());
             }
             bench.run_idle_work();
             lost = false;
@@ -113,7 +113,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
         bench.wait(until.saturating_duration_since(Instant::now()));
     }
     if paced.is_some() {
-        bench.session.pace(None);
+        bench.session.set_sample_interval(None);
     }
     bench.session.leave();
 }
@@ -131,7 +131,7 @@ impl<D: Device> Bench<D> {
     /// Takes a due sample or watched value. Returns false if a job or another request interrupted the operation, which
     /// is then still due.
     fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
-        self.session.set_cancel(self.live.sampling().clone());
+        self.session.set_cancel(self.live.sampling_cancel().clone());
         let request = self.live.number();
         let taken = match due {
             DueRequest::Sample => self.session.sample(),
@@ -159,7 +159,7 @@ impl<D: Device> Bench<D> {
 
     fn run_idle_work(&mut self) {
         // A job interrupts it, like a sample.
-        self.session.set_cancel(self.live.sampling().clone());
+        self.session.set_cancel(self.live.sampling_cancel().clone());
         if let Some(remark) = self.session.idle() {
             self.events.send(Event::Remark(remark));
         }

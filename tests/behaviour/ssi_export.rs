@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
     Code, Descriptor, ErrorBit, Families, FrameReading, GrayCoverage, Layout, Meaning, Parity, Range, Repeat, Settings,
-    TooWideError, c99, scl, structured_text, structured_text_32,
+    TooWideError, c99, scl_source, structured_text, structured_text_32,
 };
 
 use crate::support::python;
@@ -164,7 +164,7 @@ const REFERENCE: [(&str, u64, &str); 12] = [
 ];
 
 fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWideError>); 2] {
-    [("st", structured_text_32(layout, "title")), ("scl", scl(layout, "title"))]
+    [("st", structured_text_32(layout, "title")), ("scl", scl_source(layout, "title"))]
 }
 
 /// What an exported decoder of 32 bits says of frames, run in Python; `None` without Python.
@@ -226,7 +226,7 @@ fn what_32_bits_cannot_hold_is_refused() {
 /// name.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
-    let text = scl(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();
+    let text = scl_source(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();
     assert!(
         text.starts_with(
             "FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\nVAR_INPUT\n"

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus};
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
@@ -39,7 +39,7 @@ fn virtual_devices() {
     fuzz("virtual devices", &examples, |bytes| {
         let mut bus = hiperface::sim::Bus::new(&hiperface::sim::Config::from_pairs(&[]).unwrap());
         let mut port = biss::sim::UbicomPort::new(&biss::sim::Config::from_pairs(&[]).unwrap());
-        let mut adapter = Adapter::from_pairs(&[], at_adapter()).unwrap();
+        let mut adapter = Adapter::from_pairs(&[], attachable_kinds()).unwrap();
         let gateway = interbus::sim::Gateway::new(&interbus::sim::Config::from_pairs(&[]).unwrap());
         let target = hiperdrive::sim::Target::new(&hiperdrive::sim::Config::from_pairs(&[]).unwrap());
         let mut connection = target.connection(std::net::Ipv4Addr::LOCALHOST);

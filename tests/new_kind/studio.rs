@@ -62,12 +62,16 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
         desk.studio.act(StudioAction::Connect(action));
     }
     let refused = desk.studio.connect.as_ref().unwrap().url().unwrap_err();
-    assert!(refused.terminal().contains("**") && !refused.terminal().contains("4711"), "{}", refused.terminal());
+    assert!(
+        refused.terminal_text().contains("**") && !refused.terminal_text().contains("4711"),
+        "{}",
+        refused.terminal_text()
+    );
     desk.studio.begin(Some("sim:?pin=4711&colour=green".parse().unwrap()), None);
     desk.until("it is refused", |desk| matches!(desk.shown().phase(), Phase::Lost(_)));
     assert_eq!(desk.shown().place(), "sim:?colour=green");
     let names: Vec<String> = desk.studio.devices().iter().map(|device| device.name()).collect();
-    let told = |text: &Text| text.terminal();
+    let told = |text: &Text| text.terminal_text();
     let log: Vec<String> = (desk.studio.services.log.notices())
         .map(|own| format!("{:?} {}", own.about, own.texts.iter().map(told).collect::<String>()))
         .collect();
@@ -127,7 +131,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     desk.command(DeviceCommand::Review);
     desk.until_stage(|stage| matches!(stage, Stage::Ready(_)));
     let lines = desk.shown().sheet().unwrap().lines;
-    let words: Vec<String> = lines.iter().flat_map(|line| line.texts().map(|text| text.terminal())).collect();
+    let words: Vec<String> = lines.iter().flat_map(|line| line.texts().map(|text| text.terminal_text())).collect();
     assert_eq!(words, ["zero", "0", "100"]);
 
     let Stage::Done { backup: Some(backup), .. } = desk.write() else { panic!("no backup") };

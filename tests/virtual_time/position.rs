@@ -114,7 +114,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
         let settings = LineSettings::from_byte(byte);
         let mut station = Station::new(MARGIN);
         station.format = settings.format().unwrap();
-        station.long_timeout = settings.long_timeout();
+        station.long_timeout = settings.has_long_timeout();
         let mut desk = Desk::with_station(&format!("settings={byte}&pace=worst"), station);
         desk.run(HiperfaceJob::Position(None)).unwrap();
         let before = desk.clock.now();
@@ -124,7 +124,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
         let cycle = desk.clock.now().since(before).as_secs_f64() / 100.0;
         // A request of three characters, a reply of seven, 11 bits each; silence before and after the reply; 10 ms of
         // processing.
-        let silence = if settings.long_timeout() { 44.0 } else { 11.0 };
+        let silence = if settings.has_long_timeout() { 44.0 } else { 11.0 };
         let least = (10.0 * 11.0 + 2.0 * silence) / f64::from(settings.baud().unwrap().bits_per_second()) + 0.010;
         assert!(least >= cycle * 0.95, "{settings}: {cycle} s a cycle, {least} s needed");
         assert!(least <= cycle * 1.0001, "{settings}: {cycle} s a cycle is faster than allowed, {least} s");

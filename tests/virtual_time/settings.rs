@@ -21,7 +21,7 @@ fn position(desk: &mut Desk) {
 fn station_for(settings: LineSettings) -> Station {
     let mut station = Station::new(MARGIN);
     station.format = settings.format().unwrap();
-    station.long_timeout = settings.long_timeout();
+    station.long_timeout = settings.has_long_timeout();
     station
 }
 
@@ -37,7 +37,7 @@ fn a_restart_with_any_stored_settings_is_followed() {
         let now = encoder_studio::link::Clock::now(&*desk.clock);
         let in_force = desk.bus().encoders()[0].settings_at(now).unwrap();
         assert_eq!(in_force.format(), settings.format(), "{settings}");
-        assert_eq!(in_force.long_timeout(), settings.long_timeout(), "{settings}");
+        assert_eq!(in_force.has_long_timeout(), settings.has_long_timeout(), "{settings}");
         assert_eq!(desk.tap().count(Command::Reset), 1);
     }
 }

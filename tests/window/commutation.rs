@@ -67,7 +67,7 @@ impl Desk {
     }
 
     fn second(&self) -> (Verdict, &'static str) {
-        let second = self.encoder().commutation.second(self.encoder().geometry()).expect("it was read");
+        let second = self.encoder().commutation.second_vector_result(self.encoder().geometry()).expect("it was read");
         let (verdict, text) = second.unwrap();
         texts::check(&text);
         (verdict, text.id())
@@ -144,7 +144,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     assert_eq!(desk.notice_count("commutation.same"), 1);
     let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
     report.iter().for_each(texts::check);
-    let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal).collect();
+    let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal_text).collect();
     assert!(english.iter().any(|line| line == "Limits: 2.50 A for 30.0 s"), "{english:?}");
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
@@ -234,7 +234,7 @@ fn the_second_vector_reveals_wiring_faults() {
     desk.type_in(Slot::Second, "124");
     assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
     desk.edit(|form| form.second_deg = "180".to_owned());
-    let second = desk.encoder().commutation.second(desk.encoder().geometry()).unwrap();
+    let second = desk.encoder().commutation.second_vector_result(desk.encoder().geometry()).unwrap();
     assert_eq!(second.unwrap_err().id(), "entry.number");
 }
 

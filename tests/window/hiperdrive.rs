@@ -188,7 +188,7 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
 #[test]
 fn pitch_and_unit_are_remembered() {
     let mut desk = read("sim:");
-    assert_eq!(unit(&desk).ruler(ONE).measures().count(), 3, "no millimetres without a spindle");
+    assert_eq!(unit(&desk).ruler(ONE).available_measures().count(), 3, "no millimetres without a spindle");
     let pitch = Length { nanometres: 4_000_000 };
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));
@@ -240,7 +240,7 @@ fn without_control_no_motion_is_requested() {
         assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
     }
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
-    assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable(ONE).is_empty());
+    assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable_states(ONE).is_empty());
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn limits_may_span_the_full_range_of_the_drive() {
     let range = |desk: &Desk| {
         let rows = unit(desk).rows(Some(ONE));
         let row = rows.into_iter().find(|row| row.number == number(158)).unwrap();
-        row.range.unwrap().terminal()
+        row.range.unwrap().terminal_text()
     };
     assert!(range(&desk).contains("-33554432") && range(&desk).contains("33554432"), "{}", range(&desk));
     let scale = PositionScale::new(400, 256).unwrap();

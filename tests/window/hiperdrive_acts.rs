@@ -32,7 +32,12 @@ pub(crate) const ATTEMPTS: usize = 20;
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
     while let Err(why) = unit(desk).may_move(drive) {
-        assert!(began.elapsed() < LONG, "it may not move: {}\n{}", why.terminal(), crate::support::log(&desk.studio));
+        assert!(
+            began.elapsed() < LONG,
+            "it may not move: {}\n{}",
+            why.terminal_text(),
+            crate::support::log(&desk.studio)
+        );
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(1));
     }

@@ -42,7 +42,7 @@ fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
     });
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
-    assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).reached(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).step_status(step) == Reached::Done));
     let (lower, upper) = limits;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [1, 400, 256, lower.into(), upper.into()]);
 }

@@ -162,13 +162,13 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
         SpeedTorque { speed: percent(40), ..SpeedTorque::MOVE },
         SpeedTorque { speed: percent(20), ..SpeedTorque::MOVE },
     );
-    assert_eq!(unit(&desk).moves.moves_with(ONE), None);
+    assert_eq!(unit(&desk).moves.running_move_effort(ONE), None);
     drive(&mut desk, Motor::MoveEffort(before));
     let seen = while_it_moves(&mut desk, |desk| {
         drive(desk, Motor::MoveEffort(after));
         desk.settle();
         let moves = &unit(desk).moves;
-        let seen = (moves.move_effort(ONE), moves.moves_with(ONE), moves.jogs_with(ONE));
+        let seen = (moves.move_effort(ONE), moves.running_move_effort(ONE), moves.running_jog_effort(ONE));
         // For another attempt.
         drive(desk, Motor::MoveEffort(before));
         seen
@@ -178,7 +178,7 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
     drive_until(&mut desk, |_| Motor::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
-    assert_eq!(unit(&desk).moves.moves_with(ONE), Some(after));
+    assert_eq!(unit(&desk).moves.running_move_effort(ONE), Some(after));
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
 }

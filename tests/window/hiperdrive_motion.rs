@@ -214,14 +214,14 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
 #[test]
 fn states_can_be_requested_and_a_fault_acknowledged() {
     let mut desk = in_control("sim:");
-    assert_eq!(unit(&desk).reachable(ONE), [State::Ready]);
+    assert_eq!(unit(&desk).reachable_states(ONE), [State::Ready]);
     drive_until(
         &mut desk,
         |_| Motor::Lead(TargetState::Enabled),
         "it is enabled",
         |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled),
     );
-    assert!(unit(&desk).reachable(ONE).contains(&State::Operational));
+    assert!(unit(&desk).reachable_states(ONE).contains(&State::Operational));
     jog(&mut desk);
     let target = unit(&desk).target.clone().unwrap();
     let blocked = ErrorCode::BLOCK_FORWARD;
@@ -233,7 +233,7 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
     });
     assert!(!unit(&desk).moves.is_held());
     assert_eq!(unit(&desk).may_move(ONE).unwrap_err().id(), "hd_refused.fault");
-    assert_eq!(unit(&desk).reachable(ONE), [State::Locked]);
+    assert_eq!(unit(&desk).reachable_states(ONE), [State::Locked]);
     drive_until(
         &mut desk,
         |_| Motor::Acknowledge,
@@ -307,7 +307,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     for _ in 0..2 {
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(up));
-            assert!(unit(desk).may_jog(ONE, up).is_ok() && !unit(desk).can_free(ONE, up));
+            assert!(unit(desk).may_jog(ONE, up).is_ok() && !unit(desk).can_enable_outward(ONE, up));
             drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
         let press = Motor::JogPress { direction: up, repeated: false };

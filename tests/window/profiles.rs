@@ -384,7 +384,7 @@ fn a_relative_path_is_saved_to_the_same_file() {
     assert_eq!(desk.encoder().session.place(), rel.display().to_string());
     desk.command(DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
-    assert_eq!(question.suggested(), Some(rel.as_path()));
+    assert_eq!(question.suggested_path(), Some(rel.as_path()));
     desk.put(0, 0, b"X");
     desk.act(Action::Chosen(question, "rel.ron".into()));
     desk.until("it is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());

@@ -162,7 +162,7 @@ fn only_changed_values_count_as_a_difference() {
     desk.until("it is asked", is_asked);
     let diverged = desk.studio.diverged.as_ref().unwrap();
     assert_eq!(diverged.problem().unwrap().id(), "profile.invalid");
-    assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_keep_mine());
+    assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_overwrite_file());
     desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.until("it is saved", is_saved);
     assert!(file_text(&path).contains("58 59 5A"));
@@ -175,7 +175,7 @@ fn only_changed_values_count_as_a_difference() {
     desk.until("it is asked", is_asked);
     desk.act(Action::Resolve(ConflictResolution::KeepMine));
     desk.settle();
-    assert!(desk.studio.diverged.as_ref().is_some_and(|own| !own.can_keep_mine()));
+    assert!(desk.studio.diverged.as_ref().is_some_and(|own| !own.can_overwrite_file()));
     assert_eq!(file_text(&path), newer);
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::buses::bridge::protocol::{Receiver, Request};
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
@@ -36,7 +36,7 @@ impl Served {
         std::thread::spawn(move || {
             let began = Instant::now();
             for stream in listener.incoming() {
-                let now = || Moment::after_start(began.elapsed());
+                let now = || Moment::from_elapsed(began.elapsed());
                 serve(stream.unwrap(), &mut adapter, &heard, (&cut, &other), &now);
             }
         });
@@ -68,7 +68,7 @@ impl Served {
 fn adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
     let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
-    Adapter::from_pairs(&pairs, at_adapter()).unwrap()
+    Adapter::from_pairs(&pairs, attachable_kinds()).unwrap()
 }
 
 fn serve(

@@ -140,7 +140,7 @@ fn an_unreadable_table_names_the_row_and_keeps_the_view() {
     let problem = {
         let path = desk.outside.path("broken.csv");
         desk.open_capture(&path);
-        desk.studio.signals().problem().unwrap().terminal()
+        desk.studio.signals().problem().unwrap().terminal_text()
     };
     // The header is row 1, and 0.05 ms is the sixth sample.
     assert!(problem.contains("row 7, column 2"), "{problem}");

@@ -116,7 +116,7 @@ fn impossible_layouts_are_refused_and_change_nothing() {
     // In both languages, with both sides named.
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Enter(Field::Clocks, FieldInput::Number(14)));
-    let words = encoder(&desk).designer.problem().unwrap().terminal();
+    let words = encoder(&desk).designer.problem().unwrap().terminal_text();
     assert!(words.contains("ERROR is on clock 15") && words.contains("14 clocks"), "{words}");
 }
 
@@ -155,7 +155,7 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     wish(&mut desk, DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
-    assert_eq!(question.suggested().unwrap().to_str(), Some("ahm36_st_12.ron"));
+    assert_eq!(question.suggested_path().unwrap().to_str(), Some("ahm36_st_12.ron"));
     let path = desk.outside.path("layout.ron");
     desk.act(Action::Chosen(question, path.clone()));
     desk.until("it is saved", |studio| studio.ssi().is_some_and(|own| !own.is_dirty()));
@@ -240,7 +240,7 @@ fn words_of_an_adapter_are_plotted_live() {
     command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("words stream", |studio| studio.ssi().unwrap().record.positions() > 500);
     let own = encoder(&desk);
-    assert!(own.streamed().is_some() && own.is_following());
+    assert!(own.streamed().is_some() && own.is_showing_live());
     let decoded = own.last().unwrap().decoded.as_ref().unwrap();
     assert!(decoded.is_valid && decoded.findings.is_empty());
     // Another layout reads the same words again.
@@ -248,7 +248,7 @@ fn words_of_an_adapter_are_plotted_live() {
     act(&mut desk, Ssi::Enter(Field::Singleturn, FieldInput::Number(12)));
     assert!(encoder(&desk).record.positions() >= before);
     desk.until("the layout does not fit", |studio| {
-        studio.ssi().unwrap().record.tally().noted().iter().any(|noted| noted.stands)
+        studio.ssi().unwrap().record.tally().finding_counts().iter().any(|noted| noted.stands)
     });
     command(&mut desk, DeviceCommand::Poll(None));
 }
@@ -393,14 +393,14 @@ fn the_device_check_reports_faults() {
 #[test]
 fn the_virtual_encoder_sends_the_edited_layout() {
     let mut desk = connected("sim:?ssi=afs60&rpm=6");
-    assert_eq!(encoder(&desk).link_to_send(), None);
+    assert_eq!(encoder(&desk).link_for_layout(), None);
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
-    let link = encoder(&desk).link_to_send().unwrap().to_string();
+    let link = encoder(&desk).link_for_layout().unwrap().to_string();
     assert_eq!(link, "sim:?ssi=ahm36&rpm=6");
     act(&mut desk, Ssi::SendLayout);
     desk.until("it is connected again", |studio| {
         let own = studio.ssi().unwrap();
-        own.session.is_ready() && own.link_to_send().is_none() && own.identity.is_some()
+        own.session.is_ready() && own.link_for_layout().is_none() && own.identity.is_some()
     });
     command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("a word fits", |studio| {

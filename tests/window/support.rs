@@ -440,7 +440,7 @@ pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) 
 /// Returns all messages, for a test that fails.
 pub(crate) fn log(studio: &Studio) -> String {
     let words = |notice: &encoder_studio::app::Notice| {
-        let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal).collect();
+        let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal_text).collect();
         format!("{:?} {:?} {}", notice.severity, notice.about, words.join(" "))
     };
     studio.services.log.notices().map(words).collect::<Vec<_>>().join("\n")

@@ -63,7 +63,7 @@ pub(crate) fn check(text: &Text) {
             assert!(arguments.contains(&format!("(\"{place}\", ")), "{} has nothing for {place}", text.id());
         }
     }
-    for words in [text.words(Language::English), text.words(Language::German), text.terminal()] {
+    for words in [text.words(Language::English), text.words(Language::German), text.terminal_text()] {
         assert!(!words.is_empty() && !words.contains('{'), "{}: {words}", text.id());
     }
 }

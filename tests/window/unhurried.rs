@@ -21,11 +21,11 @@ struct Unhurried(RealClock);
 
 impl Clock for Unhurried {
     fn now(&self) -> Moment {
-        Moment::after_start(self.0.now().since_start() / SLOWER)
+        Moment::from_elapsed(self.0.now().since_start() / SLOWER)
     }
 
     fn sleep_until(&self, moment: Moment) {
-        self.0.sleep_until(Moment::after_start(moment.since_start() * SLOWER));
+        self.0.sleep_until(Moment::from_elapsed(moment.since_start() * SLOWER));
     }
 }
 

@@ -90,8 +90,9 @@ fn an_address_is_typed_checked_and_written() {
     });
     // The dialog shows it too, above the form.
     let sheet = screen.studio().selected_device().unwrap().sheet().unwrap();
-    let warned =
-        |text: &Text| text.terminal().contains("At the next power-up") && text.terminal().contains("192.168.5.20");
+    let warned = |text: &Text| {
+        text.terminal_text().contains("At the next power-up") && text.terminal_text().contains("192.168.5.20")
+    };
     assert!(sheet.warnings.iter().any(warned), "{:?}", sheet.warnings);
     let Stage::Ready(plan) = sheet.stage else { panic!("no plan") };
     let id = screen.studio().hiperdrive().unwrap().session.id;

@@ -37,7 +37,7 @@ fn a_moved_boundary_is_undone_by_key() {
 #[test]
 fn words_arriving_while_typing_do_not_replace_the_typed_text() {
     let mut screen = Screen::opened_in(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
-    screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_following()));
+    screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_showing_live()));
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;
     for id_of_entry in ["ssi_trial.position", "ssi_trial.bits_label"] {
@@ -54,7 +54,7 @@ fn words_arriving_while_typing_do_not_replace_the_typed_text() {
         let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
         assert!(node.accesskit_node().is_focused());
         screen.key(Key::Tab);
-        assert!(screen.studio().ssi().unwrap().is_following(), "{id_of_entry}");
+        assert!(screen.studio().ssi().unwrap().is_showing_live(), "{id_of_entry}");
     }
 }
 

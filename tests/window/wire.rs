@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperface::sim as hiperface;
 use encoder_studio::devices::hiperface::sim::Bus;
 use encoder_studio::devices::interbus::sim as interbus;
 use encoder_studio::devices::interbus::sim::Gateway;
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
@@ -111,7 +111,7 @@ impl Wire {
 
     /// Creates a cable to an adapter on the bus of a BiSS encoder.
     pub(crate) fn to_adapter(target: &str, query: &str) -> Arc<Self> {
-        let adapter = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
+        let adapter = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
         Self::to(target, End::Adapter(Arc::new(Mutex::new(adapter))))
     }
 

@@ -236,7 +236,7 @@ impl Complex {
         Complex { re: self.re + other.re, im: self.im + other.im }
     }
 
-    fn rotated(self, by: Complex) -> Self {
+    fn multiply(self, by: Complex) -> Self {
         Complex { re: self.re * by.re - self.im * by.im, im: self.re * by.im + self.im * by.re }
     }
 
@@ -293,7 +293,7 @@ impl FrequencyProbe<'_> {
             for (sum, value) in sums.iter_mut().zip([y, x, off * own_y, off * own_x]) {
                 *sum = sum.plus(phasor.times(weight * value));
             }
-            (phasor, window) = (phasor.rotated(step), window.rotated(window_step));
+            (phasor, window) = (phasor.multiply(step), window.multiply(window_step));
         }
         // The weights have a mean of 1, and a sine contributes half its amplitude at its frequency.
         sums.map(|sum| sum.times(2.0 / count))

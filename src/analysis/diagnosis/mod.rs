@@ -83,7 +83,8 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             let noise_v = seen.as_ref().map_or(analysis.coverage.residual_rms * amplitude, |seen| seen.noise_v);
             disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
             let harmonics = shape::harmonics(&record.samples, analysis);
-            let modulation = record.periods.and_then(|periods| shape::modulation(&record.samples, analysis, periods));
+            let modulation =
+                record.periods.and_then(|periods| shape::amplitude_modulation(&record.samples, analysis, periods));
             shapes(record, analysis, harmonics, modulation, &mut say);
             trust::times(analysis, &mut say);
             trust::correction(analysis, &mut say);
@@ -112,7 +113,7 @@ impl Diagnosis {
     /// Returns the diagnosis under other limits, without needing the samples. Findings that depend on limits are judged
     /// again from the analysis and the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
-    pub fn from_limits(
+    pub fn with_new_limits(
         &self,
         analysis: Result<&Analysis, &AnalysisError>,
         levels_v: Option<(f64, f64)>,

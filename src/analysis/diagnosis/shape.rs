@@ -92,7 +92,7 @@ pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Signa
 
 /// Returns the amplitude variation over a revolution of the given number of periods, as a fraction, or `None` if the
 /// capture covers less than one revolution.
-pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
+pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
     let revolution = f64::from(periods);
     if periods == 0 || analysis.coverage.periods < revolution {
         return None;

@@ -422,10 +422,10 @@ fn other_limits_apply_without_the_samples() {
     let record = capture.record();
     let analysis = Analysis::of(record.samples);
     let by = |limits| diagnose(&record, analysis.as_ref(), limits);
-    let again = by(&Limits::HIPERFACE).from_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::TTK70);
+    let again = by(&Limits::HIPERFACE).with_new_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::TTK70);
     assert_eq!(again, by(&Limits::TTK70));
     assert_ne!(again, by(&Limits::HIPERFACE));
-    assert_eq!(again.from_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::AFS_AFM60), by(&Limits::AFS_AFM60));
+    assert_eq!(again.with_new_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::AFS_AFM60), by(&Limits::AFS_AFM60));
 }
 
 #[test]

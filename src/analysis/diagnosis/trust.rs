@@ -21,7 +21,7 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
     if let Some(missing) = analysis.continuity.missing {
         say(Severity::Warning, FindingKind::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
     }
-    if !analysis.is_followed() {
+    if !analysis.is_angle_tracked() {
         // An apparent reversal may add half a period to the true angle.
         say(Severity::Warning, FindingKind::Coarse { step_deg: analysis.step_deg });
     } else if analysis.coverage.reversals > 0 {

@@ -160,6 +160,6 @@ fn an_outline_goes_once_around_the_center() {
             assert!((x - own_x).abs() < 1e-12 && (y - own_y).abs() < 1e-12, "{x} {y}");
         }
     };
-    near(ellipse.outline(4), [(0.75, -0.125), (0.25, 0.125), (-0.25, -0.125), (0.25, -0.375), (0.75, -0.125)]);
-    near(ellipse.corrected_ellipse().outline(4), [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]);
+    near(ellipse.outline_points(4), [(0.75, -0.125), (0.25, 0.125), (-0.25, -0.125), (0.25, -0.375), (0.75, -0.125)]);
+    near(ellipse.corrected_ellipse().outline_points(4), [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]);
 }

@@ -181,7 +181,7 @@ impl<T: Number> SampleBlock<T> {
         self.spread_of(range)
     }
 
-    pub(super) fn first_good(&self, range: Range<usize>) -> Option<usize> {
+    pub(super) fn first_valid(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.start) {
             return (!range.is_empty()).then_some(range.start);
         }
@@ -190,7 +190,7 @@ impl<T: Number> SampleBlock<T> {
         }
         let mut at = range.start;
         while at < range.end {
-            match self.next_gap(at, range.end) {
+            match self.gap_length(at, range.end) {
                 0 => return Some(at),
                 skipped => at += skipped,
             }
@@ -198,7 +198,7 @@ impl<T: Number> SampleBlock<T> {
         None
     }
 
-    pub(super) fn last_good(&self, range: Range<usize>) -> Option<usize> {
+    pub(super) fn last_valid(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.end.saturating_sub(1)) {
             return range.end.checked_sub(1).filter(|last| *last >= range.start);
         }
@@ -303,7 +303,7 @@ impl<T: Number> SampleBlock<T> {
 
     /// Returns the length of a run of samples without a value, from `at` and within `end`, as far as a single check
     /// reveals.
-    fn next_gap(&self, at: usize, end: usize) -> usize {
+    fn gap_length(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
             inside && self.bucket(**level, at).is_some_and(Bucket::is_empty)

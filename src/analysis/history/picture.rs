@@ -34,7 +34,7 @@ impl Grid {
         Grid { start: SampleTime::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
     }
 
-    pub fn pixels(&self) -> usize {
+    pub fn pixel_count(&self) -> usize {
         self.pixels
     }
 
@@ -124,11 +124,12 @@ impl History {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
             // The first and last edges are the picture's own.
-            let index = if pixel == 0 || pixel == grid.pixels() { exact } else { self.rounded(exact, grid, pixel) };
+            let index =
+                if pixel == 0 || pixel == grid.pixel_count() { exact } else { self.rounded(exact, grid, pixel) };
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
             Edge { index, before, after: self.times.get(index) }
         };
-        GridColumns { edges: (0..=grid.pixels()).map(edge).collect() }
+        GridColumns { edges: (0..=grid.pixel_count()).map(edge).collect() }
     }
 
     /// Returns the start of a bucket instead of the first sample after an edge, if the bucket starts only slightly
@@ -165,7 +166,7 @@ impl<T: Number> HistoryPainter<'_, T> {
         let (from, to) = (from.index.max(all.start), to.index.min(all.end));
         let pixels = cut.edges.iter().zip(cut.edges.iter().skip(1));
         self.picture.raw = to.saturating_sub(from) <= FEW.saturating_mul(pixels.len() as u64);
-        if let Some(before) = self.series.last_good(all.start..from) {
+        if let Some(before) = self.series.last_valid(all.start..from) {
             self.sample(before);
         }
         if self.picture.raw {
@@ -180,7 +181,7 @@ impl<T: Number> HistoryPainter<'_, T> {
                 }
             }
         }
-        if let Some(after) = self.series.first_good(to..all.end) {
+        if let Some(after) = self.series.first_valid(to..all.end) {
             self.sample(after);
         }
     }
@@ -188,7 +189,7 @@ impl<T: Number> HistoryPainter<'_, T> {
     fn sample(&mut self, index: u64) {
         let (Some((value, flags)), Some(time)) = (self.series.get(index), self.history.time(index)) else { return };
         let good = !flags.contains(Flags::BAD);
-        let joined = good && self.is_joined(index);
+        let joined = good && self.is_line_continuous(index);
         let value = value.value().to_f64();
         let values = good.then_some(Reduced { first: value, min: value, max: value, last: value });
         if good {
@@ -202,20 +203,20 @@ impl<T: Number> HistoryPainter<'_, T> {
         let range = from.index..to.index;
         let (Some(start), Some(end)) = (from.after, to.before) else { return };
         if self.series.is_plain(range.clone()) {
-            let joined = self.is_joined(from.index);
-            let values = Some(self.reduced(range, ends));
+            let joined = self.is_line_continuous(from.index);
+            let values = Some(self.reduce_samples(range, ends));
             self.last = Some(to.index - 1);
             self.picture.pixels.push(Pixel { from: start, to: end, values, flags: Flags::NONE, joined });
             return;
         }
         let flags = self.series.flags(range.clone());
         let mut pixel = Pixel { from: start, to: end, values: None, flags, joined: false };
-        if let (Some(first), Some(last)) = (self.series.first_good(range.clone()), self.series.last_good(range)) {
+        if let (Some(first), Some(last)) = (self.series.first_valid(range.clone()), self.series.last_valid(range)) {
             let good = first..last + 1;
-            pixel.joined = self.is_joined(first);
+            pixel.joined = self.is_line_continuous(first);
             // Usually the first and last samples are good, and their known values need not be fetched again.
             let ends = if good == (from.index..to.index) { Some(ends) } else { self.series.ends(good.clone()) };
-            pixel.values = ends.map(|ends| self.reduced(good, ends));
+            pixel.values = ends.map(|ends| self.reduce_samples(good, ends));
             pixel.from = if first == from.index { start } else { self.history.time(first).unwrap_or(start) };
             pixel.to = if last + 1 == to.index { end } else { self.history.time(last).unwrap_or(end) };
             self.last = Some(last);
@@ -224,11 +225,11 @@ impl<T: Number> HistoryPainter<'_, T> {
     }
 
     /// Returns whether a line connects the last valid sample to sample `index`.
-    fn is_joined(&self, index: u64) -> bool {
+    fn is_line_continuous(&self, index: u64) -> bool {
         self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
     }
 
-    fn reduced(&self, range: Range<u64>, (first, last): (T, T)) -> Reduced {
+    fn reduce_samples(&self, range: Range<u64>, (first, last): (T, T)) -> Reduced {
         let (first, last) = (first.value().to_f64(), last.value().to_f64());
         let ValueRange { min, max } =
             self.series.widen(ValueRange { min: first.min(last), max: first.max(last) }, range);

@@ -93,19 +93,19 @@ impl<T: Number> Series<T> {
     }
 
     /// Returns the first sample in `range` that has a valid value.
-    pub(super) fn first_good(&self, range: Range<u64>) -> Option<u64> {
+    pub(super) fn first_valid(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.start) {
             return Some(range.start);
         }
-        self.parts(range).find_map(|(start, block, range)| Some(start + block.first_good(range)? as u64))
+        self.parts(range).find_map(|(start, block, range)| Some(start + block.first_valid(range)? as u64))
     }
 
     /// Returns the last sample in `range` that has a valid value.
-    pub(super) fn last_good(&self, range: Range<u64>) -> Option<u64> {
+    pub(super) fn last_valid(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.end - 1) {
             return Some(range.end - 1);
         }
-        self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
+        self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
     }
 
     /// Returns whether sample `index` is stored and has a valid value. This quick check may return false although the

@@ -78,7 +78,7 @@ impl Studio {
     }
 
     fn find(&mut self, action: Payload) {
-        let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
+        let is_its = |form: &dyn AnyForm| form.is_finder_action(&action);
         let Some((tab, place)) = self.form_position(is_its) else {
             // Without a dialog it is too late.
             if self.connect.is_some() {
@@ -103,12 +103,12 @@ impl Studio {
         }
     }
 
-    pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
+    pub(in crate::app) fn handle_finder_result(&mut self, tab: Tab, done: Payload) {
         let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return self.notify_wrong_kind(None) };
         let forms = self.connect.as_mut().map(|connect| &mut connect.forms);
         let form = forms.and_then(|forms| forms.iter_mut().find(|(own, _)| *own == tab));
         let form = form.map(|(_, form)| form.as_mut() as &mut dyn AnyForm);
-        if kind.finder_done(form, done, &mut self.services).is_err() {
+        if kind.handle_finder_result(form, done, &mut self.services).is_err() {
             self.notify_wrong_kind(None);
         }
     }

@@ -118,7 +118,7 @@ pub trait AnyForm {
     /// Returns whether the payload contains entries of this form.
     fn has_entries_of_form(&self, entries: &Payload) -> bool;
     /// Returns whether the payload contains an action of this form's finder.
-    fn is_of_finder(&self, action: &Payload) -> bool;
+    fn is_finder_action(&self, action: &Payload) -> bool;
     /// Replaces the entries with edited ones.
     ///
     /// # Errors
@@ -186,7 +186,7 @@ impl<F: FormModel> AnyForm for Filled<F> {
         entries.is::<F>()
     }
 
-    fn is_of_finder(&self, action: &Payload) -> bool {
+    fn is_finder_action(&self, action: &Payload) -> bool {
         action.is::<<F::Finder as Finder>::Action>()
     }
 

@@ -103,9 +103,9 @@ impl AnyDevice {
         self.memory()?.sheet()
     }
 
-    pub(in crate::app) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+    pub(in crate::app) fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services) {
         if let Some(memory) = self.memory_mut() {
-            memory.act_review(action, services);
+            memory.apply_review_action(action, services);
         }
     }
 

@@ -44,7 +44,7 @@ pub trait DeviceType: DeviceModel + Sized {
     fn check(url: &LinkUrl) -> Result<(), OpenError>;
 
     /// Returns the link parameters declared as secret, whose values are neither displayed nor stored.
-    fn secrets() -> Vec<&'static str>;
+    fn secret_parameters() -> Vec<&'static str>;
 
     /// Returns whether another master may be connected to the line of a link. If so, the user is asked before anything
     /// is sent.
@@ -61,22 +61,22 @@ pub trait DeviceType: DeviceModel + Sized {
     ) -> Self;
 
     /// Creates a device for a link that is being opened.
-    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
-        Self::begin(Session::at_link(id, url, services.world.kinds), None, services)
+    fn for_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
+        Self::begin(Session::for_link(id, url, services.world.kinds), None, services)
     }
 
     /// Reads the tables that profiles of this kind require. Runs on a task thread.
     fn tables(store: &Store) -> Self::Tables;
 
     /// Creates an offline device from a profile.
-    fn in_file(
+    fn from_file(
         id: SessionId,
         file: ProfileFile,
         document: ProfileDocument,
         tables: Self::Tables,
         services: &mut Services,
     ) -> Self {
-        let session = Session::in_file(id, file, document.clone());
+        let session = Session::from_file(id, file, document.clone());
         let mut own = Self::begin(session, document.body.get().map(|profile| (profile, tables)), services);
         own.load_draft(services);
         own
@@ -114,7 +114,7 @@ pub trait DeviceKind: Sync {
     /// Returns the reason why it cannot.
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
     /// Returns the link parameters whose values are neither displayed nor stored.
-    fn secrets(&self) -> Vec<&'static str>;
+    fn secret_parameters(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be connected to the line of a link.
@@ -124,14 +124,14 @@ pub trait DeviceKind: Sync {
     /// Returns the form for the connection dialog, filled in from a link.
     fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
-    fn finder_done(
+    fn handle_finder_result(
         &self,
         form: Option<&mut dyn AnyForm>,
         done: Payload,
         services: &mut Services,
     ) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn at_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice>;
+    fn for_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice>;
     #[doc(hidden)]
     fn read_tables(&self, store: &Store) -> OpenProfile;
     #[doc(hidden)]
@@ -171,8 +171,8 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         M::explain(cause)
     }
 
-    fn secrets(&self) -> Vec<&'static str> {
-        M::secrets()
+    fn secret_parameters(&self) -> Vec<&'static str> {
+        M::secret_parameters()
     }
 
     fn virtual_link(&self) -> LinkUrl {
@@ -187,7 +187,7 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         Box::new(Filled::<M::Form>::new(&link.unwrap_or_else(M::Form::usual)))
     }
 
-    fn finder_done(
+    fn handle_finder_result(
         &self,
         form: Option<&mut dyn AnyForm>,
         done: Payload,
@@ -198,13 +198,13 @@ impl<M: DeviceType> DeviceKind for DeviceKindAdapter<M> {
         Ok(())
     }
 
-    fn at_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice> {
-        Box::new(M::at_link(id, url, services))
+    fn for_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice> {
+        Box::new(M::for_link(id, url, services))
     }
 
     fn read_tables(&self, store: &Store) -> OpenProfile {
         let tables = M::tables(store);
-        Box::new(|id, file, document, services| Box::new(M::in_file(id, file, document, tables, services)))
+        Box::new(|id, file, document, services| Box::new(M::from_file(id, file, document, tables, services)))
     }
 
     fn new_profile(

@@ -115,7 +115,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     }
 
     /// Returns whether positions can be streamed at thousands of samples per second.
-    fn streams(&self) -> bool {
+    fn can_stream(&self) -> bool {
         false
     }
 
@@ -167,14 +167,14 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// # Errors
     /// Returns a message for each value that a profile requires and that has not been read.
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
-        self.wanted_body().map(Ok).or_else(|| self.memory()?.known_body())
+        self.wanted_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
     }
 
     /// Adopts a profile by opening the review of a write or by editing the layout to match.
     ///
     /// # Errors
     /// The profile belongs to another kind of device.
-    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+    fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
         self.with_memory(services, |memory, services| memory.restore(body, services)).unwrap_or(Ok(()))
     }
 
@@ -230,7 +230,7 @@ impl<'a> ActionContext<'a> {
     }
 
     /// Queues another command for the same device, to be sent once the action is done.
-    pub(crate) fn then(&mut self, command: DeviceCommand) {
+    pub(crate) fn queue_command(&mut self, command: DeviceCommand) {
         self.next.push(command);
     }
 
@@ -282,7 +282,7 @@ pub trait DeviceMemory {
     fn sheet(&self) -> Option<ReviewSheet>;
 
     /// Executes an action of the review.
-    fn act_review(&mut self, action: ReviewAction, services: &mut Services);
+    fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services);
 
     /// Closes the review; a write in progress continues.
     fn close_review(&mut self);
@@ -294,7 +294,7 @@ pub trait DeviceMemory {
     ///
     /// # Errors
     /// Returns a message for each value that a profile requires and that has not been read.
-    fn known_body(&self) -> Option<Result<Body, Vec<Text>>>;
+    fn last_read_profile(&self) -> Option<Result<Body, Vec<Text>>>;
 
     /// Opens the review of restoring a profile.
     ///
@@ -339,7 +339,7 @@ impl<T: HasProfile> DeviceMemory for T {
         HasMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
     }
 
-    fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+    fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services) {
         match action {
             ReviewAction::Write(plan) => self.write(plan, services),
             ReviewAction::Toggle(permit) => self.toggle_plan_permit(permit, services),
@@ -356,8 +356,8 @@ impl<T: HasProfile> DeviceMemory for T {
         HasProfile::wanted_body(self)
     }
 
-    fn known_body(&self) -> Option<Result<Body, Vec<Text>>> {
-        Some(HasProfile::known_body(self)?.map(|(body, _)| body))
+    fn last_read_profile(&self) -> Option<Result<Body, Vec<Text>>> {
+        Some(HasProfile::last_read_profile(self)?.map(|(body, _)| body))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -52,7 +52,7 @@ pub trait OpenDevice: Any {
     /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
     /// Returns whether positions can be streamed at thousands of samples per second.
-    fn streams(&self) -> bool;
+    fn can_stream(&self) -> bool;
     /// Returns the running job, if any.
     fn running(&self) -> Option<JobProgress>;
     /// Returns whether any edits have not been written.
@@ -64,7 +64,7 @@ pub trait OpenDevice: Any {
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
     /// Returns whether edits are restored after the device has been closed.
-    fn keeps_edits(&self) -> bool;
+    fn preserves_edits(&self) -> bool;
     /// Returns whether every edit has been saved to disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
@@ -108,7 +108,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
     #[doc(hidden)]
-    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+    fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
     fn switch_link(&mut self, url: LinkUrl);
     #[doc(hidden)]
@@ -122,11 +122,11 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn let_go(&mut self, end: JobState, services: &mut Services);
     #[doc(hidden)]
-    fn may_have_changed(&mut self);
+    fn mark_draft_due(&mut self);
     #[doc(hidden)]
     fn write_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
-    fn leave_draft(&mut self, services: &mut Services);
+    fn release_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services);
     #[doc(hidden)]
@@ -192,8 +192,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::is_savable(self)
     }
 
-    fn streams(&self) -> bool {
-        DeviceModel::streams(self)
+    fn can_stream(&self) -> bool {
+        DeviceModel::can_stream(self)
     }
 
     fn running(&self) -> Option<JobProgress> {
@@ -216,8 +216,8 @@ impl<M: DeviceModel> OpenDevice for M {
         self.pending().can_redo()
     }
 
-    fn keeps_edits(&self) -> bool {
-        HasDraft::keeps_edits(self)
+    fn preserves_edits(&self) -> bool {
+        HasDraft::preserves_edits(self)
     }
 
     fn is_draft_kept(&self) -> bool {
@@ -313,8 +313,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::comparable_body(self)
     }
 
-    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        DeviceModel::adopt_body(self, body, services)
+    fn apply_profile(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        DeviceModel::apply_profile(self, body, services)
     }
 
     fn switch_link(&mut self, url: LinkUrl) {
@@ -342,16 +342,16 @@ impl<M: DeviceModel> OpenDevice for M {
         SessionEvents::let_go(self, end, services);
     }
 
-    fn may_have_changed(&mut self) {
-        self.session_mut().drafting.may_have_changed();
+    fn mark_draft_due(&mut self) {
+        self.session_mut().drafting.mark_draft_due();
     }
 
     fn write_draft(&mut self, services: &mut Services) {
         HasDraft::write_draft(self, services);
     }
 
-    fn leave_draft(&mut self, services: &mut Services) {
-        HasDraft::leave_draft(self, services);
+    fn release_draft(&mut self, services: &mut Services) {
+        HasDraft::release_draft(self, services);
     }
 
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {

@@ -156,7 +156,7 @@ mod tests {
             AllowedValues::Number32,
             AllowedValues::Speed { most: 12_000 },
             AllowedValues::RevolutionsAMinute { most: 1000 },
-            AllowedValues::Seconds { low: Limit::thousandths(500), high: 60.into() },
+            AllowedValues::Seconds { low: Limit::from_thousandths(500), high: 60.into() },
             AllowedValues::BitRate { low: 300, high: 4_000_000 },
             AllowedValues::Periods { most: 7 },
             AllowedValues::MostTurns { most: 7 },
@@ -227,7 +227,8 @@ mod tests {
 
     #[test]
     fn limits_have_the_decimal_sign_of_the_language() {
-        let volts = AllowedValues::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500));
+        let volts =
+            AllowedValues::range(Quantity::Volts, Limit::from_thousandths(4750), Limit::from_thousandths(12_500));
         assert_eq!(expected_text(&volts).words(English), "a voltage in volts from 4.75 to 12.5");
         assert_eq!(expected_text(&volts).words(German), "eine Spannung in Volt von 4,75 bis 12,5");
     }

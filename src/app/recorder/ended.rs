@@ -7,7 +7,12 @@ use crate::app::Text;
 impl Recorder {
     /// Continues a line with new samples, keeping its colour and, if possible, its unit. The old line ends under the
     /// given name.
-    pub(in crate::app) fn succeed(&mut self, old: SeriesId, new: Series, (name, heading): (Text, String)) -> SeriesId {
+    pub(in crate::app) fn continue_line(
+        &mut self,
+        old: SeriesId,
+        new: Series,
+        (name, heading): (Text, String),
+    ) -> SeriesId {
         let id = self.add_line(new);
         if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
             let unit = before.chosen();

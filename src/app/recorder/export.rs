@@ -189,7 +189,7 @@ impl Recorder {
         if let Some(sender) = export.sender.clone() {
             let portion = match export.next.take() {
                 Some(portion) => portion,
-                None => self.portion(&mut export.heads, &export.columns, &mut export.lost),
+                None => self.next_rows(&mut export.heads, &export.columns, &mut export.lost),
             };
             let is_end = matches!(portion, Portion::End);
             match sender.try_send(portion) {
@@ -220,7 +220,7 @@ impl Recorder {
     }
 
     /// Returns the next rows, with the samples of all groups in time order and samples of the same time in one row.
-    fn portion(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
+    fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
         // In the order of the heads; a removed group no longer has samples.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
@@ -263,7 +263,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
 /// Returns the column heading with name and unit, independent of the window language.
 fn heading(line: &Series) -> String {
     match line.scale() {
-        Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
+        Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal_text()),
         None => line.heading.clone(),
     }
 }

@@ -79,7 +79,7 @@ impl Watch {
     }
 
     /// Checks the next sample and returns whether the event has occurred.
-    fn is_it(&mut self, sample: &Sample) -> bool {
+    fn check_trigger(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
         // Across a gap no edge was observed.
@@ -134,7 +134,7 @@ impl Recorder {
         let (Some(history), column) = (self.history(line), line.column) else { return };
         let found = history.all().find_map(|index| {
             let sample = history.sample(column, index)?;
-            watch.is_it(&sample).then_some(sample.time)
+            watch.check_trigger(&sample).then_some(sample.time)
         });
         watch.state = found.map_or(TriggerState::Missed, TriggerState::Held);
         self.watch = Some(watch);
@@ -174,7 +174,7 @@ impl Recorder {
                 shown = Some(at);
             }
             // Each sample is checked, so that an edge is also seen in the first one after a view.
-            if watch.is_it(&sample) && watch.state == TriggerState::Armed {
+            if watch.check_trigger(&sample) && watch.state == TriggerState::Armed {
                 watch.state = TriggerState::Fired(sample.time);
                 // A repeated one is shown when it is complete: otherwise it would never be seen whole.
                 shown = if watch.trigger.repeat { shown } else { Some(sample.time) };

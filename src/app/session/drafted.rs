@@ -74,7 +74,7 @@ pub trait HasDraft: HasSession {
 
     /// Handles the result of a draft task.
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
-        let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().is_nothing());
+        let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().has_no_edits());
         if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
             self.take_edits(edits);
             let edits = self.edited();
@@ -89,10 +89,10 @@ pub trait HasDraft: HasSession {
         }
         let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
         let nameless = key.is_none() && self.type_and_serial().is_some();
-        if nameless && !edits.is_nothing() {
+        if nameless && !edits.has_no_edits() {
             self.session_mut().drafting.report_missing_draft(&name, services);
         }
-        if edits.is_nothing() {
+        if edits.has_no_edits() {
             // They were written, saved or discarded.
             services.log.settle(DRAFT_BACK, Some(&name));
         }
@@ -100,12 +100,12 @@ pub trait HasDraft: HasSession {
     }
 
     /// Returns whether the edits can be restored after the device has been closed.
-    fn keeps_edits(&self) -> bool {
+    fn preserves_edits(&self) -> bool {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
     /// Leaves the edits of the previous device on disk, because a different device or none is being opened.
-    fn leave_draft(&mut self, services: &mut Services) {
+    fn release_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);
     }
@@ -137,7 +137,7 @@ pub trait HasDraft: HasSession {
         // Earlier notices about this document no longer apply.
         services.log.settle(NOT_SAVED, Some(&name));
         services.log.remove_file_notices(&saving.path);
-        if self.edited().is_nothing() {
+        if self.edited().has_no_edits() {
             services.log.settle(DRAFT_BACK, Some(&name));
         }
         services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));

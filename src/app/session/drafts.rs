@@ -53,11 +53,11 @@ pub enum DraftOutcome {
 }
 
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
-    fn is_nothing(&self) -> bool;
+    fn has_no_edits(&self) -> bool;
 }
 
 impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> DraftEdits for Vec<T> {
-    fn is_nothing(&self) -> bool {
+    fn has_no_edits(&self) -> bool {
         self.is_empty()
     }
 }
@@ -190,7 +190,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
 
     /// Records that earlier edits have been restored. `edits` are those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
-        if !edits.is_nothing() {
+        if !edits.has_no_edits() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
         }
         self.kept = edits;
@@ -208,7 +208,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    pub(in crate::app) fn may_have_changed(&mut self) {
+    pub(in crate::app) fn mark_draft_due(&mut self) {
         self.due = true;
     }
 
@@ -282,7 +282,7 @@ fn store_edits<E: DraftEdits>(
     services.drafts_on_their_way += 1;
     let drafts = services.world.store.drafts();
     services.tasks.run("draft", move || {
-        let result = if edits.is_nothing() {
+        let result = if edits.has_no_edits() {
             drafts.remove(&key.kind, &key.name)
         } else {
             drafts.save(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())

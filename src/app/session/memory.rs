@@ -55,7 +55,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Returns whether a plan was made for a device other than the one read before.
-    fn is_of_another(&self, prepared: &Prepared<Self>) -> bool {
+    fn targets_other_device(&self, prepared: &Prepared<Self>) -> bool {
         self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
@@ -72,7 +72,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn prepare_review(&mut self) {}
 
     /// Returns the reason why a change is impossible, as far as this is known without querying the device.
-    fn objection(&self, _change: &Change<Self>) -> Option<Text> {
+    fn change_rejection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
 
@@ -113,7 +113,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
         let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_another_type(&change));
-        let objection = self.objection(&change);
+        let objection = self.change_rejection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
             return review.fail(vec![why], false, 0);
@@ -143,7 +143,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was
     /// intended for the previous device.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
-        if self.is_of_another(&prepared) {
+        if self.targets_other_device(&prepared) {
             *self.review_mut() = None;
             // If there are edits, the other device was reported when it was read.
             if !self.pending().is_dirty() {
@@ -169,7 +169,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             let text = Text::new(text).with("serial", serial);
             services.notify(Severity::Warning, vec![text], Some(&self.session().name()));
         }
-        self.leave_draft(services);
+        self.release_draft(services);
         self.forget_device();
         *self.review_mut() = None;
         self.session_mut().forget_device();
@@ -243,7 +243,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Handles the early end of planning or writing. Returns whether the review reports it. A plan cancelled during
     /// preparation leaves no review.
-    fn handle_cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
+    fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
             (_, false, false) | (EarlyEnd::Lost, _, false) => return false,
@@ -269,7 +269,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Discards a plan that has not been started.
     fn forget_plan(&mut self) {
-        if self.review().is_some_and(Review::is_plan) {
+        if self.review().is_some_and(Review::is_pending_plan) {
             *self.review_mut() = None;
         }
     }

@@ -23,7 +23,7 @@ pub use has_session::HasSession;
 pub use kind::{JobCompletion, Kind};
 pub use memory::{ApprovedPlanOf, HasMemory};
 pub use profiles::DeviceHistory;
-pub(crate) use saved::some;
+pub(crate) use saved::truncated_list;
 pub use saved::{HasProfile, KnownProfile, unsaved_edits_remark};
 pub(in crate::app) use saving::DivergedFile;
 pub use saving::{FileSnapshot, ProfileFile, SaveRequest};
@@ -61,7 +61,7 @@ pub enum Source {
 
 impl Source {
     /// Returns the suggested name of a profile that has not been saved.
-    pub(in crate::app) fn suggested(&self) -> Option<PathBuf> {
+    pub(in crate::app) fn suggested_path(&self) -> Option<PathBuf> {
         match self {
             Source::New { suggested } => Some(suggested.clone()),
             Source::Link(_) | Source::File { .. } => None,
@@ -112,13 +112,13 @@ impl<D: Kind> DerefMut for Session<D> {
 
 impl<D: Kind> Session<D> {
     /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
-    pub fn at_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
+    pub fn for_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
         own
     }
 
-    pub fn in_file(id: SessionId, file: ProfileFile, document: ProfileDocument) -> Self {
+    pub fn from_file(id: SessionId, file: ProfileFile, document: ProfileDocument) -> Self {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
@@ -176,7 +176,7 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    pub fn adopt_line(&mut self, opened: Opened<D>, services: &mut Services) {
+    pub fn attach_connection(&mut self, opened: Opened<D>, services: &mut Services) {
         let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
         self.trace.begin(opened.began.clone());
         self.line = Some(LiveSession::new(opened));

@@ -31,11 +31,11 @@ pub trait HasProfile: HasMemory {
     ///
     /// # Errors
     /// Returns a message for each part of a profile that was not read.
-    fn known_body(&self) -> Option<KnownProfile>;
+    fn last_read_profile(&self) -> Option<KnownProfile>;
 
     /// Returns whether earlier readings are saved because the device no longer replies.
     fn saves_what_was_read(&self) -> bool {
-        matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
+        matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }
 
     /// Requests a plan for restoring a profile, to be reviewed by the user.
@@ -61,7 +61,7 @@ pub trait HasProfile: HasMemory {
             }
             let remarks = self.remarks();
             self.session_mut().write_document(path, document, remarks, services);
-        } else if let Some(known) = self.known_body().filter(|_| self.saves_what_was_read()) {
+        } else if let Some(known) = self.last_read_profile().filter(|_| self.saves_what_was_read()) {
             let (body, remarks) = match known {
                 Ok(known) => known,
                 Err(missing) => {
@@ -107,7 +107,7 @@ pub trait HasProfile: HasMemory {
 const SAID: usize = 3;
 
 /// Lists the first few of several items, followed by the number of remaining items.
-pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
+pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
     things.iter().take(SAID).map(words).chain(rest).collect()

@@ -62,7 +62,7 @@ impl SaveRequest {
         }
         let (text, lost) = match &self.opened {
             Some(opened) => {
-                let carried = self.document.emit_over(&opened.text, formats);
+                let carried = self.document.rewrite_text(&opened.text, formats);
                 (carried.text, carried.lost)
             }
             None => (self.document.emit(), Vec::new()),

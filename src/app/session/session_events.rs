@@ -31,7 +31,7 @@ pub enum EarlyEnd<'e, E> {
 /// A device that receives events from its communication line.
 pub trait SessionEvents: HasSession {
     /// Records samples; `dropped` samples were lost before them.
-    fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
+    fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
     /// Returns the explanation of a frame for the trace, empty if there is nothing to add to its bytes. Called once per
     /// frame, in order.
@@ -52,18 +52,18 @@ pub trait SessionEvents: HasSession {
     fn forget_requests(&mut self);
 
     /// Prepares for releasing the line.
-    fn line_ends(&mut self) {}
+    fn prepare_release(&mut self) {}
 
     /// Handles progress of the running job.
-    fn progressed(&mut self, _what: JobStep<Self>) {}
+    fn handle_progress(&mut self, _what: JobStep<Self>) {}
 
     /// Returns whether the result of a job proves that the device has replied.
-    fn is_answer(_output: &Output<Self>) -> bool {
+    fn is_device_reply(_output: &Output<Self>) -> bool {
         true
     }
 
     /// Handles the early end of a request and returns whether the review reports it.
-    fn ended_early(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
+    fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
@@ -103,7 +103,7 @@ pub trait SessionEvents: HasSession {
         let (samples, dropped) = line.samples();
         let (frames, missed) = line.frames();
         if !samples.is_empty() || dropped > 0 {
-            self.sampled(samples, dropped);
+            self.handle_samples(samples, dropped);
             self.session_mut().answers();
         }
         if !frames.is_empty() {
@@ -116,11 +116,11 @@ pub trait SessionEvents: HasSession {
     fn take(&mut self, event: Event<Self::Device>, services: &mut Services) {
         match event {
             Event::Started(_) => {}
-            Event::Progress(_, progress) => self.progressed(progress.step),
+            Event::Progress(_, progress) => self.handle_progress(progress.step),
             Event::Remark(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
                 services.end_job(self.session().id, id, JobState::Done);
-                if Self::is_answer(&output) {
+                if Self::is_device_reply(&output) {
                     self.session_mut().answers();
                 }
                 self.finished(*output, services);
@@ -130,7 +130,7 @@ pub trait SessionEvents: HasSession {
             Event::PollFailed(error) => self.poll_failed(&error, services),
             Event::Lost(error) => self.connection_lost(explain::link(&error), services),
         }
-        self.session_mut().drafting.may_have_changed();
+        self.session_mut().drafting.mark_draft_due();
     }
 
     /// Handles a failed sample, after which polling has stopped.
@@ -150,7 +150,7 @@ pub trait SessionEvents: HasSession {
         services.end_job(self.session().id, id, JobState::Cancelled);
         self.session_mut().save_to = None;
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
-        let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
+        let stands_there = self.handle_early_end(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
         self.session().report(severity, texts, stands_there, services);
         if begun {
@@ -162,12 +162,12 @@ pub trait SessionEvents: HasSession {
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.end_job(self.session().id, id, JobState::Failed(first(&texts)));
-        let stands_there = self.ended_early(EarlyEnd::Failed(error), &texts, services);
+        let stands_there = self.handle_early_end(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
             None if self.is_silence(error) || self.session().just_connected => {
-                self.session_mut().fall_silent(texts, services);
+                self.session_mut().mark_silent(texts, services);
             }
             None => {
                 self.session_mut().answers();
@@ -181,17 +181,17 @@ pub trait SessionEvents: HasSession {
 
     /// Handles the loss of the connection; known data and edits are kept.
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
-        self.line_ends();
+        self.prepare_release();
         // The last frames show the cause best.
         self.take_samples_and_frames();
         self.forget_requests();
-        self.ended_early(EarlyEnd::Lost, std::slice::from_ref(&why), services);
+        self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);
     }
 
     /// Releases the thread, records the running job as `end` and discards any plan.
     fn let_go(&mut self, end: JobState, services: &mut Services) {
-        self.line_ends();
+        self.prepare_release();
         self.forget_requests();
         self.session_mut().let_go(end, services);
     }

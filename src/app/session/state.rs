@@ -101,7 +101,7 @@ impl SessionState {
     }
 
     /// Records that the link is open but the device does not reply, with the reason and a suggested remedy.
-    pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
+    pub(crate) fn mark_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));

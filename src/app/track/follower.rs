@@ -61,7 +61,7 @@ impl PositionTracker {
         (self.last, self.has_missed) = (Some((time, steps)), false);
     }
 
-    pub(super) fn lose_track(&mut self) {
+    pub(super) fn reset_tracking(&mut self) {
         self.unwrap.gap();
         self.motion.reset();
         (self.last, self.pace, self.has_missed) = (None, None, false);

@@ -20,7 +20,7 @@ impl Watchable for Nothing {
 fn stream(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|number| PositionSample {
-            at: Moment::after_start(Duration::from_micros(50 * number)),
+            at: Moment::from_elapsed(Duration::from_micros(50 * number)),
             position: Some((number * 50 % 1000) as i64),
             is_bad: false,
             is_warned: false,
@@ -128,7 +128,7 @@ fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
 fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|second| PositionSample {
-            at: Moment::after_start(Duration::from_secs(second)),
+            at: Moment::from_elapsed(Duration::from_secs(second)),
             position: Some(second as i64 * 10),
             is_bad: false,
             is_warned: false,
@@ -173,7 +173,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let drawn = |track: &DeviceRecorder<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
     track.recorder.act(recorder::RecorderAction::Look(
-        SampleTime::from(Moment::after_start(Duration::from_secs(3))),
+        SampleTime::from(Moment::from_elapsed(Duration::from_secs(3))),
         SampleTime::from_nanoseconds(9_000_000_000),
     ));
     assert_eq!(drawn(&track), 0);
@@ -208,7 +208,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
 fn a_value_no_longer_watched_keeps_its_samples() {
     let mut track = DeviceRecorder::<Nothing>::default();
     let watching = |second| WatchedValue {
-        at: Moment::after_start(Duration::from_secs(second)),
+        at: Moment::from_elapsed(Duration::from_secs(second)),
         value: Some(Value::Whole(second as i64)),
         is_warned: false,
         never: None,

@@ -1,13 +1,13 @@
 //! The settings of the virtual adapter with all that hangs on it.
 
 use crate::buses::bridge::sim::{Adapter, keys};
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::sim::ConfigError;
 use crate::sim::setting::pairs;
 use proptest::prelude::*;
 
 fn error(query: &str) -> Option<ConfigError> {
-    Adapter::from_pairs(&pairs(query), at_adapter()).err()
+    Adapter::from_pairs(&pairs(query), attachable_kinds()).err()
 }
 
 #[test]
@@ -26,6 +26,6 @@ fn each_device_reads_its_own_settings() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..25_usize, value in ".*") {
-        let _ = Adapter::from_pairs(&[(keys(at_adapter())[key].to_owned(), value)], at_adapter());
+        let _ = Adapter::from_pairs(&[(keys(attachable_kinds())[key].to_owned(), value)], attachable_kinds());
     }
 }

@@ -29,7 +29,7 @@ fn unchanged_text_is_kept_verbatim() {
         for text in [text.replace('\n', "\r\n"), text] {
             let carried = ProfileDocument::parse(&text, program().studio.formats)
                 .unwrap()
-                .emit_over(&text, program().studio.formats);
+                .rewrite_text(&text, program().studio.formats);
             assert_eq!(carried, Carried { text, lost: Vec::new() });
         }
     }
@@ -46,7 +46,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
             let commented: String = lines.collect();
             for (_, other) in all.iter().filter(|(own, _)| own == kind) {
                 let document = ProfileDocument::parse(other, program().studio.formats).unwrap();
-                let carried = document.emit_over(&commented, program().studio.formats);
+                let carried = document.rewrite_text(&commented, program().studio.formats);
                 assert_eq!(
                     ProfileDocument::parse(&carried.text, program().studio.formats).unwrap().emit(),
                     document.emit()
@@ -62,7 +62,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
             }
             let own = ProfileDocument::parse(text, program().studio.formats)
                 .unwrap()
-                .emit_over(&commented, program().studio.formats);
+                .rewrite_text(&commented, program().studio.formats);
             assert_eq!(own, Carried { text: commented, lost: Vec::new() });
         }
     }
@@ -133,9 +133,9 @@ proptest::proptest! {
         let (spaced, comments) = spaced(text, &picks);
         let before = ProfileDocument::parse(&spaced, program().studio.formats).unwrap();
         proptest::prop_assert_eq!(before.emit(), ProfileDocument::parse(text, program().studio.formats).unwrap().emit());
-        let same = before.emit_over(&spaced, program().studio.formats);
+        let same = before.rewrite_text(&spaced, program().studio.formats);
         proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
-        let carried = document.emit_over(&spaced, program().studio.formats);
+        let carried = document.rewrite_text(&spaced, program().studio.formats);
         proptest::prop_assert_eq!(ProfileDocument::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
         for at in 0..comments {
             let own = format!("own {at}.");

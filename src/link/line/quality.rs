@@ -26,7 +26,7 @@ impl LineQuality {
     const ANSWERS: usize = 1000;
 
     /// Returns whether a request had to be repeated or a reply arrived too late.
-    pub fn is_troubled(&self) -> bool {
+    pub fn has_errors(&self) -> bool {
         self.troubles() != [0; 4]
     }
 

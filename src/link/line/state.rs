@@ -47,7 +47,7 @@ impl LineState {
     }
 
     /// Returns whether the last exchange failed.
-    pub fn is_troubled(&self) -> bool {
+    pub fn has_errors(&self) -> bool {
         self.troubled_since.is_some()
     }
 
@@ -73,7 +73,7 @@ impl LineState {
     }
 
     /// Resets the error state after a valid reply.
-    pub(crate) fn recovered(&mut self) {
+    pub(crate) fn clear_error(&mut self) {
         self.troubled_since = None;
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::changes::{Change, Step, means_the_same, steps};
+use super::changes::{Change, Step, is_equivalent_value, steps};
 use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
 
 /// Applies the changes one after the other, or returns `None` if one of them cannot be placed in the text.
@@ -26,7 +26,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
             let own = text.get(part.value.span.clone())?;
             // Elements that only have an index are the same only if their content is the same.
             if let (Step::At(_), Some(from)) = (last, &change.from)
-                && !means_the_same(own, from)
+                && !is_equivalent_value(own, from)
             {
                 return None;
             }
@@ -129,7 +129,7 @@ fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str)
     let line = format!("{heading}{end}{indent}{key}{},{comment}", indent_value(to, &indent, end));
     let place = match anchor {
         Some(part) => trailing_comment(text, part.end).map_or(part.end, |(place, _)| place.end),
-        None => open + text.get(open..)?.len() - after_comment(text.get(open..)?).len(),
+        None => open + text.get(open..)?.len() - skip_comment(text.get(open..)?).len(),
     };
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
     let close = match follows.trim() {
@@ -146,7 +146,7 @@ fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str)
 }
 
 /// Returns the text after an opening bracket and any comment on the same line.
-fn after_comment(text: &str) -> &str {
+fn skip_comment(text: &str) -> &str {
     match trailing_comment(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),
         None => text,

@@ -18,14 +18,14 @@ pub struct Carried {
 pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
     let mut carried = text.to_owned();
     for change in changes(before, after)? {
-        carried = apply(&carried, &change).or_else(|| as_a_whole(&carried, &change, after))?;
+        carried = apply(&carried, &change).or_else(|| replace_enclosing_value(&carried, &change, after))?;
     }
     let lost = lost(text, &carried, before);
     Some(Carried { text: carried, lost })
 }
 
 /// Replaces the enclosing value if one of its parts cannot be placed.
-fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
+fn replace_enclosing_value(text: &str, change: &Change, after: &str) -> Option<String> {
     (1..change.path.len()).rev().find_map(|length| {
         let path = change.path.get(..length)?.to_vec();
         let (to, behind) = value_at(after, &path)?;

@@ -70,7 +70,7 @@ pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>
 }
 
 /// Returns whether two plain values are equivalent, such as `0x10` and `16`.
-pub(super) fn means_the_same(one: &str, other: &str) -> bool {
+pub(super) fn is_equivalent_value(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
 }

@@ -55,9 +55,9 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
     let analysis = Analysis::of(samples);
     let diagnosis = diagnose(&record, analysis.as_ref(), &family.limits());
     let findings: Vec<String> =
-        diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal()).collect();
+        diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal_text()).collect();
     let analysis = analysis.map_err(|error| {
-        let why = explain::signal::analysis(path, &error).terminal();
+        let why = explain::signal::analysis(path, &error).terminal_text();
         // Levels of the wires show more than the missing ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
@@ -79,7 +79,7 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
 fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
-        output.remark(&text.terminal());
+        output.remark(&text.terminal_text());
     }
     if capture.left_out > 0 {
         output.remark(&format!("{} rows without a value (empty, NaN or overload) were left out.", capture.left_out));
@@ -97,7 +97,7 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     let revolution =
         Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
-    revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
+    revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal_text())).ok()
 }
 
 struct CaptureReport<'a> {
@@ -175,7 +175,7 @@ impl CaptureReport<'_> {
             .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
         if let Some(frequency) = self.analysis.frequency_hz() {
             let speed = self.speed_rpm().map_or_else(String::new, |speed| format!(", {speed:.3} 1/min"));
-            let mark = if self.analysis.is_followed() { "" } else { " (uncertain: too few samples per period)" };
+            let mark = if self.analysis.is_angle_tracked() { "" } else { " (uncertain: too few samples per period)" };
             lines.add("frequency", format!("{frequency:.3} Hz{speed}{mark}"));
         }
         lines
@@ -190,7 +190,7 @@ impl CaptureReport<'_> {
             .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
             .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
             .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_peak_to_peak_deg()))
-            .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_words(error.basis)));
+            .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_text(error.basis)));
         if let Some(Revolution { raw, corrected }) = &self.revolution {
             let both = |raw: f64, corrected: f64| {
                 format!("±{:.1}″ as measured, ±{:.1}″ corrected (mechanical)", raw * 3_600.0, corrected * 3_600.0)
@@ -219,7 +219,7 @@ fn basis(basis: ErrorBasis) -> &'static str {
     }
 }
 
-fn basis_words(basis: ErrorBasis) -> String {
+fn basis_text(basis: ErrorBasis) -> String {
     match basis {
         ErrorBasis::Motion { noise_deg } => format!("noise {noise_deg:.3}° rms"),
         ErrorBasis::Ellipse => "estimated from the residual: the motion is too short or not uniform".to_owned(),

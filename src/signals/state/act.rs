@@ -183,7 +183,7 @@ impl Signals {
     /// Returns the changes since the capture used for comparison. Both captures are judged by the same limits.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
-        let before = kept.diagnosis.from_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
+        let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
         Some(compare(&before, &own.diagnosis))
     }
 

@@ -13,7 +13,7 @@ use crate::app::{Text, explain};
 use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
 use crate::buses::bridge::procedures::{AdapterStreamError, Streaming};
 use crate::buses::bridge::state as bridge;
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
@@ -79,7 +79,7 @@ impl AdapterLink {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-        let (margin, open) = open_adapter(&url, clock.clone(), at_adapter()).map_err(|error| refused(&error))?;
+        let (margin, open) = open_adapter(&url, clock.clone(), attachable_kinds()).map_err(|error| refused(&error))?;
         Ok(AdapterLink { url, clock, margin, open })
     }
 
@@ -122,7 +122,7 @@ impl SignalFeed {
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
-    pub(super) fn from_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
+    pub(super) fn start_virtual(checked: Checked, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let producer = AnalogueSource::new(checked, clock.now());
         Ok(SignalFeed::Virtual(spawn(producer, clock, services)?))

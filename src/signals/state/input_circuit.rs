@@ -27,7 +27,7 @@ pub struct OperatingPoint {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circuit {
+pub struct InputCircuitResult {
     pub here: OperatingPoint,
     /// Speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
@@ -52,7 +52,7 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason for the first invalid entry.
-    pub fn circuit(&self) -> Result<Circuit, Text> {
+    pub fn circuit(&self) -> Result<InputCircuitResult, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
         let ohms = parse_quantity(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
@@ -61,12 +61,12 @@ impl Form {
         let filter = InputFilter { resistance_ohm: ohms, capacitance_f: farads };
         let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MOST_RPM);
         let corner_hz = 1.0 / (std::f64::consts::TAU * ohms * farads);
-        Ok(Circuit { here: point(periods, filter, speed_rpm), most_rpm, corner_hz, periods, filter })
+        Ok(InputCircuitResult { here: point(periods, filter, speed_rpm), most_rpm, corner_hz, periods, filter })
     }
 }
 
-impl Circuit {
-    pub fn is_within(&self) -> bool {
+impl InputCircuitResult {
+    pub fn is_within_bandwidth(&self) -> bool {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
 
@@ -115,7 +115,7 @@ mod tests {
         for (periods, speed, farads, frequency, phase, steps, gain, most) in rows {
             let circuit = form(periods, speed, "10k", farads).circuit().unwrap();
             let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
-            assert!((frequency_hz - frequency).abs() < 1e-6 && circuit.is_within(), "{circuit:?}");
+            assert!((frequency_hz - frequency).abs() < 1e-6 && circuit.is_within_bandwidth(), "{circuit:?}");
             assert!((response.phase_deg - phase).abs() < 6e-4 && (response.gain - gain).abs() < 6e-6, "{circuit:?}");
             assert!((response.lag_in_steps() - steps).abs() < 6e-4, "{circuit:?}");
             assert!((shaft_deg * periods.parse::<f64>().unwrap() - phase).abs() < 6e-4);
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn the_curve_ends_at_the_bandwidth() {
         let circuit = form("1024", "9000", "10k", "47p").circuit().unwrap();
-        assert!(!circuit.is_within(), "153.6 kHz");
+        assert!(!circuit.is_within_bandwidth(), "153.6 kHz");
         let course = circuit.course(10);
         assert_eq!(course.len(), 10);
         assert!((course[0].frequency_hz - 15e3).abs() < 1e-6 && (course[9].frequency_hz - 150e3).abs() < 1e-6);

@@ -215,7 +215,7 @@ impl Source {
                 return false;
             }
         };
-        match SignalFeed::from_encoder(checked, services) {
+        match SignalFeed::start_virtual(checked, services) {
             Ok(feed) => {
                 self.run(SourceKind::Encoder, feed, services);
                 true

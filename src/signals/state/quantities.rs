@@ -47,7 +47,7 @@ pub enum QuantityLimit {
 
 impl Unit {
     /// Returns the unit symbol, or an empty string if there is no unit.
-    pub fn sign(self) -> &'static str {
+    pub fn unit_symbol(self) -> &'static str {
         match self {
             Unit::One => "",
             Unit::Volts => "V",
@@ -114,7 +114,7 @@ pub fn quantities(measurement: &MeasurementResult, family: Family, periods: Opti
     if let Some(frequency_hz) = analysis.frequency_hz() {
         let frequency = Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
             .bounded(QuantityLimit::Within(BANDWIDTH_HZ / 1e3));
-        list.push(if analysis.is_followed() { frequency } else { frequency.judged(Verdict::Warn) });
+        list.push(if analysis.is_angle_tracked() { frequency } else { frequency.judged(Verdict::Warn) });
         let speed = periods.and_then(|periods| speed_rpm_at(periods, frequency_hz));
         list.extend(speed.map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
     }

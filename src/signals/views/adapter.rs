@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    button, card_with, choice, entry, icon_button, paragraph, primary, show_error_below, text_entry,
+    button, card_with, choice, entry, icon_button, paragraph, primary_button, show_error_below, text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -56,7 +56,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         paragraph(ui, theme.caption(say(theme, "adapter.link_hint")));
         show_error_below(ui, theme, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
-            started |= primary(ui, theme, true, icons::PLAY, &say(theme, "adapter.start")).clicked();
+            started |= primary_button(ui, theme, true, icons::PLAY, &say(theme, "adapter.start")).clicked();
             if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(theme, "adapter.use_virtual")).clicked()
             {
                 ask(SourceAction::SetLink(VIRTUAL_ADAPTER.to_owned()));

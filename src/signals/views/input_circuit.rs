@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
-use crate::signals::state::input_circuit::{Circuit, Form, OperatingPoint};
+use crate::signals::state::input_circuit::{Form, InputCircuitResult, OperatingPoint};
 use crate::signals::state::{TEXTS, Unit};
 use crate::signals::views::say;
 use crate::ui::controls::{card, labelled_entry, paragraph, row, show_error_below, split};
@@ -66,12 +66,12 @@ fn notes_ui(ui: &mut Ui, theme: &Theme) {
     });
 }
 
-fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
     let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
     card(ui, theme, TEXTS.text("input.here"), |ui| {
-        ui.label(theme.value(format!("{} {}", theme.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
-        let (icon, colour, id) = match circuit.is_within() {
+        ui.label(theme.value(format!("{} {}", theme.number(frequency_hz / 1e3, 3), Unit::Kilohertz.unit_symbol())));
+        let (icon, colour, id) = match circuit.is_within_bandwidth() {
             true => (icons::CHECK_CIRCLE, theme.palette.good, "input.within"),
             false => (icons::WARNING, theme.palette.warn, "input.beyond"),
         };
@@ -80,23 +80,24 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
             let text = TEXTS.text(id).with_number("limit", limit_khz, 0);
             paragraph(ui, RichText::new(theme.words(&text)).color(colour));
         });
-        let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
-        let khz = |hertz: f64| theme.mono(format!("{} {}", theme.number(hertz / 1e3, 1), Unit::Kilohertz.sign()));
+        let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
+        let khz =
+            |hertz: f64| theme.monospace(format!("{} {}", theme.number(hertz / 1e3, 1), Unit::Kilohertz.unit_symbol()));
         let rpm = format!("{} {}", theme.number(circuit.most_rpm, 1), say(theme, "input.rpm"));
-        row(ui, theme, &say(theme, "input.most"), theme.mono(rpm));
+        row(ui, theme, &say(theme, "input.most"), theme.monospace(rpm));
         row(ui, theme, &say(theme, "input.lag"), number(response.phase_deg, 3, "° el."));
         row(ui, theme, &say(theme, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
         row(ui, theme, &say(theme, "input.lag_shaft"), number(shaft_deg, 5, "°"));
         let gain =
             format!("{}  ({} dB)", theme.number(response.gain, 5), theme.number(20.0 * response.gain.log10(), 2));
-        row(ui, theme, &say(theme, "input.gain"), theme.mono(gain));
+        row(ui, theme, &say(theme, "input.gain"), theme.monospace(gain));
         row(ui, theme, &say(theme, "input.corner"), khz(circuit.corner_hz));
         row(ui, theme, &say(theme, "input.sampling"), khz(2.0 * frequency_hz));
         row(ui, theme, &say(theme, "input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
     });
 }
 
-fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
     card(ui, theme, TEXTS.text("input.table"), |ui| {
         // Values are only read.
         ui.spacing_mut().interact_size.y = theme.space.groups;
@@ -116,7 +117,7 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
                         (response.lag_in_steps(), 3),
                         (response.gain, 5),
                     ] {
-                        ui.label(theme.mono(format!("{:>7}", theme.number(value, decimals))));
+                        ui.label(theme.monospace(format!("{:>7}", theme.number(value, decimals))));
                     }
                     ui.end_row();
                 }
@@ -125,7 +126,7 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     });
 }
 
-fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
     let course = circuit.course(POINTS);
     let trace = |id, colour, dashed, value: fn(&OperatingPoint) -> f64| Trace {
         name: say(theme, id),

@@ -101,7 +101,7 @@ fn page_ui(
     view: &mut SignalsUiState,
     actions: &mut Vec<Action>,
 ) {
-    page::scrolling(ui, theme, view.page.place(), |ui| match view.page {
+    page::scrollable_page(ui, theme, view.page.place(), |ui| match view.page {
         Page::Scope => {
             if source::source_ui(ui, theme, signals, &mut view.source, actions) {
                 scope::page_ui(ui, theme, signals, view, actions);

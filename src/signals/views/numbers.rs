@@ -42,7 +42,7 @@ pub(super) fn rows_ui(
                     let other = compared.iter().find(|other| other.word == quantity.word);
                     comparison_ui(ui, theme, quantity, other);
                 }
-                let words = quantity.bound.map(|bound| bound_words(theme, bound, quantity.unit)).unwrap_or_default();
+                let words = quantity.bound.map(|bound| bound_text(theme, bound, quantity.unit)).unwrap_or_default();
                 if limits {
                     ui.label(theme.caption(&words));
                 }
@@ -58,11 +58,11 @@ pub(super) fn rows_ui(
 fn value(ui: &mut Ui, theme: &Theme, quantity: &Quantity, wide: bool) {
     ui.horizontal(|ui| {
         let value = with_unit(theme, quantity.value, quantity.decimals, quantity.unit);
-        let response = ui.add(egui::Label::new(theme.mono(value)).selectable(true));
+        let response = ui.add(egui::Label::new(theme.monospace(value)).selectable(true));
         let also = quantity.also.map(|(value, decimals, unit)| with_unit(theme, value, decimals, unit));
         match also {
             Some(also) if wide => {
-                ui.label(theme.mono(also).size(theme.sizes.caption).color(theme.palette.muted));
+                ui.label(theme.monospace(also).size(theme.sizes.caption).color(theme.palette.muted));
             }
             Some(also) => drop(response.on_hover_text(also)),
             None => {}
@@ -76,11 +76,11 @@ fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<
         ui.label("");
         return;
     };
-    let number = |value: f64| theme.mono(theme.number(value, quantity.decimals));
+    let number = |value: f64| theme.monospace(theme.number(value, quantity.decimals));
     ui.label(number(other.value).color(theme.palette.muted));
     let difference = rounded(quantity.value - other.value, quantity.decimals);
     let sign = if difference > 0.0 { "+" } else { "" };
-    ui.label(theme.mono(format!("{sign}{}", theme.number(difference, quantity.decimals))));
+    ui.label(theme.monospace(format!("{sign}{}", theme.number(difference, quantity.decimals))));
 }
 
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
@@ -93,7 +93,7 @@ fn rounded(value: f64, decimals: usize) -> f64 {
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
-fn bound_words(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
+fn bound_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
     let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {
         QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
@@ -105,7 +105,7 @@ fn bound_words(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
 }
 
 fn append_unit(words: String, unit: Unit) -> String {
-    match unit.sign() {
+    match unit.unit_symbol() {
         "" => words,
         sign @ ("°" | "″") => format!("{words}{sign}"),
         sign => format!("{words} {sign}"),

@@ -38,10 +38,10 @@ fn tables_ui(ui: &mut Ui, theme: &Theme) {
         }
         ui.end_row();
         for table in table_errors() {
-            ui.label(theme.mono(table.intervals.to_string()));
-            ui.label(theme.mono(format!("{}°", theme.number(table.largest_deg, 5))));
-            ui.label(theme.mono(format!("1/{:.0}", table.parts)));
-            ui.label(theme.mono(theme.number(table.bits, 2)));
+            ui.label(theme.monospace(table.intervals.to_string()));
+            ui.label(theme.monospace(format!("{}°", theme.number(table.largest_deg, 5))));
+            ui.label(theme.monospace(format!("1/{:.0}", table.parts)));
+            ui.label(theme.monospace(theme.number(table.bits, 2)));
             ui.end_row();
         }
     });
@@ -64,11 +64,11 @@ fn pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
                     ui,
                     theme,
                     &say(theme, id),
-                    theme.mono(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))),
+                    theme.monospace(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))),
                 );
             }
             let difference = format!("{}°", theme.number(found.difference_deg, 5));
-            row(ui, theme, &say(theme, "octant.difference"), theme.mono(difference));
+            row(ui, theme, &say(theme, "octant.difference"), theme.monospace(difference));
         }
         Err(why) => problem(ui, theme, Some(&why)),
     }

@@ -78,10 +78,10 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
         }
         let compared = signals.comparison().map(|kept| {
             let picture = other.of(ui, theme, kept, corrected, 1);
-            figure_text(kept, corrected, picture, (1, true))
+            quality_figure(kept, corrected, picture, (1, true))
         });
         let picture = own.of(ui, theme, measurement.results(), corrected, 0);
-        let shown = figure_text(measurement, corrected, picture, (0, false));
+        let shown = quality_figure(measurement, corrected, picture, (0, false));
         let figures: Vec<LissajousFigure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
         let lissajous_ = Lissajous {
@@ -125,7 +125,7 @@ impl Picture {
     }
 }
 
-fn figure_text(
+fn quality_figure(
     measurement: &MeasurementResult,
     corrected: bool,
     picture: Option<(TextureId, PlotSquare)>,
@@ -133,7 +133,7 @@ fn figure_text(
 ) -> LissajousFigure {
     let curve = |analysis: &Analysis| {
         let ellipse = if corrected { analysis.ellipse.corrected_ellipse() } else { analysis.ellipse };
-        ellipse.outline(CURVE)
+        ellipse.outline_points(CURVE)
     };
     LissajousFigure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }

@@ -121,8 +121,8 @@ fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra
         label: &say(theme, "spectrum.title"),
         value: &value.join("; "),
         height: SPECTRUM,
-        x_unit: Unit::Kilohertz.sign(),
-        y_unit: if volts { Unit::Volts } else { Unit::DecibelVolts }.sign(),
+        x_unit: Unit::Kilohertz.unit_symbol(),
+        y_unit: if volts { Unit::Volts } else { Unit::DecibelVolts }.unit_symbol(),
         marks: &marks,
         ..Chart::default()
     };
@@ -147,11 +147,11 @@ fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measure
         for (id, channel) in [("signals.sine", &spectra.sine), ("signals.cosine", &spectra.cosine)] {
             for peak in channel.peaks.iter().take(4) {
                 ui.label(theme.label(say(theme, id)));
-                ui.label(theme.mono(with_unit(theme, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
-                ui.label(theme.mono(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
-                ui.label(theme.mono(with_unit(theme, decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));
+                ui.label(theme.monospace(with_unit(theme, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
+                ui.label(theme.monospace(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
+                ui.label(theme.monospace(with_unit(theme, decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));
                 let order = signal_hz.filter(|hertz| *hertz > 0.0).map(|hertz| peak.frequency_hz / hertz);
-                ui.label(theme.mono(order.map_or_else(|| "–".to_owned(), |order| theme.number(order, 2))));
+                ui.label(theme.monospace(order.map_or_else(|| "–".to_owned(), |order| theme.number(order, 2))));
                 ui.end_row();
             }
         }

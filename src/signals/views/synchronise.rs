@@ -120,10 +120,10 @@ fn measured_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &m
     };
     card_with(ui, theme, TEXTS.text("synchronise.measured"), aside, |ui| {
         paragraph(ui, theme.label(say(theme, "synchronise.measured_words")));
-        row(ui, theme, &say(theme, "synchronise.readings"), theme.mono(count.to_string()));
+        row(ui, theme, &say(theme, "synchronise.readings"), theme.monospace(count.to_string()));
         let offset = state.measured();
         let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", theme.number(offset, 2)));
-        row(ui, theme, &say(theme, "synchronise.mean"), theme.mono(words));
+        row(ui, theme, &say(theme, "synchronise.mean"), theme.monospace(words));
         if enabled_button(ui, offset.is_some(), icons::CHECK, &say(theme, "synchronise.use")).clicked() {
             actions.push(ask(Page::UseOffset));
         }
@@ -144,9 +144,9 @@ fn captured_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Ac
         paragraph(ui, theme.label(theme.words(&name)));
         match offset {
             Ok(offset) => {
-                let steps = |steps| theme.mono(format!("{}/32", theme.number(steps, 2)));
+                let steps = |steps| theme.monospace(format!("{}/32", theme.number(steps, 2)));
                 let state = signals.synchronise();
-                row(ui, theme, &say(theme, "quality.samples"), theme.mono(offset.samples.to_string()));
+                row(ui, theme, &say(theme, "quality.samples"), theme.monospace(offset.samples.to_string()));
                 row(ui, theme, &say(theme, "synchronise.mean"), steps(state.with_half_step(offset.offset_steps)));
                 row(ui, theme, &say(theme, "synchronise.farthest"), steps(offset.farthest_steps));
                 if enabled_button(ui, true, icons::CHECK, &say(theme, "synchronise.use_captured")).clicked() {
@@ -190,14 +190,14 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
 }
 
 fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
-    let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
-    row(ui, theme, &say(theme, "synchronise.period"), theme.mono(synchronisation.period.to_string()));
+    let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
+    row(ui, theme, &say(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
     // In their colours in the ring.
     row(
         ui,
         theme,
         &say(theme, "synchronise.step"),
-        theme.mono(format!("{}/32", synchronisation.step)).color(series(theme, 0)),
+        theme.monospace(format!("{}/32", synchronisation.step)).color(series(theme, 0)),
     );
     row(
         ui,
@@ -208,9 +208,9 @@ fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     row(ui, theme, &say(theme, "synchronise.difference"), number(synchronisation.difference_steps, 2, "/32"));
     if let Ok(fine) = synchronisation.result {
         let correction = if fine.correction == 0 { "0".to_owned() } else { format!("{:+}", fine.correction) };
-        row(ui, theme, &say(theme, "synchronise.correction"), theme.mono(correction));
+        row(ui, theme, &say(theme, "synchronise.correction"), theme.monospace(correction));
         row(ui, theme, &say(theme, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
-        row(ui, theme, &say(theme, "synchronise.steps"), theme.mono(format!("{:X}h", fine.steps(16))));
+        row(ui, theme, &say(theme, "synchronise.steps"), theme.monospace(format!("{:X}h", fine.steps(16))));
     }
     if let Some(degrees) = synchronisation.degrees() {
         row(ui, theme, &say(theme, "synchronise.shaft"), number(degrees, 6, "°"));
@@ -222,7 +222,7 @@ fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         paragraph(ui, theme.label(say(theme, "synchronise.counter_words")));
         typed_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
         match form.quadrature() {
-            Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.mono(theme.number(fine, 5))),
+            Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.monospace(theme.number(fine, 5))),
             Ok(None) => {}
             Err(why) => problem(ui, theme, Some(&why)),
         }
@@ -232,7 +232,7 @@ fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         match form.unlatched_rpm() {
             Ok(rpm) => {
                 let words = format!("{} {}", theme.number(rpm, 1), say(theme, "input.rpm"));
-                row(ui, theme, &say(theme, "synchronise.below"), theme.mono(words));
+                row(ui, theme, &say(theme, "synchronise.below"), theme.monospace(words));
             }
             Err(why) => problem(ui, theme, Some(&why)),
         }

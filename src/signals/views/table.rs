@@ -73,13 +73,13 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
 /// Draws the first lines of the file unchanged.
 fn lines_ui(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         ui.set_min_width(ui.available_width().max(0.0));
         ScrollArea::horizontal().id_salt("lines").auto_shrink([false, true]).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for (number, line) in (1_u64..).zip(&table.head) {
                 let colour = if number >= first { theme.palette.text } else { theme.palette.muted };
-                let text = theme.mono(format!("{number:>2}  {line}")).size(theme.sizes.caption).color(colour);
+                let text = theme.monospace(format!("{number:>2}  {line}")).size(theme.sizes.caption).color(colour);
                 ui.label(text);
             }
         });

@@ -248,8 +248,8 @@ fn remainder(number: i128, whole: u64) -> u64 {
 
 /// Returns two independent, normally distributed numbers that depend only on `seed` and `place` (Box and Muller 1958).
 fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
-    let first = scramble(seed ^ scramble(place));
-    let second = scramble(first ^ seed);
+    let first = splitmix64(seed ^ splitmix64(place));
+    let second = splitmix64(first ^ seed);
     // 53 bits each, the first of them above 0.
     let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
     let length = (-2.0 * (1.0 - unit(first)).ln()).sqrt();
@@ -258,7 +258,7 @@ fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
 }
 
 /// Returns a SplitMix64 hash (Steele, Lea, Flood 2014), which turns adjacent numbers into unrelated ones.
-fn scramble(number: u64) -> u64 {
+fn splitmix64(number: u64) -> u64 {
     let mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);

@@ -2,7 +2,7 @@
 
 use egui::{ScrollArea, Ui};
 
-use crate::ui::controls::{at_the_right, button, modal, paragraph, row};
+use crate::ui::controls::{button, modal, paragraph, right_aligned, row};
 use crate::ui::{Theme, icons};
 
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
@@ -22,15 +22,15 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
         ui.add_space(theme.space.between);
         ui.label(theme.heading(theme.say("about.made_of")));
         let height = (ctx.content_rect().height() - 360.0).clamp(120.0, 300.0);
-        theme.sunken().show(ui, |ui| {
+        theme.sunken_frame().show(ui, |ui| {
             ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
                 for text in [CRATES, FONT_LICENCES] {
-                    paragraph(ui, theme.mono(text).size(theme.sizes.caption));
+                    paragraph(ui, theme.monospace(text).size(theme.sizes.caption));
                 }
             });
         });
         theme.gap(ui);
-        at_the_right(ui, |ui| {
+        right_aligned(ui, |ui| {
             done = button(ui, "", &theme.say("about.close")).clicked();
         });
     });

@@ -4,7 +4,7 @@ use egui::{Grid, ScrollArea, Ui};
 
 use crate::app::{Action, AnyDevice, DeviceCommand, ProfileComparison, Studio, Text};
 use crate::profile::Comparison;
-use crate::ui::controls::{at_the_right, button, modal, paragraph, primary};
+use crate::ui::controls::{button, modal, paragraph, primary_button, right_aligned};
 use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points, so that a long list leaves the buttons visible.
@@ -57,10 +57,10 @@ fn table_ui(ui: &mut Ui, theme: &Theme, comparison: &Comparison) {
 
 fn value_ui(ui: &mut Ui, theme: &Theme, text: &str) {
     if text.chars().count() <= SHOWN {
-        ui.label(theme.mono(text));
+        ui.label(theme.monospace(text));
     } else {
         let beginning: String = text.chars().take(SHOWN).chain(['…']).collect();
-        ui.label(theme.mono(beginning)).on_hover_text(theme.mono(text));
+        ui.label(theme.monospace(beginning)).on_hover_text(theme.monospace(text));
     }
 }
 
@@ -72,11 +72,11 @@ fn only_ui(ui: &mut Ui, theme: &Theme, word: &'static str, items: &[String]) {
 }
 
 fn buttons_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, shown: &ProfileComparison, actions: &mut Vec<Action>) {
-    at_the_right(ui, |ui| {
+    right_aligned(ui, |ui| {
         let differs = !shown.comparison().differences.is_empty();
         let can_restore = differs && device.is_ready() && device.has_memory();
         let word = theme.say("comparison.restore");
-        if primary(ui, theme, can_restore, icons::DOWNLOAD_SIMPLE, &word).clicked() {
+        if primary_button(ui, theme, can_restore, icons::DOWNLOAD_SIMPLE, &word).clicked() {
             actions.push(Action::CloseComparison);
             actions.push(device.command(DeviceCommand::Restore(shown.path().to_owned())));
         }

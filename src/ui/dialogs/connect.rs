@@ -12,7 +12,7 @@ use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, is_
 use crate::app::{Action, Studio, Tab, Text};
 use crate::link::LinkUrl;
 use crate::ui::controls::{
-    at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
+    button, entry, icon_button, modal, mono_entry, name, paragraph, primary_button, problem, right_aligned,
 };
 use crate::ui::{TabViews, Theme, icons};
 
@@ -62,9 +62,9 @@ pub(in crate::ui) fn connect_ui(
         let searching = dialog.is_searching().then(|| Text::new("connect.searching"));
         let refused = searching.or(url.err());
         reason_ui(ui, theme, refused.as_ref().or(dialog.problem.as_ref()));
-        at_the_right(ui, |ui| {
+        right_aligned(ui, |ui| {
             let word = theme.say("connect.connect");
-            if primary(ui, theme, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
+            if primary_button(ui, theme, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
                 actions.push(Action::Connect(Connect::Connect));
             }
             if button(ui, "", &theme.say("connect.cancel")).clicked() {
@@ -77,7 +77,7 @@ pub(in crate::ui) fn connect_ui(
 fn devices_ui(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.device_tabs() {
         let word = tabs.title(theme, own);
-        let text = RichText::new(&word).font(theme.strong(theme.sizes.body));
+        let text = RichText::new(&word).font(theme.bold_font(theme.sizes.body));
         let response = ui.add(egui::Button::selectable(device == own, text));
         if name(response, true, &word).clicked() && own != device {
             actions.push(Action::Connect(Connect::Device(own)));
@@ -93,7 +93,7 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for link in links.iter().take(LINKS) {
-            let response = ui.add(egui::Button::new(theme.mono(link)).frame_when_inactive(false).truncate());
+            let response = ui.add(egui::Button::new(theme.monospace(link)).frame_when_inactive(false).truncate());
             if response.clicked() {
                 actions.push(Action::Connect(Connect::Use(link.clone())));
             }

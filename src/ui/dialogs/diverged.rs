@@ -5,7 +5,7 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::diverged::{ConflictResolution, ProfileConflict, Row, Side};
 use crate::app::{Action, Studio, Text};
 use crate::profile::ChangedSide;
-use crate::ui::controls::{at_the_right, button, enabled_button, modal, options, paragraph, primary, problem};
+use crate::ui::controls::{button, enabled_button, modal, options, paragraph, primary_button, problem, right_aligned};
 use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points, so that a long list leaves the buttons visible.
@@ -42,13 +42,13 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
         ChangedSide::Both => "diverged.both",
     };
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme.mono(&place));
+        ui.label(theme.monospace(&place));
         ui.label(theme.caption(theme.say(who)));
         if row.take.is_none() {
             ui.label(RichText::new(theme.say("diverged.open")).color(theme.palette.warn));
         }
     });
-    let value = |side: Side| row.value(side).map_or_else(|| theme.say("diverged.nothing"), shortened);
+    let value = |side: Side| row.value(side).map_or_else(|| theme.say("diverged.nothing"), shortened_text);
     let sides = [(Side::Theirs, "diverged.theirs"), (Side::Mine, "diverged.mine")];
     let choices = sides.map(|(side, word)| {
         let text = Text::new(word).with("value", value(side));
@@ -64,7 +64,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
 }
 
 /// Returns the beginning of a value, on one line.
-fn shortened(value: &str) -> String {
+fn shortened_text(value: &str) -> String {
     let words: Vec<&str> = value.split_whitespace().collect();
     let line = words.join(" ");
     if line.chars().count() <= SHOWN {
@@ -74,12 +74,12 @@ fn shortened(value: &str) -> String {
 }
 
 fn buttons_ui(ui: &mut Ui, theme: &Theme, diverged: &ProfileConflict, actions: &mut Vec<Action>) {
-    at_the_right(ui, |ui| {
+    right_aligned(ui, |ui| {
         let can_merge = diverged.can_merge();
-        if primary(ui, theme, can_merge, icons::FLOPPY_DISK, &theme.say("diverged.merge")).clicked() {
+        if primary_button(ui, theme, can_merge, icons::FLOPPY_DISK, &theme.say("diverged.merge")).clicked() {
             actions.push(Action::Resolve(ConflictResolution::Merge));
         }
-        if enabled_button(ui, diverged.can_keep_mine(), "", &theme.say("diverged.keep_mine")).clicked() {
+        if enabled_button(ui, diverged.can_overwrite_file(), "", &theme.say("diverged.keep_mine")).clicked() {
             actions.push(Action::Resolve(ConflictResolution::KeepMine));
         }
         if enabled_button(ui, diverged.can_reload(), "", &theme.say("diverged.reload")).clicked() {

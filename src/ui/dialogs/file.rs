@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::app::{Action, FileQuestion, Mailbox, Text};
 use crate::store::BaseFolders;
-use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
+use crate::ui::controls::{button, modal, primary_button, right_aligned, text_entry};
 use crate::ui::{Theme, icons};
 
 pub(in crate::ui) struct FileView {
@@ -36,7 +36,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
         // Loggers use many extensions for their tables, and users name traces freely.
         let any = matches!(question, FileQuestion::OpenCapture | FileQuestion::Recording);
         let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
-        let chosen = match question.suggested() {
+        let chosen = match question.suggested_path() {
             None => dialog.pick_file(),
             Some(suggested) => {
                 let dialog = match suggested.file_name() {
@@ -98,8 +98,8 @@ impl FileView {
     /// Creates the state for typing a path. The path starts at the user's home unless the question specifies a folder.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &BaseFolders) -> Self {
         let home = folders.home_folder().unwrap_or(Path::new(""));
-        let path = home.join(question.suggested().unwrap_or(Path::new("")));
-        let working = folders.working().map(Path::to_owned);
+        let path = home.join(question.suggested_path().unwrap_or(Path::new("")));
+        let working = folders.working_folder().map(Path::to_owned);
         FileView { question, path: path.display().to_string(), working, fresh: true }
     }
 }
@@ -113,7 +113,7 @@ pub(in crate::ui) fn file_ui(
 ) -> bool {
     let (confirm, icon) = match view.question {
         FileQuestion::Recording => ("file.choose", icons::FOLDER_OPEN),
-        _ if view.question.suggested().is_none() => ("file.open", icons::FOLDER_OPEN),
+        _ if view.question.suggested_path().is_none() => ("file.open", icons::FOLDER_OPEN),
         _ => ("file.save", icons::FLOPPY_DISK),
     };
     let mut done = false;
@@ -139,9 +139,9 @@ pub(in crate::ui) fn file_ui(
             ui.label(theme.caption(theme.words(&rule)));
         }
         theme.gap(ui);
-        at_the_right(ui, |ui| {
+        right_aligned(ui, |ui| {
             let named = !view.path.trim().is_empty();
-            if primary(ui, theme, named, icon, &theme.say(confirm)).clicked() || (enter && named) {
+            if primary_button(ui, theme, named, icon, &theme.say(confirm)).clicked() || (enter && named) {
                 actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));
                 done = true;
             }

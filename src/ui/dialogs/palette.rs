@@ -102,7 +102,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, rect: Rect, command: &Command, is_lit: boo
     ui.scope_builder(egui::UiBuilder::new().max_rect(inner).layout(Layout::right_to_left(Align::Center)), |ui| {
         ui.spacing_mut().item_spacing.x = theme.space.between;
         if let Some(keys) = command.shortcut {
-            ui.label(theme.mono(ui.ctx().format_shortcut(&keys)).color(palette.muted));
+            ui.label(theme.monospace(ui.ctx().format_shortcut(&keys)).color(palette.muted));
         }
         ui.label(theme.caption(&command.about));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

@@ -3,7 +3,7 @@
 use egui::RichText;
 
 use crate::app::{Action, Studio};
-use crate::ui::controls::{at_the_right, button, modal, name, paragraph};
+use crate::ui::controls::{button, modal, name, paragraph, right_aligned};
 use crate::ui::{Theme, icons};
 
 pub(in crate::ui) fn question_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
@@ -14,7 +14,7 @@ pub(in crate::ui) fn question_ui(ctx: &egui::Context, theme: &Theme, studio: &St
             paragraph(ui, theme.words(&question.text));
         });
         theme.gap(ui);
-        at_the_right(ui, |ui| {
+        right_aligned(ui, |ui| {
             let word = theme.words(&question.confirm);
             let response = ui.button(RichText::new(&word).color(theme.palette.bad));
             if name(response, true, &word).clicked() {

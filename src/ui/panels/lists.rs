@@ -33,12 +33,12 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
             body.rows(ROW, jobs.len(), |mut row| {
                 let Some(job) = jobs.get(row.index()) else { return };
                 row.col(|ui| {
-                    ui.label(theme.mono(job.since.strftime(TIME).to_string()).color(palette.muted));
+                    ui.label(theme.monospace(job.since.strftime(TIME).to_string()).color(palette.muted));
                 });
                 row.col(|ui| {
                     if let Some(until) = &job.until {
                         let seconds = until.duration_since(&job.since).as_secs_f64();
-                        ui.label(theme.mono(format!("{} s", theme.number(seconds, 2))).color(palette.muted));
+                        ui.label(theme.monospace(format!("{} s", theme.number(seconds, 2))).color(palette.muted));
                     }
                 });
                 let (icon, colour, words) = match &job.end {
@@ -70,7 +70,7 @@ pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
         for notice in studio.services.log.notices().rev().take(SHOWN) {
             let (icon, colour) = severity(theme, notice.severity);
             ui.horizontal_top(|ui| {
-                ui.label(theme.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
+                ui.label(theme.monospace(notice.at.strftime(TIME).to_string()).color(palette.muted));
                 ui.label(RichText::new(icon).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
                 let about = notice.prefix(|text| theme.words(text));

@@ -100,7 +100,7 @@ pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
 
 /// Draws the position as sent by the device, in a smaller font if it would not fit on one line.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
-    let value = theme.mono(value);
+    let value = theme.monospace(value);
     let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;
     let text = egui::WidgetText::from(value.clone());
     let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Monospace);
@@ -117,7 +117,7 @@ fn controls_ui(
 ) {
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
-    let streams = if device.streams() { &STREAMS[..] } else { &[] };
+    let streams = if device.can_stream() { &STREAMS[..] } else { &[] };
     let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.say(id))).collect();
     let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
     ui.horizontal_wrapped(|ui| {

@@ -77,13 +77,13 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views
                 };
                 row.col(|ui| {
                     let time = trace.line_time(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
-                    ui.label(theme.mono(time).color(palette.muted));
+                    ui.label(theme.monospace(time).color(palette.muted));
                 });
                 row.col(|ui| {
-                    ui.label(theme.mono(arrow).color(palette.accent));
+                    ui.label(theme.monospace(arrow).color(palette.accent));
                 });
                 row.col(|ui| {
-                    ui.label(theme.mono(&line.bytes).color(colour));
+                    ui.label(theme.monospace(&line.bytes).color(colour));
                 });
                 let meaning = line.words(theme.language);
                 row.col(|ui| {

@@ -69,7 +69,7 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
     let step = time_step(span, most.max(1));
     // Labels that would differ in their last digits only count from a round point before them.
     let coarse =
-        if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(coarse_base(from, step)) } else { None };
+        if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(axis_base_time(from, step)) } else { None };
     let origin = coarse.unwrap_or(0);
     let first = from.nanoseconds().saturating_sub(origin).div_euclid(step);
     let mut ticks = Vec::new();
@@ -96,7 +96,7 @@ pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, langua
 }
 
 /// Returns the base time at or before `from`, a multiple of 0.1 s for steps below 1 ms and of 10 s otherwise.
-fn coarse_base(from: SampleTime, step: i64) -> i64 {
+fn axis_base_time(from: SampleTime, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
 }

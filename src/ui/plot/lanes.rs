@@ -124,7 +124,7 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let time = TimeAxis { from: grid.edge(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
         let lanes = lay_out_lanes(chart, &groups, &time, reduced);
-        let needed = (label_letters(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
+        let needed = (max_label_len(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
         if needed <= gutter || rect.width() < gutter * 3.0 {
             // Released in the next frame, if it is more than a character or two: it must not jump with every sample.
             reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
@@ -134,7 +134,7 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
     }
 }
 
-fn label_letters(lanes: &[Lane]) -> usize {
+fn max_label_len(lanes: &[Lane]) -> usize {
     let longest = |lane: &Lane| {
         let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
         axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::Text;
 use crate::app::recorder::{Recorder, RecorderAction, SeriesId, Trigger, TriggerCondition};
-use crate::ui::controls::{entry, options, primary, text_entry};
+use crate::ui::controls::{entry, options, primary_button, text_entry};
 use crate::ui::{Theme, icons};
 
 pub(super) struct Form {
@@ -78,7 +78,7 @@ pub(super) fn form_ui(
     options(ui, &word_of, &mut form.before, [0, 10, 25, 50, 75, 90].map(|share| (share, format!("{share} %"))));
     ui.checkbox(&mut form.repeat, theme.say("trigger.repeat"));
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        if primary(ui, theme, true, icons::LIGHTNING, &theme.say("trigger.arm")).clicked() || enter {
+        if primary_button(ui, theme, true, icons::LIGHTNING, &theme.say("trigger.arm")).clicked() || enter {
             match form.trigger() {
                 Ok(trigger) => {
                     form.problem = None;

@@ -58,7 +58,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
         }
         HoverPosition::Elsewhere { .. } => None,
     };
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         // Ticks fade from one colour into the other as they get closer together.
         ui.visuals_mut().widgets.noninteractive.fg_stroke.color = theme.palette.muted.into();
         ui.visuals_mut().override_text_color = Some(theme.palette.muted.into());

@@ -137,7 +137,7 @@ struct Part {
 }
 
 fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
-    let widest = strip::widest(runs);
+    let widest = strip::widest_run(runs);
     let mut part = Part { clicked: false, state: paint::State::default() };
     for (number, rect) in runs.iter().enumerate() {
         let response = if number == widest {
@@ -163,12 +163,12 @@ fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>,
             // The arrows continue from here.
             ui.memory_mut(|memory| memory.request_focus(id));
         }
-        tip(response, tooltip);
+        show_tooltip(response, tooltip);
     }
     part
 }
 
-fn tip(response: Response, tooltip: &str) {
+fn show_tooltip(response: Response, tooltip: &str) {
     if !tooltip.is_empty() {
         response.on_hover_ui(|ui| {
             ui.label(tooltip);
@@ -206,7 +206,7 @@ fn handle(
         paint::ghost(ui, theme, strip, &strip.runs(start, start + wanted), &theme.words(&text));
     } else if !response.dragged() {
         let words = theme.say("widget.map_resize");
-        tip(response.clone(), &words);
+        show_tooltip(response.clone(), &words);
     }
     let released = response.drag_stopped() && !given_up;
     wanted.filter(|wanted| released && *wanted != blocks).map(|blocks| MapEvent::ResizeLast { blocks })

@@ -105,7 +105,7 @@ pub fn hex_lines(height: f32, beside: bool) -> usize {
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
-    view.follow_to(model.wanted);
+    view.move_cursor_to_change(model.wanted);
     let edits = match ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
         true => keys::listen(ui, model, view),
         false => {
@@ -119,7 +119,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         // A half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
-        let frame = theme.sunken().show(ui, |ui| {
+        let frame = theme.sunken_frame().show(ui, |ui| {
             let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
             area.show(ui, |ui| body_ui(ui, theme, id, &grid, model, view)).inner
         });
@@ -127,7 +127,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         if response.has_focus() {
             focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
-        tell(ui, &response, label, model, view);
+        set_widget_info(ui, &response, label, model, view);
         ui.add_space(theme.space.inside);
         status_ui(ui, theme, &grid, model, view);
     });
@@ -203,7 +203,7 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
 }
 
 /// Sets the accessible name and value for screen readers and tests.
-fn tell(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &HexView) {
+fn set_widget_info(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &HexView) {
     let selected = view.selection();
     let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
         let first = model.address(selected.start);
@@ -229,7 +229,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
         ui.spacing_mut().item_spacing.x = theme.space.groups;
         if let Some(problem) = &view.problem {
             let words = format!("{} {}", icons::WARNING_CIRCLE, theme.words(problem));
-            ui.add(egui::Label::new(sentence(theme, &words, theme.palette.bad.into())).wrap());
+            ui.add(egui::Label::new(caption_layout(theme, &words, theme.palette.bad.into())).wrap());
             return;
         }
         let selected = view.selection();
@@ -242,7 +242,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
                 .with("last", model.address(selected.end.saturating_sub(1)))
                 .with("count", count),
         };
-        ui.label(sentence(theme, &theme.words(&place), theme.palette.muted.into()));
+        ui.label(caption_layout(theme, &theme.words(&place), theme.palette.muted.into()));
         let changes = model.changes();
         if changes > 0 {
             let words = theme.words(&Text::new("widget.hex_changed").with("count", changes));
@@ -253,7 +253,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
 
 /// Returns a caption with its addresses in the monospaced font, since the text font would display the `x` in `0x` as a
 /// multiplication sign.
-fn sentence(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
+fn caption_layout(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     for word in words.split_inclusive(' ') {
         let size = theme.sizes.caption;

@@ -193,7 +193,7 @@ fn paint(ui: &Ui, theme: &Theme, button: &HoldButton<'_>, response: &Response, h
     painter.rect_stroke(rect, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
     let middle = rect.center();
     let word = pos2(middle.x, middle.y - theme.space.between);
-    painter.text(word, Align2::CENTER_CENTER, button.word, theme.strong(theme.sizes.value), ink.into());
+    painter.text(word, Align2::CENTER_CENTER, button.word, theme.bold_font(theme.sizes.value), ink.into());
     let below = pos2(middle.x, rect.bottom() - theme.space.groups);
     let font = FontId::proportional(theme.sizes.caption);
     painter.text(below, Align2::CENTER_CENTER, button.caption, font, small.into());

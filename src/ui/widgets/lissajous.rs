@@ -101,7 +101,7 @@ pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
     let side = density.side();
-    let scale = f64::from(density.most()).ln_1p().max(f64::MIN_POSITIVE);
+    let scale = f64::from(density.max_count()).ln_1p().max(f64::MIN_POSITIVE);
     let brightness = |count: u32| match count {
         0 => 0.0,
         count => LEAST + (1.0 - LEAST) * (f64::from(count).ln_1p() / scale) as f32,

@@ -164,7 +164,7 @@ pub fn register_table(
     let id = ui.make_persistent_id(("register_table", table.label));
     let mut output = RegisterOutput::default();
     let mut lines = Lines::new(table, view);
-    keys::catch_up(ui, view, id);
+    keys::restore_deferred_keys(ui, view, id);
     if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
         output.event = keys::listen(ui, table, &lines, view);
         lines = Lines::new(table, view);
@@ -172,7 +172,7 @@ pub fn register_table(
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let frame = theme.sunken().inner_margin(MARGIN).show(ui, |ui| {
+        let frame = theme.sunken_frame().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill(ui);
             // The lines are beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
@@ -187,7 +187,7 @@ pub fn register_table(
             keys::hold(ui, id);
             focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
-        tell(&response, theme, table, view);
+        set_widget_info(&response, theme, table, view);
     });
     output
 }
@@ -334,7 +334,7 @@ fn row(
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
     paint::row(ui, theme, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));
     if response.hovered() && !typing {
-        response.on_hover_ui(|ui| paint::tip(ui, theme, (table.kind, columns), &row));
+        response.on_hover_ui(|ui| paint::show_tooltip(ui, theme, (table.kind, columns), &row));
     }
 }
 
@@ -345,7 +345,7 @@ fn value_info(role: Role, label: &str, value: &str) -> WidgetInfo {
 }
 
 /// Sets the accessible description of the table for screen readers.
-fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
+fn set_widget_info(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
         Some(SelectedRow::Row(place)) => {
             let row = (table.row)(place);

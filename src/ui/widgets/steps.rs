@@ -17,7 +17,7 @@ use egui::accesskit::Role;
 use egui::{Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
 
 use crate::app::Rgb;
-use crate::ui::controls::{enabled_button, fill, paragraph, primary};
+use crate::ui::controls::{enabled_button, fill, paragraph, primary_button};
 use crate::ui::{Theme, icons};
 
 #[derive(Clone, Debug, Default)]
@@ -152,7 +152,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
         StepState::Waiting | StepState::Running | StepState::Done => palette.text,
     };
     let font =
-        if step.state.counts() { theme.strong(theme.sizes.section) } else { FontId::proportional(theme.sizes.body) };
+        if step.state.counts() { theme.bold_font(theme.sizes.section) } else { FontId::proportional(theme.sizes.body) };
     let half = ui.fonts_mut(|fonts| fonts.row_height(&font)) / 2.0;
     let response = ui.add(egui::Label::new(RichText::new(&step.title).font(font).color(ink)).wrap());
     let words = format!("{}: {}", step.title, step.word);
@@ -194,7 +194,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEven
     let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {
-            let response = primary(ui, theme, allowed.is_ok(), icons::PLAY, word);
+            let response = primary_button(ui, theme, allowed.is_ok(), icons::PLAY, word);
             if response.clicked() {
                 event = Some(StepsEvent::Start);
             }

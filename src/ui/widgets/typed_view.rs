@@ -28,7 +28,7 @@ pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     // The longest is a float: -3.4028235e38.
     let value = (glyph * 13.0 / 4.0).ceil() * 4.0 + theme.space.groups;
     let columns = Columns { name: theme.space.groups * 4.0, value, row: theme.space.inside * 5.0 };
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         header_ui(ui, theme, &columns);
         for row in bits::typed(bytes) {
@@ -103,7 +103,7 @@ fn value(ui: &Ui, theme: &Theme, rect: Rect, id: Id, label: &str, shown: Option<
         focus_ring(ui.painter(), theme, rect.shrink(2.0), theme.space.inside);
     }
     let room = rect.width() - theme.space.between * 2.0 - if copied { theme.space.groups } else { 0.0 };
-    let text = WidgetText::from(theme.mono(shown).color(theme.palette.text));
+    let text = WidgetText::from(theme.monospace(shown).color(theme.palette.text));
     let galley = text.into_galley(ui, Some(TextWrapMode::Truncate), room, egui::TextStyle::Monospace);
     let cut = galley.elided;
     let top = left - Vec2::new(0.0, galley.size().y / 2.0);
@@ -113,13 +113,13 @@ fn value(ui: &Ui, theme: &Theme, rect: Rect, id: Id, label: &str, shown: Option<
         let font = FontId::proportional(theme.sizes.body);
         ui.painter().text(right, Align2::RIGHT_CENTER, icons::CHECK, font, theme.palette.good.into());
     }
-    tip(theme, response, shown, cut, copied);
+    show_tooltip(theme, response, shown, cut, copied);
 }
 
-fn tip(theme: &Theme, response: Response, shown: &str, cut: bool, copied: bool) {
+fn show_tooltip(theme: &Theme, response: Response, shown: &str, cut: bool, copied: bool) {
     response.on_hover_ui(|ui| {
         if cut {
-            ui.label(theme.mono(shown));
+            ui.label(theme.monospace(shown));
         }
         let words = if copied { theme.say("widget.typed_copied") } else { theme.say("widget.typed_copy") };
         ui.label(theme.caption(words));

@@ -51,7 +51,7 @@ impl Producer for AnalogueSource {
         let now = clock.now();
         // The last sample of a batch: the samples of a batch exist when its last one is due.
         let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
-        let full = Moment::after_start(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
+        let full = Moment::from_elapsed(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));
         let late = SampleTime::from(clock.now()).nanoseconds_since(time);
         if late < 0 {

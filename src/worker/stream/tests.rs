@@ -172,7 +172,7 @@ fn next(source: &mut AnalogueSource, clock: &VirtualClock) -> Option<Batch<Wires
 #[test]
 fn the_virtual_source_follows_the_clock() {
     let clock = VirtualClock::default();
-    clock.sleep_until(Moment::after_start(Duration::from_secs(5)));
+    clock.sleep_until(Moment::from_elapsed(Duration::from_secs(5)));
     let mut source = AnalogueSource::new(settings(100_000.0), clock.now());
     let first = next(&mut source, &clock).unwrap();
     assert_eq!((first.first, first.samples.count(), first.lost, first.period_ns), (0, 1_000, 0, 10_000));
@@ -182,7 +182,7 @@ fn the_virtual_source_follows_the_clock() {
     assert_eq!((second.first, second.samples.count(), second.lost), (1_000, 1_000, 0));
     assert_eq!(second.time, first.time.plus(10_000_000));
     // The computer slept for a minute: a quarter of a second is made up for.
-    clock.sleep_until(Moment::after_start(Duration::from_secs(65)));
+    clock.sleep_until(Moment::from_elapsed(Duration::from_secs(65)));
     let late = next(&mut source, &clock).unwrap();
     assert_eq!((late.first, late.samples.count(), late.lost), (5_975_001, 25_000, 5_973_001));
     assert_eq!(late.time, first.time.plus(5_975_001 * 10_000));

@@ -70,7 +70,7 @@ impl DeviceType for Encoder {
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         jobs::check(url)
     }
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         Virtual::SECRETS.to_vec()
     }
     fn tables(_: &Store) {}

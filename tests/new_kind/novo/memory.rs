@@ -88,7 +88,7 @@ impl HasProfile for Encoder {
     fn wanted_body(&self) -> Option<Body> {
         Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read()?.clone() }))
     }
-    fn known_body(&self) -> Option<KnownProfile> {
+    fn last_read_profile(&self) -> Option<KnownProfile> {
         let remarks = unsaved_edits_remark(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(self.read()?.clone()), remarks)))
     }

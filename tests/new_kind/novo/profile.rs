@@ -18,10 +18,10 @@ impl Profile for NovoProfile {
     const KIND: &'static str = KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let serial = entries.required("serial", WORD)?;
+        let serial = entries.take_required("serial", WORD)?;
         let mut values = Values::default();
         for (item, value) in ITEMS.into_iter().zip(&mut values) {
-            *value = entries.required(item, WORD)?;
+            *value = entries.take_required(item, WORD)?;
         }
         Ok(NovoProfile { serial, values })
     }

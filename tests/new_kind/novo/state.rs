@@ -114,7 +114,7 @@ impl HasSession for Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.see(&samples, dropped);
     }
     fn message_received(&mut self, remark: Infallible, _: &mut Services) {
@@ -134,8 +134,8 @@ impl SessionEvents for Encoder {
     fn forget_requests(&mut self) {
         self.forget_plan();
     }
-    fn ended_early(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
-        self.handle_cut_write(how, texts)
+    fn handle_early_end(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
+        self.handle_interrupted_write(how, texts)
     }
 }
 
@@ -147,7 +147,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: Opened<Novo>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.track.begin(&opened.began);
-        self.session.adopt_line(opened, services);
+        self.session.attach_connection(opened, services);
         self.submit(Job::Survey, services);
     }
     fn act(&mut self, Action::Set(item, value): Action, _: &mut ActionContext<'_>) {

@@ -48,7 +48,7 @@ impl TypedDeviceView for NovoView {
         (page, typed): (Page, &mut Typed),
         actions: &mut Vec<StudioAction>,
     ) {
-        page::scrolling(ui, theme, (device.id(), page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (device.id(), page.place()), |ui| match page {
             Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Values => {
                 card(ui, theme, TEXTS.text("novo.values"), |ui| {

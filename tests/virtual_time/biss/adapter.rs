@@ -82,7 +82,7 @@ fn a_bank_is_selected_again_only_if_it_may_have_changed() {
 fn a_restart_is_detected_by_its_silence() {
     let mut bus = Bus::new("");
     assert_eq!(bus.master().read(at("0x03:0x0A")), Ok(16));
-    let (now, device) = (Moment::after_start(bus.now()), bus.device.clone());
+    let (now, device) = (Moment::from_elapsed(bus.now()), bus.device.clone());
     let mut master = bus.master();
     assert_eq!(master.read(at("0x03:0x0A")), Ok(16));
     device.lock().unwrap().device_mut::<Encoder>().unwrap().power_cycle(now);

@@ -10,7 +10,7 @@ use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, JobError};
 use encoder_studio::devices::biss::procedures::{Error, FrameRun, Sample, Station, Supply};
 use encoder_studio::devices::biss::profile::RegisterRange;
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
@@ -44,7 +44,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
-    let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
+    let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap()));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Transport::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
@@ -98,7 +98,7 @@ fn check(runs: &[FrameRun]) {
     for run in runs {
         assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
         next = run.first + run.frames.len() as u64;
-        for (moment, frame) in run.timed() {
+        for (moment, frame) in run.with_times() {
             let position = run.layout.steps(&frame.unwrap());
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.since(earlier), FAST);
@@ -112,7 +112,7 @@ fn check(runs: &[FrameRun]) {
 #[test]
 fn short_polling_intervals_are_streamed() {
     let mut stand = stand("rpm=3000&position=0");
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     let runs = stand.runs(Duration::from_secs(3));
     check(&runs);
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start()));
@@ -121,44 +121,44 @@ fn short_polling_intervals_are_streamed() {
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
     assert!(frames > 50_000 && (streamed - 200..=streamed + 1).contains(&frames), "{frames} of {streamed}");
     assert_eq!(stand.count(Operation::BissStream), 1);
-    stand.session.pace(None);
+    stand.session.set_sample_interval(None);
     assert_eq!(stand.sends_by_itself(), 0);
 }
 
 #[test]
 fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     let mut stand = stand("rpm=3000&position=0");
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     let mut last = None;
     for round in 0..3 {
         let runs = stand.runs(Duration::from_millis(200));
         check(&runs);
         let begin = runs[0].at;
         assert!(runs[0].is_stream_start() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
-        last = runs.last().and_then(|run| run.timed().last()).map(|(at, _)| at);
+        last = runs.last().and_then(|run| run.with_times().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
         let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
         assert!(matches!(watched, Watched::Sample(Sample::Watched(_))));
     }
-    stand.session.pace(Some(Duration::from_millis(5)));
+    stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     assert!(matches!(stand.session.sample(), Ok(Sample::Position(_))), "slow enough to be asked");
     assert_eq!(stand.sends_by_itself(), 0);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     stand.run();
-    stand.session.pace(Some(FAST * 2));
+    stand.session.set_sample_interval(Some(FAST * 2));
     assert_eq!(stand.run().period_ns, 100_000, "another pace is another stream");
 }
 
 #[test]
 fn damaged_and_missing_frames_are_reported() {
     let mut noisy = stand("noise=0.05&seed=2");
-    noisy.session.pace(Some(FAST));
+    noisy.session.set_sample_interval(Some(FAST));
     let runs = noisy.runs(Duration::from_secs(1));
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
     let wrong: usize = runs.iter().map(FrameRun::crc_errors).sum();
     assert!((0.04..0.06).contains(&(wrong as f64 / frames as f64)), "{wrong} of {frames}");
     let mut open = stand("line=open");
-    open.session.pace(Some(FAST));
+    open.session.set_sample_interval(Some(FAST));
     let error = open.session.sample().unwrap_err();
     assert!(matches!(error, JobError::Device(Error::NoAcknowledge { .. })), "{error}");
 }
@@ -166,7 +166,7 @@ fn damaged_and_missing_frames_are_reported() {
 #[test]
 fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     let mut stand = stand("rpm=60");
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     stand.run();
     let sent = stand.tap.lock().unwrap().sent.len();
     stand.tap.lock().unwrap().mute_from = Some(0);
@@ -186,7 +186,7 @@ fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
 fn a_clock_too_slow_for_the_interval_is_reported() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
         let mut stand = stand_at("rpm=60", None, clock_hz);
-        stand.session.pace(Some(FAST));
+        stand.session.set_sample_interval(Some(FAST));
         let run = stand.run();
         assert_eq!((run.period_ns, run.clock_hz, run.is_limited), (period_ns, clock_hz, is_limited));
     }
@@ -199,9 +199,9 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
     let supply = Supply { millivolt: 5_000, measured: None };
     for by_job in [true, false] {
         let mut stand = stand_with(query, Some(supply));
-        stand.session.pace(Some(FAST));
+        stand.session.set_sample_interval(Some(FAST));
         stand.runs(Duration::from_millis(100));
-        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
+        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
         if by_job {
             stand.session.run_inline(BissJob::Status).unwrap();
         } else {
@@ -222,7 +222,7 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
 fn a_supplied_encoder_is_powered_again_after_a_reset() {
     let supply = Supply { millivolt: 5_000, measured: None };
     let mut stand = stand_with("supply=switched&rpm=60", Some(supply));
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     stand.run();
     stand.tap.lock().unwrap().mute_from = Some(0);
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));

@@ -13,7 +13,7 @@ use encoder_studio::devices::biss::procedures::procedure::ProcedureProgress;
 use encoder_studio::devices::biss::procedures::{Master, Station, Supply};
 use encoder_studio::devices::biss::protocol::{Descriptions, RegisterAddress};
 use encoder_studio::devices::biss::sim::{Config, Encoder, UbicomPort};
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::Motor;
@@ -60,7 +60,7 @@ impl Pin {
 impl Bus {
     /// Creates an encoder as `sim:?bridge=on&…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap(), Transport::Adapter)
+        Self::with(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap(), Transport::Adapter)
     }
 
     /// Returns the number of sent requests of an operation.
@@ -166,7 +166,7 @@ impl Bench {
                 End::Pin(Arc::new(Mutex::new(UbicomPort::new(&Config::from_pairs(&pairs(query)).unwrap()))))
             }
             Transport::Adapter => {
-                End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap())))
+                End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap())))
             }
         };
         Self::plugged(end, way, Arc::new(VirtualClock::default()), store, Arc::new(folder))
@@ -218,7 +218,7 @@ impl Bench {
     /// Creates the same with further settings of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfterSession) -> Self {
         let query = format!("supply=switched&{query}");
-        let adapter = Adapter::from_pairs(&pairs(&query), at_adapter()).unwrap();
+        let adapter = Adapter::from_pairs(&pairs(&query), attachable_kinds()).unwrap();
         let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
@@ -316,7 +316,7 @@ impl Bench {
 
     /// Waits until this time after the beginning.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
-        self.clock.sleep_until(Moment::after_start(elapsed));
+        self.clock.sleep_until(Moment::from_elapsed(elapsed));
     }
 
     /// Runs a job, and shows the reported operations of a plan.

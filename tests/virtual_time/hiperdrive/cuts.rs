@@ -57,7 +57,7 @@ fn a_single_loss_is_retried_and_nothing_is_set_twice() {
                 }
                 // A save is never sent twice: whether it was done is not known.
                 Err(JobError::Interrupted { interrupted, backup, .. }) => {
-                    assert_eq!(interrupted.unclear().as_deref(), Some("47"), "{at}: {interrupted}");
+                    assert_eq!(interrupted.uncertain_write().as_deref(), Some("47"), "{at}: {interrupted}");
                     assert!(backup.exists() && interrupted.done.write_cycles == 1, "{at}");
                     assert_eq!(times(47), 1, "{at}");
                 }
@@ -92,7 +92,7 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
                 Err(JobError::Device(error)) => assert!(error.is_lost(), "{label} {at}: {error}"),
                 Err(JobError::Interrupted { interrupted, backup, planned, .. }) => {
                     assert!(backup.exists() && interrupted.cause.is_lost(), "{label} {at}: {interrupted}");
-                    assert!(interrupted.unclear().is_some() && planned == 4, "{label} {at}");
+                    assert!(interrupted.uncertain_write().is_some() && planned == 4, "{label} {at}");
                     let taken = [(24, 7), (166, 200), (186, 30)].iter().filter(|(own, new)| stand.value(*own) == *new);
                     let taken = taken.count();
                     let known = interrupted.done.verified as usize;
@@ -116,7 +116,7 @@ fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &
         match stand.commit(prepared) {
             Err(JobError::Device(Error::Cancelled)) => assert!(stand.sets().is_empty(), "{at}"),
             Err(JobError::Interrupted { interrupted, .. }) => {
-                assert_eq!((&interrupted.cause, interrupted.unclear()), (&Error::Cancelled, None), "{at}");
+                assert_eq!((&interrupted.cause, interrupted.uncertain_write()), (&Error::Cancelled, None), "{at}");
                 look(&stand, &format!("request {at}"), &interrupted);
             }
             // After the last operation there is nothing to cancel.

@@ -1,7 +1,7 @@
 //! The data that can be read of a device. Nothing is set, and no cyclic connection is opened.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
-use encoder_studio::devices::hiperdrive::procedures::{Error, Late, Sample, Temperature};
+use encoder_studio::devices::hiperdrive::procedures::{Error, LateReplyError, Sample, Temperature};
 use std::sync::{Arc, Mutex};
 
 use encoder_studio::buses::ethernet_ip::protocol::{AddressSource, Service};
@@ -220,7 +220,9 @@ fn replies_are_timed_and_late_ones_distinguished_from_missing_ones() {
     assert!((300..400).contains(&usual.as_millis()) && replies.longest_reply_time() >= usual, "{usual:?}");
     let mut late = Stand::new("fault=delay:1300");
     let error = late.run(HiperdriveJob::Read(number(158))).unwrap_err();
-    let Some(Error::NoReply { late: Some(Late { took, waited }), .. }) = error.device() else { panic!("{error}") };
+    let Some(Error::NoReply { late: Some(LateReplyError { took, waited }), .. }) = error.device() else {
+        panic!("{error}")
+    };
     assert!((1300..1400).contains(&took.as_millis()) && took > waited, "{took:?} of {waited:?}");
     let mut silent = Stand::new("fault=silent-after:0");
     let error = silent.run(HiperdriveJob::Read(number(158))).unwrap_err();

@@ -299,7 +299,7 @@ fn damaged_frames_are_retried_and_silence_times_out() {
     let mut desk = Desk::with([]);
     let error = desk.read(107).unwrap_err();
     assert_eq!(error, Error::NoReply { requested: RequestedItem::Parameter(number(107)), tries: 5, late: None });
-    assert!(error.is_lost() && desk.clock.now() < Moment::after_start(Duration::from_secs(10)));
+    assert!(error.is_lost() && desk.clock.now() < Moment::from_elapsed(Duration::from_secs(10)));
 }
 
 /// Repeated requests to a silent device do not delay other work.
@@ -311,7 +311,7 @@ fn reading_the_limits_of_a_drive_can_be_cancelled() {
     assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
     // After a write the current state is known.
-    let ended = desk.ask_until(cancel, |master| master.shielded(|master| read_rules(master, drive(1))));
+    let ended = desk.ask_until(cancel, |master| master.run_uncancellable(|master| read_rules(master, drive(1))));
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 

@@ -209,7 +209,7 @@ fn an_unanswered_presence_test_times_out() {
             Error::NoReply { requested: RequestedItem::Set(number(47)), tries: 1, late: None },
             "{query}"
         );
-        assert_eq!((interrupted.unclear().as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");
+        assert_eq!((interrupted.uncertain_write().as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");
         assert!(within.contains(&took), "{query}: {took} ms");
         assert_eq!(stand.sets(), [(47, vec![0xFC, 0xFF])], "{query}");
     }

@@ -126,7 +126,7 @@ impl ProcessData for Script {
     }
 
     fn now(&self) -> Moment {
-        Moment::after_start(self.now)
+        Moment::from_elapsed(self.now)
     }
 
     fn wait(&mut self, duration: Duration) -> Result<(), Error> {
@@ -134,7 +134,7 @@ impl ProcessData for Script {
         Ok(())
     }
 
-    fn shield(&mut self, shielded: bool) -> bool {
+    fn ignore_cancellation(&mut self, shielded: bool) -> bool {
         shielded
     }
 }

@@ -23,7 +23,7 @@ fn recorded(name: &str, query: &str, change: fn(&mut Stand) -> Change) {
                 if interrupted.cause == Error::Cancelled { "cancelled" } else { "cut off" },
                 interrupted.done.ops,
                 interrupted.done.write_cycles,
-                interrupted.unclear(),
+                interrupted.uncertain_write(),
             ),
             Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
             Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

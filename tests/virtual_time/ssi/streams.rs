@@ -7,7 +7,7 @@ use encoder_studio::buses::bridge::protocol::Operation;
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::SsiJob;
 use encoder_studio::devices::ssi::procedures::{ClockSettings, Error, Words};
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::Clock;
 
 use super::support::{QUICK, Stand};
@@ -23,7 +23,7 @@ fn check(runs: &[Words]) {
     for run in runs {
         assert_eq!((run.first, run.lost, run.period_ns, run.clocks), (next, 0, 50_000, 25));
         next = run.first + run.words.len() as u64;
-        for (moment, word) in run.timed() {
+        for (moment, word) in run.with_times() {
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.since(earlier), FAST);
                 assert!((20..=21).contains(&(word - from)), "{from} to {word}");
@@ -36,7 +36,7 @@ fn check(runs: &[Words]) {
 #[test]
 fn slow_polling_reads_word_by_word() {
     let mut stand = Stand::quick(TURNING);
-    stand.session.pace(Some(Duration::from_millis(5)));
+    stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     let mut samples: Vec<Words> = (0..4).map(|_| stand.sample()).collect();
     assert!(stand.read().is_stream_start(), "a word by itself is none of them");
     samples.push(stand.sample());
@@ -45,15 +45,15 @@ fn slow_polling_reads_word_by_word() {
     assert!(samples.iter().all(|words| words.words.len() == 1 && !words.is_streamed() && words.lost == 0));
     assert!(samples.iter().zip(&samples[1..]).all(|(one, next)| next.at > one.at));
     assert_eq!((stand.count(Operation::SsiRead), stand.count(Operation::SsiStream)), (6, 0));
-    stand.session.pace(None);
-    stand.session.pace(Some(Duration::from_millis(5)));
+    stand.session.set_sample_interval(None);
+    stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     assert!(stand.sample().is_stream_start());
 }
 
 #[test]
 fn short_polling_intervals_are_streamed() {
     let mut stand = Stand::quick(TURNING);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     let runs = stand.samples(Duration::from_secs(3));
     check(&runs);
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start() && run.is_streamed()));
@@ -62,14 +62,14 @@ fn short_polling_intervals_are_streamed() {
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
     assert!(words > 50_000 && (streamed - 200..=streamed + 1).contains(&words), "{words} of {streamed}");
     assert_eq!((stand.count(Operation::SsiStream), stand.count(Operation::SsiRead)), (1, 0));
-    stand.session.pace(None);
+    stand.session.set_sample_interval(None);
     assert_eq!(stand.sends_by_itself(), 0);
 }
 
 #[test]
 fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     let mut stand = Stand::quick(TURNING);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     let mut last = None;
     for round in 0..3 {
         let runs = stand.samples(Duration::from_millis(200));
@@ -80,12 +80,12 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         last = Some(read.at);
         assert!(read.is_stream_start());
     }
-    stand.session.pace(Some(Duration::from_millis(5)));
+    stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     assert!(!stand.sample().is_streamed(), "slow enough to be asked");
     assert_eq!(stand.sends_by_itself(), 0);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     stand.sample();
-    stand.session.pace(Some(FAST * 2));
+    stand.session.set_sample_interval(Some(FAST * 2));
     assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
 }
 
@@ -93,7 +93,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
 #[test]
 fn changed_settings_apply_to_a_running_stream() {
     let mut stand = Stand::quick(TURNING);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     check(&stand.samples(Duration::from_millis(100)));
     for clocks in [13, 25, 40] {
         let asking = ClockSettings { clocks, ..QUICK };
@@ -110,18 +110,18 @@ fn changed_settings_apply_to_a_running_stream() {
 #[test]
 fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
     let mut slow = Stand::new("clock=500000&pause=200", TURNING);
-    slow.session.pace(Some(FAST));
+    slow.session.set_sample_interval(Some(FAST));
     let run = slow.sample();
     assert_eq!((run.period_ns, run.clock_hz, run.is_limited), (250_000, 500_000, true));
     let mut quick = Stand::quick(TURNING);
-    quick.session.pace(Some(FAST));
+    quick.session.set_sample_interval(Some(FAST));
     assert!(!quick.sample().is_limited);
 }
 
 #[test]
 fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     let mut stand = Stand::quick(TURNING);
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     stand.sample();
     stand.tap.lock().unwrap().mute_from = Some(0);
     let error = stand.session.sample().unwrap_err();
@@ -140,9 +140,9 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
     for by_job in [true, false] {
         let mut stand = Stand::new("clock=1500000&pause=30&voltage=5", query);
-        stand.session.pace(Some(FAST));
+        stand.session.set_sample_interval(Some(FAST));
         stand.samples(Duration::from_millis(100));
-        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
+        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
         if by_job {
             stand.read();
         } else {
@@ -160,9 +160,9 @@ fn an_adapter_reset_while_streaming_is_configured_again() {
 fn an_adapter_reset_between_two_words_is_configured_again() {
     let query = "supply=switched&rpm=60";
     let mut stand = Stand::new("voltage=5", query);
-    stand.session.pace(Some(Duration::from_millis(100)));
+    stand.session.set_sample_interval(Some(Duration::from_millis(100)));
     assert_eq!((stand.sample().first, stand.sample().first), (0, 1));
-    *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
+    *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap();
     let words = stand.sample();
     assert!(words.first == 2 && words.words[0] != (1 << 25) - 1, "the encoder has its supply again: {words:?}");
     assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));
@@ -172,7 +172,7 @@ fn an_adapter_reset_between_two_words_is_configured_again() {
 #[test]
 fn packets_lost_in_transit_are_reported() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));
-    stand.session.pace(Some(FAST));
+    stand.session.set_sample_interval(Some(FAST));
     let runs = stand.samples(Duration::from_secs(2));
     let lost: u64 = runs.iter().map(|run| run.lost).sum();
     let came: usize = runs.iter().map(|run| run.words.len()).sum();

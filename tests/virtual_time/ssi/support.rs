@@ -7,7 +7,7 @@ use encoder_studio::buses::bridge::protocol::{Operation, Packet, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::{Ssi, SsiJob, SsiOutput};
 use encoder_studio::devices::ssi::procedures::{ClockSettings, Station, Words};
-use encoder_studio::kinds::at_adapter;
+use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
@@ -30,7 +30,7 @@ pub(crate) struct Stand {
 impl Stand {
     /// Creates one from the settings of a link to the adapter and of the virtual adapter.
     pub(crate) fn new(link: &str, query: &str) -> Self {
-        let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
+        let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), attachable_kinds()).unwrap()));
         Self::before(link, adapter)
     }
 

@@ -52,7 +52,7 @@ fn too_few_samples_per_period_are_reported() {
     for (hertz, followed) in [(20_000.0, true), (24_000.0, true), (26_000.0, false), (49_000.0, false)] {
         let capture = made(|time| hertz * time, plain);
         let found = found(&capture);
-        assert_eq!(analysed(&capture).is_followed(), followed, "{hertz}");
+        assert_eq!(analysed(&capture).is_angle_tracked(), followed, "{hertz}");
         match found.as_slice() {
             [] => assert!(followed, "{hertz}"),
             [FindingKind::Coarse { step_deg }] => near(*step_deg, hertz / RATE * 360.0, 0.1),
@@ -102,7 +102,7 @@ fn single_ended_columns_are_reported_instead_of_an_offset() {
         near(sine_v, 2.5, 1e-3);
         near(cosine_v, 2.6, 1e-3);
         let analysis = analysed(&capture);
-        let again = capture.diagnosed().from_limits(Ok(&analysis), None, &Limits::TTK70);
+        let again = capture.diagnosed().with_new_limits(Ok(&analysis), None, &Limits::TTK70);
         assert_eq!(again.findings.len(), 1, "{again:?}");
     }
     let offset = made(steady, |_, _, (sine, cosine)| (sine + 0.3, cosine));

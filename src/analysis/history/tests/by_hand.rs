@@ -169,18 +169,18 @@ fn single_steps_are_resolved_at_a_large_position() {
 #[test]
 fn a_grid_is_anchored_at_multiples_of_its_width() {
     let grid = Grid::new(time(105), time(205), 10);
-    assert_eq!((grid.width(), grid.pixels(), grid.edge(0), grid.edge(11)), (10, 11, time(100), time(210)));
+    assert_eq!((grid.width(), grid.pixel_count(), grid.edge(0), grid.edge(11)), (10, 11, time(100), time(210)));
     let before = Grid::new(time(-5), time(5), 10);
-    assert_eq!((before.width(), before.edge(0), before.pixels()), (1, time(-5), 10));
+    assert_eq!((before.width(), before.edge(0), before.pixel_count()), (1, time(-5), 10));
     for (label, grid) in [
         ("no pixels", Grid::new(time(0), time(9), 0)),
         ("no time", Grid::new(time(9), time(9), 5)),
         ("backwards", Grid::new(time(9), time(0), 5)),
     ] {
-        assert_eq!(grid.pixels(), 0, "{label}");
+        assert_eq!(grid.pixel_count(), 0, "{label}");
     }
     let all = Grid::new(time(i64::MIN), time(i64::MAX), 3);
-    assert!(all.pixels() <= 4 && all.edge(all.pixels()) == time(i64::MAX), "{all:?}");
+    assert!(all.pixel_count() <= 4 && all.edge(all.pixel_count()) == time(i64::MAX), "{all:?}");
     let history = history(&[1.0, 2.0], &[]);
     assert_eq!(picture(&history, 9, 0, 5).pixels.len(), 2, "the samples on both sides");
 }

@@ -47,9 +47,9 @@ impl Model {
 
     /// Returns the required picture, without any rounding, and whether it consists of samples.
     pub(super) fn picture(&self, first: usize, grid: &Grid) -> (Vec<Pixel>, bool) {
-        let mut edges: Vec<usize> = (0..=grid.pixels()).map(|pixel| self.edge(first, grid, pixel)).collect();
-        let (from, to) = (edges[0], edges[grid.pixels()]);
-        let raw = to - from <= 4 * grid.pixels();
+        let mut edges: Vec<usize> = (0..=grid.pixel_count()).map(|pixel| self.edge(first, grid, pixel)).collect();
+        let (from, to) = (edges[0], edges[grid.pixel_count()]);
+        let raw = to - from <= 4 * grid.pixel_count();
         if raw {
             edges = (from..=to).collect();
         }
@@ -93,7 +93,7 @@ impl Model {
         let earliest = edge.nanoseconds() - grid.width() / 16;
         let starts = [512, 64, 8].map(|size| exact / size * size);
         let near = |start: &usize| *start >= first && (*start == exact || self.times[*start] >= earliest);
-        let inner = pixel > 0 && pixel < grid.pixels();
+        let inner = pixel > 0 && pixel < grid.pixel_count();
         starts.into_iter().find(near).filter(|_| inner).unwrap_or(exact)
     }
 

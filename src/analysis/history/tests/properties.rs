@@ -280,7 +280,7 @@ proptest! {
         history.picture(1, &history.cut(&moved), &mut moved_picture);
         if !picture.raw && !moved_picture.raw {
             // The ends of a picture are exact; between them a column may begin a sixteenth of its width earlier.
-            let (from, to) = (moved.edge(1), grid.edge(grid.pixels() - 1).plus(-(width / 16)));
+            let (from, to) = (moved.edge(1), grid.edge(grid.pixel_count() - 1).plus(-(width / 16)));
             let inside = |pixel: &&Pixel| pixel.from >= from && pixel.from < to;
             let still: Vec<&Pixel> = picture.pixels.iter().filter(inside).collect();
             let again: Vec<&Pixel> = moved_picture.pixels.iter().filter(inside).collect();

@@ -8,7 +8,7 @@ use crate::link::{LinkUrl, read_trace};
 #[track_caller]
 pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
     assert_eq!(text.words(English), error.to_string());
-    assert_eq!(text.terminal(), error.to_string());
+    assert_eq!(text.terminal_text(), error.to_string());
     let german = text.words(German);
     assert_ne!(german, error.to_string());
     for english in [" is ", " must ", " from ", " to ", " the ", " or ", " and ", " of ", " a "] {

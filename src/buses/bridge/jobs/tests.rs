@@ -9,7 +9,7 @@ use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
 };
 use crate::buses::bridge::sim::Adapter;
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
@@ -26,7 +26,7 @@ pub(crate) struct Bench<S: Stretch> {
 
 pub(crate) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
     let clock = Arc::new(VirtualClock::default());
-    clock.sleep_until(Moment::after_start(Duration::from_secs(3)));
+    clock.sleep_until(Moment::from_elapsed(Duration::from_secs(3)));
     let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
     let link = SimLink::connect(adapter.clone(), clock.clone());
     let bridge = Bridge::new(stretch, None, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
@@ -35,7 +35,7 @@ pub(crate) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -
 
 pub(crate) fn virtual_adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
-    Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), at_adapter()).unwrap()
+    Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), attachable_kinds()).unwrap()
 }
 
 /// Position frames as they come.

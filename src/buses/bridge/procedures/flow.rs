@@ -93,7 +93,7 @@ impl SampleStream {
     ) -> Result<Self, Failure> {
         let request = streamed.start();
         let begun_at = SampleTime::from(adapter.line.now());
-        let answered = match adapter.ask_once(&request)? {
+        let answered = match adapter.request_once(&request)? {
             Some(answered) => answered,
             // It may be running regardless: a second request would be refused as busy.
             None => {
@@ -156,7 +156,7 @@ impl SampleStream {
             adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
             if !bytes.is_empty() {
                 adapter.adapter.receiver.push(&bytes);
-            } else if adapter.line.now().since(self.heard_at) > self.patience() {
+            } else if adapter.line.now().since(self.heard_at) > self.max_wait() {
                 return Err(AdapterError::Mute.into());
             } else if adapter.line.now() >= until {
                 return Ok(None);
@@ -182,7 +182,7 @@ impl SampleStream {
         }
     }
 
-    fn patience(&self) -> Duration {
+    fn max_wait(&self) -> Duration {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         SILENT + period.saturating_mul(SILENT_SAMPLES)
     }

@@ -151,13 +151,13 @@ impl AdapterState {
     }
 
     /// Returns whether anything has been received from the adapter, even if damaged.
-    pub(crate) const fn has_spoken(&self) -> bool {
+    pub(crate) const fn has_received(&self) -> bool {
         self.has_spoken
     }
 
     /// Returns the local time at which the adapter's clock was at `t_us`, based on the timing of the given reply.
-    pub(crate) fn moment_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
-        self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
+    pub(crate) fn local_time_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
+        self.clocks.local_time_of(t_us, answered.sent_at, answered.received_at)
     }
 }
 
@@ -247,7 +247,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
+    pub(crate) fn request_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
         self.exchange(request, &[])
     }
 
@@ -321,7 +321,7 @@ struct Clocks {
 }
 
 impl Clocks {
-    fn moment_of(&mut self, t_us: u64, sent_at: Moment, received_at: Moment) -> Moment {
+    fn local_time_of(&mut self, t_us: u64, sent_at: Moment, received_at: Moment) -> Moment {
         let nanoseconds = |moment: Moment| i128::try_from(moment.since_start().as_nanos()).unwrap_or(i128::MAX);
         let own = i128::from(t_us) * 1000;
         let (least, most) = (nanoseconds(sent_at) - own, nanoseconds(received_at) - own);
@@ -331,7 +331,7 @@ impl Clocks {
         let (low, high) = narrowed.unwrap_or((least, most));
         self.bounds = Some((low, high));
         let moment = u64::try_from(own + (low + high) / 2).unwrap_or(0);
-        Moment::after_start(std::time::Duration::from_nanos(moment)).clamp(sent_at, received_at)
+        Moment::from_elapsed(std::time::Duration::from_nanos(moment)).clamp(sent_at, received_at)
     }
 }
 
@@ -341,22 +341,22 @@ mod tests {
     use std::time::Duration;
 
     fn at(microseconds: u64) -> Moment {
-        Moment::after_start(Duration::from_micros(microseconds))
+        Moment::from_elapsed(Duration::from_micros(microseconds))
     }
 
     #[test]
     fn the_adapters_clock_is_estimated_and_resynchronized() {
         let mut clocks = Clocks::default();
         // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
-        assert_eq!(clocks.moment_of(1100, at(2000), at(2400)), at(2200));
+        assert_eq!(clocks.local_time_of(1100, at(2000), at(2400)), at(2200));
         // 900…1300 so far; now 995…1395: 995…1300.
-        assert_eq!(clocks.moment_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));
+        assert_eq!(clocks.local_time_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));
         // 950…1010 narrows it to 995…1010.
-        assert_eq!(clocks.moment_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
+        assert_eq!(clocks.local_time_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
         // A slow exchange no longer widens it.
-        assert_eq!(clocks.moment_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));
+        assert_eq!(clocks.local_time_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));
         // The adapter has restarted.
-        assert_eq!(clocks.moment_of(10, at(20_000), at(20_100)), at(20_050));
-        assert_eq!(clocks.moment_of(u64::MAX, at(30_000), at(30_100)), at(30_050));
+        assert_eq!(clocks.local_time_of(10, at(20_000), at(20_100)), at(20_050));
+        assert_eq!(clocks.local_time_of(u64::MAX, at(30_000), at(30_100)), at(30_050));
     }
 }

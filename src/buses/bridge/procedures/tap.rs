@@ -144,7 +144,7 @@ impl Tap {
     /// Returns errors of the adapter or the connection.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
-        line.shield(true);
+        line.ignore_cancellation(true);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         let ended = self.flow.take().map_or(Ok(()), |flow| flow.end(&mut adapter));
         let left = adapter.leave_supply();

@@ -94,7 +94,7 @@ impl<'a> Fields<'a> {
         Ok(text.to_owned())
     }
 
-    pub(super) fn tail(&mut self) -> &'a [u8] {
+    pub(super) fn take_rest(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 

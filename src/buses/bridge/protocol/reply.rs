@@ -368,7 +368,7 @@ impl Reply {
             },
             Operation::AnalogStream => Reply::AnalogStream { on: fields.switch("on")? },
             Operation::UartConfig => Reply::UartConfig { baud: fields.u32()? },
-            Operation::UartTransfer => Reply::UartTransfer { t_us: fields.u64()?, rx: fields.tail().to_vec() },
+            Operation::UartTransfer => Reply::UartTransfer { t_us: fields.u64()?, rx: fields.take_rest().to_vec() },
         };
         fields.end(reply)
     }

@@ -285,9 +285,11 @@ impl Request {
             Operation::UartConfig => {
                 Request::UartConfig { baud: fields.u32()?, parity: fields.u8()?, turnaround_us: fields.u16()? }
             }
-            Operation::UartTransfer => {
-                Request::UartTransfer { timeout_us: fields.u32()?, idle_us: fields.u32()?, tx: fields.tail().to_vec() }
-            }
+            Operation::UartTransfer => Request::UartTransfer {
+                timeout_us: fields.u32()?,
+                idle_us: fields.u32()?,
+                tx: fields.take_rest().to_vec(),
+            },
         };
         fields.end(request)
     }

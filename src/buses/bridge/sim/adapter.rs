@@ -12,7 +12,7 @@ use super::attached::{AttachedDevice, BissDevice};
 use super::bus::Bus;
 use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
 use super::config::{Config, Shaft, Shared};
-use super::stream::{Analog, ClockedStream, Kind};
+use super::stream::{ClockedStream, Kind, SampledStream};
 use super::uart::Uart;
 use crate::buses::bridge::protocol::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
@@ -34,7 +34,7 @@ pub struct Adapter {
     ssi: Option<SsiSetting>,
     analog: Settings,
     clocked: Option<ClockedStream>,
-    sampled: Option<Analog>,
+    sampled: Option<SampledStream>,
     uart: Option<Uart>,
     requests: u32,
     pushed: u8,
@@ -277,14 +277,14 @@ impl Adapter {
                 let period_ns = self.analog.period_ns().unsigned_abs().max(1);
                 // At most a million.
                 let sample_hz = u32::try_from(1_000_000_000 / period_ns).unwrap_or(Self::MAX_SAMPLE_HZ);
-                let full_scale_microvolt = Analog::FULL_SCALE_MICROVOLT;
+                let full_scale_microvolt = SampledStream::FULL_SCALE_MICROVOLT;
                 Ok(Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits: 16 })
             }
             Request::AnalogStream { on } => {
                 let settings: Checked = self.analog.clone().checked().map_err(|_| OUT_OF_RANGE)?;
                 match (on, &self.sampled) {
                     (true, Some(_)) => return Err(STREAMING),
-                    (true, None) => self.sampled = Some(Analog::new(self.now, settings)),
+                    (true, None) => self.sampled = Some(SampledStream::new(self.now, settings)),
                     (false, _) => self.sampled = None,
                 }
                 Ok(Reply::AnalogStream { on })
@@ -392,7 +392,7 @@ fn microseconds(at: Moment) -> u64 {
 }
 
 fn add_noise(faults: &SimulatedFaults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
-    let passages = bytes.iter().map(|byte| faults.passage(rng, *byte));
+    let passages = bytes.iter().map(|byte| faults.transmit_byte(rng, *byte));
     passages
         .flat_map(|passage| passage.inserted.into_iter().chain(passage.carried.map(|carried| carried.byte)))
         .collect()
@@ -418,7 +418,7 @@ impl ByteDevice for Adapter {
             return Some(self.now);
         }
         let clocked = self.clocked.as_ref().map(ClockedStream::due);
-        let sampled = self.sampled.as_ref().map(Analog::due);
+        let sampled = self.sampled.as_ref().map(SampledStream::due);
         [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
     }
 

@@ -72,10 +72,10 @@ impl Bus {
     pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
         match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
             (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
-            (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, ones(bits)),
+            (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, low_bits_mask(bits)),
             (EncoderWiring::Open, _) | (EncoderWiring::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
             (EncoderWiring::Good, Some((frame, own))) => {
-                (BissStatus::OK, self.damage_frame(clock_out_bits(frame, own, bits), bits))
+                (BissStatus::OK, self.corrupt_frame(clock_out_bits(frame, own, bits), bits))
             }
         }
     }
@@ -88,14 +88,14 @@ impl Bus {
             (EncoderWiring::Low, _, _) => 0,
             (EncoderWiring::Good, Some(place), Some(ssi)) => {
                 let (word, own) = ssi.word(at, place);
-                self.damage_frame(clock_out_bits(word, own, bits), bits)
+                self.corrupt_frame(clock_out_bits(word, own, bits), bits)
             }
-            _ => ones(bits),
+            _ => low_bits_mask(bits),
         }
     }
 
     /// Inverts one bit in some frames, as configured.
-    fn damage_frame(&mut self, frame: u64, bits: u8) -> u64 {
+    fn corrupt_frame(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }
 }
@@ -107,6 +107,6 @@ fn clock_out_bits(frame: u64, bits: u8, wanted: u8) -> u64 {
     shifted.unwrap_or(0)
 }
 
-fn ones(bits: u8) -> u64 {
+fn low_bits_mask(bits: u8) -> u64 {
     u64::MAX.checked_shr(64 - u32::from(bits.min(64))).unwrap_or(0)
 }

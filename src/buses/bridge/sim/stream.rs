@@ -133,19 +133,22 @@ impl ClockedStream {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Analog {
+pub(super) struct SampledStream {
     pace: Pace,
     source: Source,
 }
 
-impl Analog {
+impl SampledStream {
     /// Voltage in microvolts that corresponds to a raw value of 32 767.
     pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
     const HEAD: usize = 15;
 
     pub(super) fn new(start: Moment, settings: Checked) -> Self {
         let period = Duration::from_nanos(settings.settings().period_ns().unsigned_abs());
-        Analog { pace: Pace::new(start, period, Self::HEAD, 4), source: Source::new(settings, SampleTime::ORIGIN) }
+        SampledStream {
+            pace: Pace::new(start, period, Self::HEAD, 4),
+            source: Source::new(settings, SampleTime::ORIGIN),
+        }
     }
 
     pub(super) fn due(&self) -> Moment {
@@ -184,5 +187,5 @@ impl Analog {
 /// Converts a voltage to a raw fraction of full scale; values beyond full scale are clamped.
 fn raw(volts: f64) -> i16 {
     // Saturates like the converter.
-    (volts * 1e6 / f64::from(Analog::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
+    (volts * 1e6 / f64::from(SampledStream::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
 }

@@ -76,7 +76,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::app::explain::{in_both_languages, setting};
     use crate::buses::bridge::sim::Adapter;
-    use crate::kinds::at_adapter;
+    use crate::kinds::attachable_kinds;
     use crate::link::UrlQuery;
 
     #[test]
@@ -139,7 +139,7 @@ mod tests {
                        ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";
         for text in queries.split_whitespace() {
             let query: UrlQuery = text.parse().unwrap();
-            let error = Adapter::from_pairs(query.pairs(), at_adapter()).err().unwrap();
+            let error = Adapter::from_pairs(query.pairs(), attachable_kinds()).err().unwrap();
             in_both_languages(&setting(&error), &error);
         }
     }

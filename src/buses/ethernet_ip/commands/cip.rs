@@ -3,9 +3,9 @@
 use super::Device;
 use crate::bits::hex;
 use crate::buses::ethernet_ip::protocol::{
-    AddressSource, ConfigurationControl, EPath, ForwardClose, ForwardClosed, ForwardErrorReply, ForwardOpen,
-    ForwardOpened, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Reply, Request, Segment, Service,
-    class_name, extended_row,
+    AddressSource, ConfigurationControl, EPath, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
+    ForwardOpenSuccess, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Reply, Request, Segment,
+    Service, class_name, extended_row,
 };
 use crate::cli::output::count;
 
@@ -62,7 +62,7 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
         Some((name, Ok(value))) => vec![format!("{name} = {value}")],
         Some((name, Err(why))) => vec![format!("{name}; no value, {why}: {}", hex(data))],
         None if data.is_empty() => Vec::new(),
-        None => vec![data_words(data)],
+        None => vec![data_text(data)],
     }
 }
 
@@ -78,7 +78,7 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
     }
     let done = reply.status == GeneralStatus::OK;
     let summary = match (reply.service, done) {
-        (Service::FORWARD_OPEN, true) => ForwardOpened::parse(&reply.data).ok().map(|opened| {
+        (Service::FORWARD_OPEN, true) => ForwardOpenSuccess::parse(&reply.data).ok().map(|opened| {
             format!(
                 "to the target as 0x{:08X} every {}, to the originator as 0x{:08X} every {}; {}",
                 opened.to_target_id,
@@ -88,7 +88,9 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
                 owner_name(opened.owner)
             )
         }),
-        (Service::FORWARD_CLOSE, true) => ForwardClosed::parse(&reply.data).ok().map(|closed| owner_name(closed.owner)),
+        (Service::FORWARD_CLOSE, true) => {
+            ForwardCloseSuccess::parse(&reply.data).ok().map(|closed| owner_name(closed.owner))
+        }
         (Service::FORWARD_OPEN | Service::FORWARD_CLOSE, false) => {
             ForwardErrorReply::parse(&reply.data).ok().map(|refused| {
                 format!(
@@ -100,7 +102,7 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
         }
         _ => None,
     };
-    lines.extend(summary.or_else(|| (!reply.data.is_empty()).then(|| data_words(&reply.data))));
+    lines.extend(summary.or_else(|| (!reply.data.is_empty()).then(|| data_text(&reply.data))));
     lines
 }
 
@@ -177,7 +179,7 @@ fn interval_text(microseconds: u32) -> String {
     format!("{} ms", f64::from(microseconds) / 1e3)
 }
 
-fn data_words(data: &[u8]) -> String {
+fn data_text(data: &[u8]) -> String {
     let number = match data {
         [byte] => Some(i64::from(*byte)),
         [a, b] => Some(i64::from(u16::from_le_bytes([*a, *b]))),

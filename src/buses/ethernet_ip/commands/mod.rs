@@ -172,7 +172,7 @@ fn items_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
                     own.status,
                     item.state
                 ));
-                lines.push(format!("answers at {}", socket(&item.socket)));
+                lines.push(format!("answers at {}", socket_text(&item.socket)));
             }
             Item::ConnectedAddress(connection) => lines.push(format!("connection 0x{connection:08X}")),
             Item::SequencedAddress { connection, sequence } => {
@@ -183,15 +183,17 @@ fn items_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
                 Some((_, message)) => lines.extend(message),
                 None => lines.push(format!("no CIP message: {}", hex(data))),
             },
-            Item::SocketToTarget(address) => lines.push(format!("cyclic data to the target at {}", socket(address))),
+            Item::SocketToTarget(address) => {
+                lines.push(format!("cyclic data to the target at {}", socket_text(address)))
+            }
             Item::SocketToOriginator(address) => {
-                lines.push(format!("cyclic data to the originator at {}", socket(address)));
+                lines.push(format!("cyclic data to the originator at {}", socket_text(address)));
             }
             Item::Unknown { kind, data } => lines.push(format!("item 0x{kind:04X}: {}", hex(data))),
         }
     }
 }
 
-fn socket(address: &SocketAddress) -> String {
+fn socket_text(address: &SocketAddress) -> String {
     format!("{}:{}", address.address, address.port)
 }

@@ -44,7 +44,7 @@ impl PacketTracker {
     }
 
     /// Returns the number of stale packets.
-    pub const fn stale(&self) -> u64 {
+    pub const fn stale_count(&self) -> u64 {
         self.stale
     }
 }
@@ -70,7 +70,7 @@ mod tests {
         ] {
             assert_eq!(arrivals.take(sequence), expected, "{sequence}");
         }
-        assert_eq!((arrivals.lost(), arrivals.stale()), (3, 3));
+        assert_eq!((arrivals.lost(), arrivals.stale_count()), (3, 3));
     }
 
     proptest! {
@@ -86,7 +86,7 @@ mod tests {
             }
             prop_assert!(counted.is_sorted_by(|one, other| one < other));
             prop_assert_eq!(counted.last(), order.iter().max());
-            prop_assert_eq!(counted.len() as u64 + arrivals.stale(), order.len() as u64);
+            prop_assert_eq!(counted.len() as u64 + arrivals.stale_count(), order.len() as u64);
         }
     }
 }

@@ -217,7 +217,7 @@ impl Frame {
             Command::SEND_RR_DATA | Command::SEND_UNIT_DATA => {
                 let mut fields = Fields::new(Structure::SendRRData, &self.data);
                 let (interface, timeout_s) = (fields.u32()?, fields.u16()?);
-                Ok(Body::Data { interface, timeout_s, items: ItemList::parse(fields.tail())? })
+                Ok(Body::Data { interface, timeout_s, items: ItemList::parse(fields.take_rest())? })
             }
             _ => Ok(Body::Other(self.data.clone())),
         }

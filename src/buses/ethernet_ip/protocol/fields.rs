@@ -132,7 +132,7 @@ impl<'a> Fields<'a> {
         Ok(bytes)
     }
 
-    pub(super) fn tail(&mut self) -> &'a [u8] {
+    pub(super) fn take_rest(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 

@@ -48,7 +48,7 @@ pub struct ForwardOpen {
 
 /// A successful reply to ForwardOpen.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ForwardOpened {
+pub struct ForwardOpenSuccess {
     /// Connection ID of packets to the target.
     pub to_target_id: u32,
     /// Connection ID of packets to the originator.
@@ -85,7 +85,7 @@ pub struct ForwardClose {
 
 /// A successful reply to ForwardClose.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ForwardClosed {
+pub struct ForwardCloseSuccess {
     /// Owner of the connection.
     pub owner: Owner,
     /// Application data.
@@ -166,7 +166,7 @@ impl ForwardOpen {
     }
 }
 
-impl ForwardOpened {
+impl ForwardOpenSuccess {
     /// Parses the data of the reply.
     ///
     /// # Errors
@@ -177,7 +177,7 @@ impl ForwardOpened {
         let owner = Owner::take(&mut fields)?;
         let (to_target_interval_us, to_originator_interval_us) = (fields.u32()?, fields.u32()?);
         let application = parse_application_data(&mut fields)?;
-        fields.end(ForwardOpened {
+        fields.end(ForwardOpenSuccess {
             to_target_id,
             to_originator_id,
             owner,
@@ -261,7 +261,7 @@ impl ForwardClose {
     }
 }
 
-impl ForwardClosed {
+impl ForwardCloseSuccess {
     /// Parses the data of the reply.
     ///
     /// # Errors
@@ -270,7 +270,7 @@ impl ForwardClosed {
         let mut fields = Fields::new(Structure::ForwardCloseReply, data);
         let owner = Owner::take(&mut fields)?;
         let application = parse_application_data(&mut fields)?;
-        fields.end(ForwardClosed { owner, application })
+        fields.end(ForwardCloseSuccess { owner, application })
     }
 
     /// Returns the data of the reply.

@@ -85,7 +85,7 @@ impl IoPacket {
             RealTimeFormat::Header => Some(RunIdleHeader(fields.u32()?)),
             RealTimeFormat::Modeless => None,
         };
-        Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
+        Ok(IoPacket { connection, sequence, count, header, data: fields.take_rest().to_vec() })
     }
 
     /// Returns the encoded packet.

@@ -135,7 +135,7 @@ impl Request {
         let code = fields.u8()?;
         let service = Service::new(code).ok_or(fields.value(PacketField::Service, code))?;
         let path = EPath::take(&mut fields)?;
-        Ok(Request { service, path, data: fields.tail().to_vec() })
+        Ok(Request { service, path, data: fields.take_rest().to_vec() })
     }
 
     /// Returns the encoded request.
@@ -171,7 +171,7 @@ impl Reply {
         let status = GeneralStatus::new(fields.u8()?);
         let words = fields.u8()?;
         let extended = (0..words).map(|_| fields.u16()).collect::<Result<_, _>>()?;
-        Ok(Reply { service: Service(service), status, extended, data: fields.tail().to_vec() })
+        Ok(Reply { service: Service(service), status, extended, data: fields.take_rest().to_vec() })
     }
 
     /// Returns the encoded reply, with at most 255 words of extended status.

@@ -178,7 +178,7 @@ impl Segment {
             }
             (None, _) => {
                 *fields = whole;
-                Segment::Unknown(fields.tail().to_vec())
+                Segment::Unknown(fields.take_rest().to_vec())
             }
         };
         Ok(segment)

@@ -146,7 +146,7 @@ impl InterfaceConfiguration {
     /// [`AddressError`].
     pub fn check(&self) -> Result<(), AddressError> {
         let InterfaceConfiguration { address, mask, gateway, .. } = *self;
-        is_a_devices(address)?;
+        check_device_address(address)?;
         let bits = u32::from(mask);
         let prefix = bits.leading_ones();
         if !(1..=30).contains(&prefix) || prefix + bits.trailing_zeros() != 32 {
@@ -168,7 +168,7 @@ impl InterfaceConfiguration {
                 return Err(AddressError::Gateway(gateway));
             }
         }
-        self.name_servers.into_iter().filter(|own| !own.is_unspecified()).try_for_each(is_a_devices)?;
+        self.name_servers.into_iter().filter(|own| !own.is_unspecified()).try_for_each(check_device_address)?;
         let is_name = |c: u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'.');
         if self.domain.len() > LONGEST_DOMAIN || !self.domain.bytes().all(is_name) {
             return Err(AddressError::Domain(self.domain.clone()));
@@ -194,7 +194,7 @@ impl InterfaceConfiguration {
 /// Maximum number of characters in a domain name.
 const LONGEST_DOMAIN: usize = 48;
 
-fn is_a_devices(address: Ipv4Addr) -> Result<(), AddressError> {
+fn check_device_address(address: Ipv4Addr) -> Result<(), AddressError> {
     let [first, ..] = address.octets();
     match first {
         _ if address.is_unspecified() => Err(AddressError::None),

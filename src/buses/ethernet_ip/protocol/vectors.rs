@@ -157,7 +157,7 @@ fn published_connection_matches() {
     assert_eq!(parsed.to_target_timeout(), Duration::from_millis(80));
 
     let text = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
-    let opened = ForwardOpened {
+    let opened = ForwardOpenSuccess {
         to_target_id: 0x0002_0001,
         to_originator_id: 0x0001_0001,
         owner: OWNER,
@@ -166,7 +166,7 @@ fn published_connection_matches() {
         application: Vec::new(),
     };
     assert_eq!(hex(&request.done(opened.emit()).emit()), text);
-    assert_eq!(ForwardOpened::parse(&Reply::parse(&bytes(text)).unwrap().data), Ok(opened));
+    assert_eq!(ForwardOpenSuccess::parse(&Reply::parse(&bytes(text)).unwrap().data), Ok(opened));
 
     let text = "4E 02 20 06 24 01 03 FA 01 00 34 12 CD AB 00 00 04 00 20 04 24 68 2C 64 2C 65";
     let close =
@@ -180,9 +180,9 @@ fn published_connection_matches() {
 #[test]
 fn a_connection_ends_or_is_refused() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
-    let closed = ForwardClosed { owner: OWNER, application: Vec::new() };
+    let closed = ForwardCloseSuccess { owner: OWNER, application: Vec::new() };
     let reply = Reply::parse(&bytes(text)).unwrap();
-    assert_eq!((ForwardClosed::parse(&reply.data), reply.service), (Ok(closed.clone()), Service::FORWARD_CLOSE));
+    assert_eq!((ForwardCloseSuccess::parse(&reply.data), reply.service), (Ok(closed.clone()), Service::FORWARD_CLOSE));
     assert_eq!(closed.emit(), reply.data);
 
     let text = "D4 00 01 01 06 01 01 00 34 12 CD AB 00 00 04 00";

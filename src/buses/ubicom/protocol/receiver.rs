@@ -46,7 +46,7 @@ impl Receiver {
 
     /// Handles silence on the line, after which a started frame will not be completed. A frame contained in its bytes
     /// is still found.
-    pub fn silence(&mut self) -> Option<Vec<u8>> {
+    pub fn handle_silence(&mut self) -> Option<Vec<u8>> {
         loop {
             if let Some(frame) = self.next_frame() {
                 return Some(frame);
@@ -145,13 +145,13 @@ mod tests {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, "80 01 01 03 00 26 00 54"), [""; 0]);
         assert!(receiver.is_waiting());
-        assert_eq!(receiver.silence(), None);
+        assert_eq!(receiver.handle_silence(), None);
         assert!(!receiver.is_waiting());
         // The false start hides a complete frame until then.
         assert_eq!(frames(&mut receiver, &format!("80 01 01 3F 00 {VALUE} {READ}")), [""; 0]);
-        assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(VALUE));
-        assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(READ));
-        assert_eq!(receiver.silence(), None);
+        assert_eq!(receiver.handle_silence().map(|frame| hex(&frame)).as_deref(), Some(VALUE));
+        assert_eq!(receiver.handle_silence().map(|frame| hex(&frame)).as_deref(), Some(READ));
+        assert_eq!(receiver.handle_silence(), None);
     }
 
     #[test]
@@ -161,7 +161,7 @@ mod tests {
             let mut receiver = Receiver::new(NODE);
             receiver.push(&bytes[..cut]);
             assert_eq!(receiver.next_frame(), None, "cut at {cut}");
-            assert_eq!(receiver.silence(), None, "cut at {cut}");
+            assert_eq!(receiver.handle_silence(), None, "cut at {cut}");
             assert_eq!(frames(&mut receiver, VALUE), [VALUE]);
         }
     }
@@ -172,7 +172,7 @@ mod tests {
             let mut receiver = Receiver::new(NODE);
             receiver.push(&noise);
             let mut found: Vec<Vec<u8>> = std::iter::from_fn(|| receiver.next_frame()).collect();
-            found.extend(std::iter::from_fn(|| receiver.silence()));
+            found.extend(std::iter::from_fn(|| receiver.handle_silence()));
             receiver.push(&parse_hex(VALUE).unwrap());
             found.extend(std::iter::from_fn(|| receiver.next_frame()));
             prop_assert_eq!(found.last().map(|frame| hex(frame)), Some(VALUE.to_owned()));

@@ -13,11 +13,11 @@ use super::plan::{CALIBRATION, change_lines, commit, operations, prepare, result
 use super::run::{Runner, registers};
 use crate::app::{KindRegistry, explain};
 use crate::cli::args::{ActionArgs, CommonArgs};
-use crate::cli::consent::{answer, ask, can_ask, require_consent};
+use crate::cli::consent::{answer, ask, can_prompt, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::profiles::{load_to_write, print_write_result};
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::runner::{failed, unexpected_output};
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::procedures::procedure::Outcome;
@@ -71,7 +71,7 @@ fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     // Nothing is stored by it, so it needs no consent without a terminal; a user there may have entered what it
     // discards.
     if !act.consent.yes
-        && can_ask()
+        && can_prompt()
         && !ask("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
     {
         return Err(Failure::Failed(vec!["Not confirmed; the encoder was not changed.".to_owned()]));
@@ -82,7 +82,7 @@ fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
             output.show(&json!({"done": "lead-back", "mode": mode.byte()}), &text)?;
             Ok(Done::Well)
         }
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }
 
@@ -96,7 +96,7 @@ fn run_guided(common: &CommonArgs, output: &Output, act: &ActionArgs, run: Mount
 }
 
 fn motor(output: &Output, act: &ActionArgs) -> Result<MotorSource> {
-    if act.consent.yes || !can_ask() {
+    if act.consent.yes || !can_prompt() {
         output.remark(
             "With --yes, the motor is assumed to turn without this encoder. A run starts when direction and speed \
              are correct.",
@@ -123,7 +123,7 @@ fn change(
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, change)?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
-    let usual = if can_ask() { PERSON } else { super::PATIENCE };
+    let usual = if can_prompt() { PERSON } else { super::PATIENCE };
     let DoOptions { timeout } = act.own.read()?;
     let patience = timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;

@@ -10,7 +10,7 @@ use crate::bits::{hex, hex_compact};
 use crate::cli::args::{CommonArgs, Position};
 use crate::cli::output::{Lines, Output, say};
 use crate::cli::positions::try_readings;
-use crate::cli::runner::{JobFailure, unexpected};
+use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
 use crate::devices::biss::procedures::{
@@ -116,11 +116,11 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
 fn list(bits: &FlagRegister) -> Vec<Json> {
     bits.set
         .iter()
-        .map(|(bit, name)| json!({"code": bit, "text": bit_words(*bit, name.as_ref().map(Name::english))}))
+        .map(|(bit, name)| json!({"code": bit, "text": bit_text(*bit, name.as_ref().map(Name::english))}))
         .collect()
 }
 
-fn bit_words(bit: u8, name: Option<&str>) -> String {
+fn bit_text(bit: u8, name: Option<&str>) -> String {
     name.map_or_else(|| format!("bit {bit}, which is not described"), str::to_owned)
 }
 
@@ -131,7 +131,7 @@ fn status_text(status: &Status) -> String {
             None => lines.add(label, "not provided by this encoder"),
             Some(bits) if bits.set.is_empty() => lines.add(label, "none"),
             Some(bits) => {
-                let named = bits.set.iter().map(|(bit, name)| bit_words(*bit, name.as_ref().map(Name::english)));
+                let named = bits.set.iter().map(|(bit, name)| bit_text(*bit, name.as_ref().map(Name::english)));
                 lines.add(label, named.collect::<Vec<_>>().join(", "))
             }
         };
@@ -167,7 +167,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
             wrong += crc_errors(runner);
             let reading = match came {
                 Ok(BissOutput::Position(reading)) => reading,
-                Ok(other) => return Err(unexpected(&other)),
+                Ok(other) => return Err(unexpected_output(&other)),
                 // No line is printed, since the next frame may be good.
                 Err(error) if is_noise(&error) && good_at.elapsed() < NOISE => return Ok(false),
                 Err(error) => {
@@ -249,7 +249,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let identity = identity(&mut runner)?;
     let ReadRegisters { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
     if let Some(mode) = unsaved {
-        output.remark(&explained::unsaved(mode).terminal());
+        output.remark(&explained::unsaved(mode).terminal_text());
     }
     let meaning =
         identity.description.at(range.start()).and_then(|register| words::describe_register(register, range, &bytes));

@@ -26,7 +26,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::sim;
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
@@ -107,14 +107,14 @@ fn is_combined(action: &PossibleValue) -> bool {
 
 fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
-    let known = bridge::keys(at_adapter());
+    let known = bridge::keys(attachable_kinds());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
     if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {
         return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
     }
     let refused = |error: ConfigError| Failure::Usage(error.to_string());
     Ok(match arguments.bridge {
-        true => Box::new(bridge::Adapter::from_pairs(&settings, at_adapter()).map_err(refused)?),
+        true => Box::new(bridge::Adapter::from_pairs(&settings, attachable_kinds()).map_err(refused)?),
         false => Box::new(sim::UbicomPort::new(&sim::Config::from_pairs(&settings).map_err(refused)?)),
     })
 }

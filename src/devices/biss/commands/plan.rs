@@ -43,7 +43,7 @@ pub(super) fn commit(
     }
     check_wear::<Biss>(consent, &prepared)?;
     if let Some(wear) = explained::wear(&prepared) {
-        output.remark(&wear.terminal());
+        output.remark(&wear.terminal_text());
     }
     let text = shown(&prepared).text;
     let agreed = confirm_plan(output, consent, prepared, &[&text])?;
@@ -156,5 +156,5 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
 /// Returns the results of the operations, a line each.
 pub(super) fn results_text(outcomes: &[Outcome]) -> String {
     let texts = outcomes.iter().flat_map(explained::outcome);
-    texts.map(|text| text.terminal() + "\n").collect()
+    texts.map(|text| text.terminal_text() + "\n").collect()
 }

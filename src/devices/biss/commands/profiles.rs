@@ -27,7 +27,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     let (mode, unsaved) = (profile.recorded.device_mode, words::saved_unsaved(&profile));
     save_profile(&save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
-        output.remark(&words.terminal());
+        output.remark(&words.terminal_text());
     }
     let json = json!({"file": save.file, "banks": banks, "unsaved_in_mode": mode.map(DeviceMode::byte)});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(banks, "bank")))?;
@@ -41,7 +41,7 @@ impl ProfileCommands for BissCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = &prepared.other_type {
-            output.remark(&words::other_type(types).terminal());
+            output.remark(&words::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);

@@ -4,7 +4,7 @@ use super::BissCommands;
 use crate::app::Given;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
-use crate::cli::runner::{self, Runs, unexpected};
+use crate::cli::runner::{self, Runs, unexpected_output};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, ReadRegisters};
 use crate::devices::biss::procedures::procedure::{ProcedureProgress, StepDetail};
@@ -28,7 +28,7 @@ impl Runs for Biss {
         match remark {
             // They are counted, and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
-            remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal()))),
+            remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal_text()))),
         }
     }
 
@@ -42,7 +42,7 @@ impl Runs for Biss {
     fn announce(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {
-                Some(format!("{item}: {}", words::step(news.step).terminal()))
+                Some(format!("{item}: {}", words::step(news.step).terminal_text()))
             }
             JobStep::Register(_) | JobStep::Bank(_) => None,
         }
@@ -59,7 +59,7 @@ fn detail(news: &ProcedureProgress) -> String {
         }
         StepDetail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
         StepDetail::Demand(demand) => {
-            let against = demand.blockers.iter().map(|blocker| words::blocker_text(*blocker).terminal());
+            let against = demand.blockers.iter().map(|blocker| words::blocker_text(*blocker).terminal_text());
             let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
             turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")
         }
@@ -91,6 +91,6 @@ pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Resul
             let (wanted, came) = (range.count(), read.bytes.len());
             Err(Failure::Failed(vec![format!("{range}: {came} registers were received instead of {wanted}.")]))
         }
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }

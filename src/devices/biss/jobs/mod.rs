@@ -174,12 +174,12 @@ impl Device for Biss {
         })
     }
 
-    fn pace(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
+    fn set_sample_interval(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(context).end_frames()
+            && let Err(error) = self.master(context).stop_frame_stream()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }

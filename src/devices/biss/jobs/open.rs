@@ -6,7 +6,7 @@ use super::Biss;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::devices::biss::procedures::{Echo, Station, Transport};
 use crate::devices::biss::sim::{Config, UbicomPort};
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, UrlQuery};
 use crate::parameter::Words;
 use crate::sim::{ConfigError, Motor};
@@ -81,7 +81,7 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
 fn check_virtual(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
-        let device = if way == Transport::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
+        let device = if way == Transport::Adapter { bridge::keys(attachable_kinds()) } else { Config::KEYS.to_vec() };
         [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };
     let known = own(way);
@@ -104,7 +104,7 @@ impl Simulated {
     fn new(way: Transport, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         Ok(match way {
             Transport::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
-            Transport::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, at_adapter())?)),
+            Transport::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, attachable_kinds())?)),
         })
     }
 

@@ -31,10 +31,12 @@ pub(super) fn prepare(
             let state = state(&mut master, &identity, &banks_needed(profile, &areas), tell)?;
             plan_restore(profile, &state, *options)?
         }
-        Change::Write(edits) => only(edits_of(&mut master, &identity, edits)?),
-        Change::SelectFilter(to) => only(plan_filter(&description, &state(&mut master, &identity, &[], tell)?, *to)?),
+        Change::Write(edits) => restore_from_plan(plan_register_edits(&mut master, &identity, edits)?),
+        Change::SelectFilter(to) => {
+            restore_from_plan(plan_filter(&description, &state(&mut master, &identity, &[], tell)?, *to)?)
+        }
         Change::Preset { value, parts } => {
-            only(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
+            restore_from_plan(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
         }
         Change::Guided { run, motor } => {
             // Refusals come before anything else is read.
@@ -42,7 +44,7 @@ pub(super) fn prepare(
             let areas: Vec<Area> = description.areas().to_vec();
             let banks = run.data.as_ref().map(|profile| banks_needed(profile, &areas)).unwrap_or_default();
             let state = state(&mut master, &identity, &banks, tell)?;
-            only(plan_mounting(&description, &state, run, *motor)?)
+            restore_from_plan(plan_mounting(&description, &state, run, *motor)?)
         }
     };
     let cycles_seen = cycles_seen(&context.store, &device_key(&identity, context.is_virtual));
@@ -67,7 +69,7 @@ pub(super) fn prepare(
     })
 }
 
-fn only(plan: BissPlan) -> Restore {
+fn restore_from_plan(plan: BissPlan) -> Restore {
     Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }
 
@@ -82,7 +84,7 @@ fn state(
     read_state(master, identity, banks, report)
 }
 
-fn edits_of(
+fn plan_register_edits(
     master: &mut Master<'_>,
     identity: &Identity,
     edits: &[(RegisterRange, Vec<u8>)],

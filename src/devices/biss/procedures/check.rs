@@ -114,7 +114,7 @@ pub fn check(
     if survey.status.position.is_some() {
         lines.push(readings(master)?);
     }
-    lines.extend(worn(wear(&survey.identity)));
+    lines.extend(wear_result(wear(&survey.identity)));
     Ok(lines)
 }
 
@@ -259,7 +259,7 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     ))
 }
 
-fn worn(wear: Wear) -> Option<BissStepResult> {
+fn wear_result(wear: Wear) -> Option<BissStepResult> {
     let (verdict, seen) = wear.judged()?;
     Some(BissStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

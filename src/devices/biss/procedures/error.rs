@@ -152,7 +152,7 @@ pub(super) fn requested_register(number: u16) -> RegisterAddress {
 ///
 /// # Errors
 /// [`Error::TooFew`] if their number differs.
-pub(super) fn exact_length<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
+pub(super) fn to_register_array<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
     bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
 

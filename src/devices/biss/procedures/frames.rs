@@ -54,7 +54,7 @@ impl FrameRun {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         let is_limited = period_ns > i64::from(wished_us) * 1000;
         // Not before the start of the stream.
-        let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
+        let at = Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
         FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
@@ -63,7 +63,7 @@ impl FrameRun {
     }
 
     /// Returns each frame with its sampling time.
-    pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
+    pub fn with_times(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
     }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::error::exact_length;
+use super::error::to_register_array;
 use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Transport};
@@ -93,15 +93,15 @@ impl Identity {
 
     /// Returns the width of the multiturn in bits, if known.
     pub fn multiturn_bits(&self) -> Option<u8> {
-        self.is_told().then_some(self.layout.multiturn_bits())
+        self.is_source_known().then_some(self.layout.multiturn_bits())
     }
 
     /// Returns the width of the singleturn in bits, if known.
     pub fn singleturn_bits(&self) -> Option<u8> {
-        self.is_told().then_some(self.layout.singleturn_bits())
+        self.is_source_known().then_some(self.layout.singleturn_bits())
     }
 
-    fn is_told(&self) -> bool {
+    fn is_source_known(&self) -> bool {
         self.source.is_known()
     }
 }
@@ -150,7 +150,7 @@ pub(super) fn identify_with(
     let station = master.station();
     station.source = Some(source);
     Ok(Identity {
-        mismatch: near_miss(types, &kind).filter(|_| description.identity().is_none()),
+        mismatch: closest_mismatch(types, &kind).filter(|_| description.identity().is_none()),
         layout: station.frame(),
         adapter: station.adapter.hello().cloned(),
         order: station.order,
@@ -188,8 +188,8 @@ fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
 fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
     let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
     let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
-    let profile: [u8; 2] = exact_length(RegisterAddress::PROFILE, profile)?;
-    let device: [u8; 8] = exact_length(RegisterAddress::DEVICE_ID, device)?;
+    let profile: [u8; 2] = to_register_array(RegisterAddress::PROFILE, profile)?;
+    let device: [u8; 8] = to_register_array(RegisterAddress::DEVICE_ID, device)?;
     let [d0, d1, d2, d3, d4, d5, m0, m1] = device;
     Ok(Kind {
         profile: ProfileId::new(u16::from_be_bytes(profile)),
@@ -199,7 +199,7 @@ fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind,
 }
 
 /// Returns a description of the same manufacturer and profile for another device.
-fn near_miss(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
+fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types
         .iter()

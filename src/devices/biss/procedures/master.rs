@@ -87,16 +87,16 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which returns the device to a safe state, and ignores cancellation until it is done.
-    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.shield(true);
+    pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.ignore_cancellation(true);
         let result = work(self);
-        self.shield(before);
+        self.ignore_cancellation(before);
         result
     }
 
     /// Sets whether cancellation is ignored; returns the previous setting.
-    pub(super) fn shield(&mut self, shielded: bool) -> bool {
-        self.line.shield(shielded)
+    pub(super) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
+        self.line.ignore_cancellation(shielded)
     }
 
     /// Runs `work`, during which the encoder may not reply for up to `patience`. Reads are repeated for this time.
@@ -108,7 +108,7 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which reads values to be stored. Every register must yield the same value twice.
-    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
         self.station.thorough = before;
@@ -167,22 +167,22 @@ impl<'a> Master<'a> {
                 error => error,
             })? {
                 Ok(WriteReaction::Yes) => {
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Ok(());
                 }
                 Ok(WriteReaction::No(reads)) => {
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Err(Error::Refused { address, value, reads });
                 }
                 Err(trouble) => trouble,
             };
             let failed = self.failed(requested, tries, &trouble);
-            let failure = self.may_try_again(tries, trouble, failed.clone());
+            let failure = self.prepare_retry(tries, trouble, failed.clone());
             if !self.station.is_readback_conclusive(address) {
                 return Err(unclear(failed));
             }
             // From here on the result must be determined, even after cancellation.
-            match self.shielded(|master| master.read(address)) {
+            match self.run_uncancellable(|master| master.read(address)) {
                 Ok(reads) if reads == value => return Ok(()),
                 Ok(_) => failure?,
                 Err(cause) => return Err(unclear(cause)),
@@ -250,12 +250,12 @@ impl<'a> Master<'a> {
             tries += 1;
             match once(self)? {
                 Ok(answer) => {
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Ok(answer);
                 }
                 Err(trouble) => {
                     let failed = self.failed(requested, tries, &trouble);
-                    self.may_try_again(tries, trouble, failed)?;
+                    self.prepare_retry(tries, trouble, failed)?;
                 }
             }
         }
@@ -292,7 +292,7 @@ impl<'a> Master<'a> {
     }
 
     /// Prepares the line for another attempt, or returns `failed` if no attempts are left.
-    fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
+    fn prepare_retry(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
         match trouble {
@@ -303,14 +303,16 @@ impl<'a> Master<'a> {
             Transport::ConfigPin => self.longest_pin_exchange(),
             Transport::Adapter => self.longest_bus_exchange(),
         };
-        if !self.line.may_ask_again(&mut self.station.line, tries, longest) {
+        if !self.line.may_retry(&mut self.station.line, tries, longest) {
             return Err(failed);
         }
         match trouble {
             // Frames follow in sequence, good or bad, and late packets are recognised by their number.
             ExchangeError::Damage(Damage::Frame(_)) => {}
             _ if self.station.transport == Transport::Adapter => self.pause()?,
-            ExchangeError::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
+            ExchangeError::Silence { .. } => {
+                self.line.receive_late_bytes(&mut self.station.line, tries, BYTE_TIME_OUT)?
+            }
             // After this time, an incomplete frame in the encoder has timed out.
             _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
         }
@@ -329,7 +331,7 @@ impl<'a> Master<'a> {
                 return Ok(false);
             }
             match self.station.transport {
-                Transport::ConfigPin => self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?,
+                Transport::ConfigPin => self.line.receive_late_bytes(&mut self.station.line, 1, BYTE_TIME_OUT)?,
                 Transport::Adapter => self.pause()?,
             }
         }

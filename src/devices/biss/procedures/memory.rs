@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::error::exact_length;
+use super::error::to_register_array;
 use super::identify::identify_with;
 use super::registers::Registers;
 use super::survey::read_survey;
@@ -104,7 +104,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
     for number in area.banks() {
         progress(number);
         let start = RegisterAddress::bank_start(number);
-        banks.push(Bank { number, bytes: exact_length(start, master.read_consecutive(start, Bank::SIZE)?)? });
+        banks.push(Bank { number, bytes: to_register_array(start, master.read_consecutive(start, Bank::SIZE)?)? });
     }
     Ok(banks)
 }
@@ -175,7 +175,7 @@ fn read_reliably<T>(
 ) -> Result<T, Error> {
     let was_sure = master.station().needs_double_read();
     let value = read(master)?;
-    if was_sure || !master.station().needs_double_read() { Ok(value) } else { master.thoroughly(read) }
+    if was_sure || !master.station().needs_double_read() { Ok(value) } else { master.run_double_checked(read) }
 }
 
 /// Creates the profile of an encoder from a reading, with the device mode of the reading if it was not operation.
@@ -198,7 +198,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceM
         mounting: Vec::new(),
         data,
     };
-    profile.mark_mounting();
+    profile.mark_mounting_values();
     profile
 }
 

@@ -51,7 +51,7 @@ impl PositionReading {
     }
 
     /// Creates a reading from a frame with a right checksum.
-    pub fn in_frame(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
+    pub fn from_frame(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             error: layout.has_error_bit().then_some(reading.error),
             warning: layout.has_warning_bit().then_some(reading.warning),

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{Error, Master};
-use crate::devices::biss::protocol::{Crc, Layout, LayoutError, data_bits_of};
+use crate::devices::biss::protocol::{Crc, Layout, LayoutError, detect_data_bits};
 
 /// Maximum length of a frame in bits, including data and checksum.
 const CLOCKED: u8 = 64;
@@ -24,7 +24,7 @@ pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
     let mut frames = Vec::with_capacity(FRAMES);
     while frames.len() < FRAMES {
         frames.push(master.frame(CLOCKED - crc.width(), crc.width())?);
-        if let Some(bits) = data_bits_of(&frames, CLOCKED, &crc) {
+        if let Some(bits) = detect_data_bits(&frames, CLOCKED, &crc) {
             let position = bits.saturating_sub(2);
             let singleturn = position.min(MOST);
             return Ok(Layout::new(position - singleturn, singleturn, true, true, Some(crc))?);

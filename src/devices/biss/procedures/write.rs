@@ -1,7 +1,7 @@
 //! Writes a plan to an encoder: reads its base again, performs each operation and reads the result back, with an
 //! operator at the motor if required, and returns the encoder to operation after each.
 
-use super::error::exact_length;
+use super::error::to_register_array;
 use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
@@ -45,7 +45,7 @@ pub struct EndState {
 impl Interrupted {
     /// Returns the individually written register whose write has an unknown result, if any. A value that was refused or
     /// not sent was not accepted.
-    pub fn unclear(&self) -> Option<RegisterAddress> {
+    pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
             (Some(Op::WriteRegister { address, .. }), _) => Some(*address),
@@ -253,7 +253,7 @@ pub fn read_state(
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_consecutive(start, Bank::SIZE)?;
-    Ok(Bank { number, bytes: exact_length(start, bytes)? })
+    Ok(Bank { number, bytes: to_register_array(start, bytes)? })
 }
 
 /// Reads the filter in use, or `None` if the firmware offers no choice.

@@ -68,7 +68,7 @@ pub enum RegisterKind<'d> {
 /// # Errors
 /// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for registers that only the procedures write.
 pub fn place(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
-    if is_guarded(description, address) {
+    if is_protected_register(description, address) {
         return Err(PlanError::Guarded { address });
     }
     if description.access(address).is_some_and(|access| !access.writes()) {
@@ -80,7 +80,7 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
 
 /// Returns whether a register holds the device mode or the password, or belongs to a procedure. Plain data is never
 /// guarded.
-fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
+fn is_protected_register(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {
         let preset = procedure.data.filter(|_| procedure.kind == ProcedureKind::Preset);

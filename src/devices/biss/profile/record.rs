@@ -146,7 +146,7 @@ impl BissProfile {
     pub const FILTER: &'static str = "0x6E";
 
     /// Marks the preset and the calibration as belonging to the mounting, unless they are already marked.
-    pub fn mark_mounting(&mut self) {
+    pub fn mark_mounting_values(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
         // An encoder with a preset also has a calibration: it is a kit encoder.
         let calibration = preset.map(|_| MountingItem::Calibration);
@@ -158,7 +158,7 @@ impl BissProfile {
     }
 
     /// Returns whether a register belongs to the mounting.
-    pub fn is_mounting(&self, address: RegisterAddress) -> bool {
+    pub fn is_mounting_value(&self, address: RegisterAddress) -> bool {
         self.mounting.iter().any(|mark| match mark.item {
             MountingItem::Registers(range) => range.contains(address),
             MountingItem::Calibration => false,

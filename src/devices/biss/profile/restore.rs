@@ -277,10 +277,10 @@ impl<'a> Planner<'a> {
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
             if old == new {
                 self.unchanged += 1;
-            } else if self.mounting == Mounting::Leave && self.profile.is_mounting(address) {
+            } else if self.mounting == Mounting::Leave && self.profile.is_mounting_value(address) {
                 self.left.push(address);
             } else {
-                if self.mounting == Mounting::Write && self.profile.is_mounting(address) {
+                if self.mounting == Mounting::Write && self.profile.is_mounting_value(address) {
                     self.mounting_written.push(address);
                 }
                 changes.push(RegisterChange { address, old, new });

@@ -21,7 +21,7 @@ impl Profile for BissProfile {
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
-        let filter = entries.optional("filter", AllowedValues::Byte)?.map(PositionFilter::from_byte);
+        let filter = entries.take_optional("filter", AllowedValues::Byte)?.map(PositionFilter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         let mounting = MountingMark::read_all(entries, AllowedValues::TextSuchAs("0x24:0x10+3"), parse_mounting_item)?;
@@ -156,7 +156,7 @@ fn printable(bytes: &[u8]) -> String {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let firmware = match entries.optional::<String>("firmware", AllowedValues::TextSuchAs("1.6.0"))? {
+    let firmware = match entries.take_optional::<String>("firmware", AllowedValues::TextSuchAs("1.6.0"))? {
         None => None,
         Some(text) => Some(
             read_firmware(&text)
@@ -166,14 +166,14 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     let device_id = read_array(&mut entries, "device_id")?;
     let manufacturer = read_array(&mut entries, "manufacturer")?;
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", AllowedValues::Text)?,
-        profile_id: ProfileId::new(entries.required("profile_id", AllowedValues::Word)?),
+        serial_number: entries.take_required("serial_number", AllowedValues::Text)?,
+        profile_id: ProfileId::new(entries.take_required("profile_id", AllowedValues::Word)?),
         device_id,
         manufacturer,
         firmware,
-        description: entries.optional("description", AllowedValues::Text)?.unwrap_or_default(),
-        multiturn_bits: entries.optional("multiturn_bits", AllowedValues::Byte)?,
-        singleturn_bits: entries.optional("singleturn_bits", AllowedValues::Byte)?,
+        description: entries.take_optional("description", AllowedValues::Text)?.unwrap_or_default(),
+        multiturn_bits: entries.take_optional("multiturn_bits", AllowedValues::Byte)?,
+        singleturn_bits: entries.take_optional("singleturn_bits", AllowedValues::Byte)?,
         unknown: entries.rest()?,
     })
 }
@@ -195,7 +195,7 @@ fn read_array<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; 
 
 fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
     let mut number = |name| {
-        let number: u32 = entries.required(name, PRESET_NUMBER)?;
+        let number: u32 = entries.take_required(name, PRESET_NUMBER)?;
         let fits = PresetValue::new(number, 0).is_some();
         let path = entries.path_of(name);
         if fits { Ok(number) } else { Err(ProfileError::Shape { path, expected: PRESET_NUMBER }) }
@@ -207,15 +207,15 @@ fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     let mut result = |name| {
-        let tenths: Option<[u8; 4]> = entries.optional(name, AllowedValues::FourTenths)?;
+        let tenths: Option<[u8; 4]> = entries.take_optional(name, AllowedValues::FourTenths)?;
         Ok(tenths.map(WiegandResult::parse))
     };
     Ok(Recorded {
         wiegand_last: result("wiegand_last")?,
         wiegand_production: result("wiegand_production")?,
         wiegand_saved: result("wiegand_saved")?,
-        calibration_status: entries.optional("calibration_status", AllowedValues::Byte)?,
-        device_mode: entries.optional("device_mode", AllowedValues::Byte)?.map(DeviceMode::new),
+        calibration_status: entries.take_optional("calibration_status", AllowedValues::Byte)?,
+        device_mode: entries.take_optional("device_mode", AllowedValues::Byte)?.map(DeviceMode::new),
         eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
         unknown: entries.rest()?,
     })
@@ -230,7 +230,7 @@ fn parse_mounting_item(text: &str) -> Result<MountingItem, EntryError> {
 }
 
 fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
-    let (first, last): (u8, u8) = entries.required("banks", AllowedValues::Banks)?;
+    let (first, last): (u8, u8) = entries.take_required("banks", AllowedValues::Banks)?;
     if first > last {
         return Err(ProfileError::refused(entries.path_of("banks"), EntryError::Order { first, last }));
     }
@@ -248,13 +248,13 @@ fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
         listed.push(own);
     }
     listed.sort_by_key(|listed| listed.bank.number);
-    let name = entries.optional("name", AllowedValues::Text)?.unwrap_or_default();
-    let empty = entries.optional("empty", AllowedValues::Byte)?;
+    let name = entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default();
+    let empty = entries.take_optional("empty", AllowedValues::Byte)?;
     Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
 }
 
 fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
-    let number = entries.required("bank", AllowedValues::Byte)?;
+    let number = entries.take_required("bank", AllowedValues::Byte)?;
     let bytes = read_array(&mut entries, "bytes")?;
     Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
 }

@@ -12,7 +12,7 @@ mod tests;
 
 use std::fmt;
 
-pub use flaw::{Claim, Flaw};
+pub use flaw::{Claim, DescriptionErrorKind};
 pub use name::Name;
 pub use register::{Access, Area, Decoded, Register, Role, ValueDecoding};
 
@@ -96,7 +96,7 @@ pub struct DescriptionError {
     /// Column number, counted from 1.
     pub column: usize,
     /// The flaw at this position.
-    pub problem: Flaw,
+    pub problem: DescriptionErrorKind,
 }
 
 /// All known encoder descriptions, most specific first.

@@ -28,8 +28,8 @@ pub use control::{
 };
 pub use crc::{Crc, CrcError};
 pub use description::{
-    Access, Area, Claim, Decoded, Description, DescriptionError, Descriptions, Flaw, Identity, Lock, Mismatch, Name,
-    Procedure, Register, Role, ValueDecoding,
+    Access, Area, Claim, Decoded, Description, DescriptionError, DescriptionErrorKind, Descriptions, Identity, Lock,
+    Mismatch, Name, Procedure, Register, Role, ValueDecoding,
 };
 pub use eds::{Eds, EdsBank, EdsError, EdsField, EdsValue, StatusBitMeaning, layout as eds_layout};
 pub use line::{BissCycle, CycleError};
@@ -39,4 +39,4 @@ pub use procedure::{
 };
 pub use single_cycle::{FrameError, Layout, LayoutError, PositionData};
 pub use status::{DeviceMode, ErrorRegister, Firmware, PositionFilter, ProfileId, Temperature, WarningRegister};
-pub use widths::data_bits_of;
+pub use widths::detect_data_bits;

@@ -147,13 +147,13 @@ impl Layout {
     /// # Errors
     /// [`FrameError`]; a stuck line is distinguished from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
-        let whole = ones(self.bits());
+        let whole = low_bits_mask(self.bits());
         if raw & !whole != 0 {
             return Err(FrameError::Long { bits: self.bits() });
         }
         let data = raw.checked_shr(self.crc_bits().into()).unwrap_or(0);
         let sums = self.crc.as_ref().map(|crc| {
-            let got = (raw & ones(crc.width())) as u32;
+            let got = (raw & low_bits_mask(crc.width())) as u32;
             (crc.of(data, self.data_bits()), got)
         });
         let moves = raw != 0 && raw != whole;
@@ -168,8 +168,8 @@ impl Layout {
 
     /// Returns the right-justified frame for a reading. Bits that do not fit the layout are dropped.
     pub fn emit(&self, reading: &PositionData) -> u64 {
-        let mut data = u64::from(reading.multiturn) & ones(self.multiturn_bits);
-        data = data << self.singleturn_bits | u64::from(reading.singleturn) & ones(self.singleturn_bits);
+        let mut data = u64::from(reading.multiturn) & low_bits_mask(self.multiturn_bits);
+        data = data << self.singleturn_bits | u64::from(reading.singleturn) & low_bits_mask(self.singleturn_bits);
         if self.error_bit {
             data = data << 1 | u64::from(!reading.error);
         }
@@ -195,7 +195,7 @@ impl Layout {
     fn fields(&self, data: u64) -> PositionData {
         let mut rest = data;
         let mut take = |bits: u8| {
-            let field = rest & ones(bits);
+            let field = rest & low_bits_mask(bits);
             rest = rest.checked_shr(bits.into()).unwrap_or(0);
             field
         };
@@ -218,7 +218,7 @@ impl Default for Layout {
 }
 
 /// Returns a mask with the lowest `bits` bits set, 0 to 64.
-const fn ones(bits: u8) -> u64 {
+const fn low_bits_mask(bits: u8) -> u64 {
     match bits {
         0 => 0,
         1..=63 => (1 << bits) - 1,

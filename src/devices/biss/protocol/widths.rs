@@ -13,7 +13,7 @@ const ENOUGH: usize = 8;
 ///
 /// Repeated data counts only once: at the wrong length, one frame in 64 matches by chance and would match again on
 /// every repetition.
-pub fn data_bits_of(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
+pub fn detect_data_bits(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
 }
 
@@ -63,19 +63,19 @@ mod tests {
     fn eight_distinct_frames_determine_the_width() {
         let kit = Layout::default();
         let frames = turning(&kit, 7, 8);
-        assert_eq!(data_bits_of(&frames, 64, &crc()), Some(35));
-        assert_eq!(data_bits_of(&frames[..7], 64, &crc()), None);
+        assert_eq!(detect_data_bits(&frames, 64, &crc()), Some(35));
+        assert_eq!(detect_data_bits(&frames[..7], 64, &crc()), None);
         let at_rest = [frames[0]; 100];
-        assert_eq!(data_bits_of(&at_rest, 64, &crc()), None);
+        assert_eq!(detect_data_bits(&at_rest, 64, &crc()), None);
         let mut damaged = frames.clone();
         damaged[4] ^= 1 << 40;
-        assert_eq!(data_bits_of(&damaged, 64, &crc()), None, "one that does not fit begins anew");
+        assert_eq!(detect_data_bits(&damaged, 64, &crc()), None, "one that does not fit begins anew");
         let [_, rest @ ..] = frames.as_slice() else { panic!() };
-        assert_eq!(data_bits_of(&[&damaged, rest, &turning(&kit, 9, 2)[1..]].concat(), 64, &crc()), Some(35));
+        assert_eq!(detect_data_bits(&[&damaged, rest, &turning(&kit, 9, 2)[1..]].concat(), 64, &crc()), Some(35));
         let short: Vec<u64> = frames.iter().map(|frame| frame >> 24).collect();
-        assert_eq!(data_bits_of(&short, 40, &crc()), None, "not clocked far enough");
-        assert_eq!(data_bits_of(&[0; 20], 64, &crc()), None);
-        assert_eq!(data_bits_of(&[u64::MAX; 20], 64, &crc()), None);
+        assert_eq!(detect_data_bits(&short, 40, &crc()), None, "not clocked far enough");
+        assert_eq!(detect_data_bits(&[0; 20], 64, &crc()), None);
+        assert_eq!(detect_data_bits(&[u64::MAX; 20], 64, &crc()), None);
     }
 
     proptest! {
@@ -85,12 +85,12 @@ mod tests {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();
             let expected = layout.data_bits();
             prop_assume!(expected <= 48);
-            prop_assert_eq!(data_bits_of(&turning(&layout, step, 12), 64, &crc()), Some(expected));
+            prop_assert_eq!(detect_data_bits(&turning(&layout, step, 12), 64, &crc()), Some(expected));
         }
 
         #[test]
         fn no_frames_panic(frames: Vec<u64>, clocked: u8) {
-            let _ = data_bits_of(&frames, clocked, &crc());
+            let _ = detect_data_bits(&frames, clocked, &crc());
         }
     }
 }

@@ -32,7 +32,7 @@ parameters! {
         pub(super) pulses: WiegandPulses = WiegandPulses { average: 63, lowest: 58 },
             "pulses" => Checked(AllowedValues::Pulses, pulses);
         pub(super) calibration_time: Duration = Duration::from_secs(5),
-            "calibration" => Checked(AllowedValues::Seconds { low: Limit::thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
+            "calibration" => Checked(AllowedValues::Seconds { low: Limit::from_thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
         pub(super) silent_calibration: bool = true, "calibration-silent" => SWITCH;
         pub(super) keeps_status: bool = false, "calibration-status" => Words(&[("fresh", false), ("kept", true)]);
         pub(super) echo: bool = false, "echo" => SWITCH;

@@ -18,7 +18,7 @@ use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
 use super::flash::Flash;
 use super::motor::Drive;
 use super::shaft::{FINE, Shaft};
-use super::wiegand::{Wiegand, WiegandPulses};
+use super::wiegand::{WiegandPulses, WiegandState};
 use crate::devices::biss::protocol::{
     CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, PositionData, RegisterAddress,
     WiegandCommand, WiegandStatus,
@@ -48,7 +48,7 @@ pub struct Encoder {
     /// Wiegand test results saved before the encoder started.
     saved_wiegand: [u8; 4],
     calibration: Calibration,
-    wiegand: Wiegand,
+    wiegand: WiegandState,
     data: DataEntry,
     filter: FilterEntry,
     preset: PresetEntry,
@@ -96,7 +96,7 @@ impl Encoder {
             mode: DeviceMode::OPERATION,
             saved_wiegand: flash.wiegand,
             calibration: Calibration::new(config.calibration_time, config.keeps_status),
-            wiegand: Wiegand::new(),
+            wiegand: WiegandState::new(),
             data: DataEntry::default(),
             filter: FilterEntry::default(),
             preset: PresetEntry::new(flash.preset),
@@ -208,7 +208,7 @@ impl Encoder {
         let offset = address.address();
         let value = match address.bank() {
             None => self.direct(offset),
-            Some(0x00) => self.special(offset),
+            Some(0x00) => self.special_register(offset),
             Some(0x01) => self.preset_register(offset),
             Some(bank @ (0x02 | 0x03)) => {
                 let [common, encoder] = &self.eds;
@@ -379,7 +379,7 @@ impl Encoder {
         self.power = Power::Starting { ready: now + Self::START };
         (self.bank, self.password, self.mode) = (0, 0, DeviceMode::OPERATION);
         self.calibration.status = CalibrationStatus::Idle;
-        self.wiegand = Wiegand::new();
+        self.wiegand = WiegandState::new();
         self.saved_wiegand = self.flash.wiegand;
     }
 

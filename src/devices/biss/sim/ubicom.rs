@@ -100,7 +100,7 @@ impl UbicomPort {
 
     fn end_frame(&mut self, at: Moment) {
         self.heard = None;
-        while let Some(frame) = self.receiver.silence() {
+        while let Some(frame) = self.receiver.handle_silence() {
             self.take(at, &frame);
         }
     }

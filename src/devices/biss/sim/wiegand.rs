@@ -16,7 +16,7 @@ pub(super) struct WiegandPulses {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Wiegand {
+pub(super) struct WiegandState {
     pub(super) command: u8,
     pub(super) status: WiegandStatus,
     pub(super) error: u8,
@@ -29,12 +29,12 @@ pub(super) struct Wiegand {
     first_clockwise: Option<bool>,
 }
 
-impl Wiegand {
+impl WiegandState {
     const REVOLUTIONS: f64 = WiegandResult::REVOLUTIONS as f64;
     const NO_PULSES: u8 = 0x01;
 
     pub(super) fn new() -> Self {
-        Wiegand {
+        WiegandState {
             command: 0,
             status: WiegandStatus::Stopped,
             error: 0,

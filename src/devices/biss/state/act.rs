@@ -96,7 +96,7 @@ impl Encoder {
 
     /// Returns whether a newly visible bank should be read. This requires that the bank has not been read, nothing is
     /// running, no stream would be interrupted, and no earlier attempt failed.
-    pub fn includes_group(&self, group: &Group) -> bool {
+    pub fn should_read_group(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }

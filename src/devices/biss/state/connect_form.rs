@@ -13,7 +13,7 @@ use crate::devices::biss::procedures::{
     BusParameters, Echo, FrameParameters, LineParameters, ORDERS, PinParameters, Transport,
 };
 use crate::devices::biss::sim;
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _, Values, chosen};
 use crate::units::Parity;
@@ -232,7 +232,7 @@ impl BissForm {
     fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);
-        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));
+        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(attachable_kinds()).contains(&name));
         let of_the_virtual = self.kind == BissLinkKind::Virtual && (encoder || (adapter && self.behind_adapter));
         let elsewhere = own(Transport::ConfigPin) || own(Transport::Adapter) || encoder || adapter || name == BRIDGE.0;
         own(kind) || of_the_virtual || !elsewhere

@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn every_reference_register_is_decoded() {
         let mut encoder =
-            Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
+            Encoder::with(Session::for_link(SessionId::default(), "sim:".parse().unwrap(), KindRegistry::NONE));
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         encoder.describe(Some(Arc::new(kit.clone())));
         for register in kit.registers() {

@@ -133,7 +133,7 @@ impl Encoder {
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the same type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
-        if unproven || self.is_another(&survey.identity) {
+        if unproven || self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
@@ -176,7 +176,7 @@ impl Encoder {
     }
 
     /// Returns whether the identity differs from that of the previously read encoder.
-    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+    pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))
     }

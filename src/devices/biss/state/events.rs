@@ -72,7 +72,7 @@ impl Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.record.add(samples, dropped);
     }
 
@@ -80,7 +80,7 @@ impl SessionEvents for Encoder {
         self.meaning.of(frame)
     }
 
-    fn progressed(&mut self, what: JobStep) {
+    fn handle_progress(&mut self, what: JobStep) {
         let running = self.guide.as_mut().filter(|guide| guide.is_running());
         if let (JobStep::Operation { progress: news, .. }, Some(guide)) = (what, running) {
             guide.set_progress(*news);
@@ -154,9 +154,9 @@ impl SessionEvents for Encoder {
         self.forget_plan();
     }
 
-    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
-        let stands_there = self.cut_guide(&how, texts) || self.handle_cut_write(how, texts);
+        let stands_there = self.interrupt_guide(&how, texts) || self.handle_interrupted_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }

@@ -163,7 +163,7 @@ mod tests {
     use crate::devices::biss::procedures::procedure::Run;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn reached(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
+    fn step_status(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         reported
             .iter()
@@ -204,15 +204,18 @@ mod tests {
         let (turn, run) = (ProcedureStep::Await(Task::Turn(first)), ProcedureStep::Run(first));
         let told = [ProcedureStep::Conditions, turn, ProcedureStep::Enter(DeviceMode::CALIBRATION), run];
         let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
-        assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
-        assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        assert_eq!(step_status(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
+        assert_eq!(step_status(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // With the link lost, no return to operation is reported.
-        assert_eq!(reached(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        assert_eq!(step_status(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // The encoder never left operation.
-        assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
+        assert_eq!(step_status(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
         // The return to operation itself failed.
-        assert_eq!(reached(&led, Some(ProcedureStep::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
-        assert_eq!(reached(&[], None, false), [Ahead; 7]);
+        assert_eq!(
+            step_status(&led, Some(ProcedureStep::LeadBack), true),
+            [Done, Done, Done, Done, Done, Done, Failed]
+        );
+        assert_eq!(step_status(&[], None, false), [Ahead; 7]);
     }
 
     #[test]

@@ -46,7 +46,7 @@ impl DeviceType for Encoder {
         encoder
     }
 
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         [
             PinParameters::SECRETS,
             LineParameters::SECRETS,

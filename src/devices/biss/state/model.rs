@@ -18,7 +18,7 @@ impl DeviceModel for Encoder {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
-        self.session.adopt_line(opened, services);
+        self.session.attach_connection(opened, services);
         self.update_watches();
         self.submit(BissJob::Survey, services);
     }
@@ -51,7 +51,7 @@ impl DeviceModel for Encoder {
         Ok(self)
     }
 
-    fn streams(&self) -> bool {
+    fn can_stream(&self) -> bool {
         self.identity().is_some_and(|own| own.adapter.is_some())
     }
 }

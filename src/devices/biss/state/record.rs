@@ -80,7 +80,7 @@ impl Record {
         for sample in samples {
             match sample {
                 Sample::Position(reading) => {
-                    self.see(&reading, &mut batch);
+                    self.observe(&reading, &mut batch);
                 }
                 Sample::Missed { at, crc_errors } => {
                     self.add_crc_errors(crc_errors);
@@ -95,11 +95,11 @@ impl Record {
 
     pub(super) fn add_position(&mut self, reading: PositionReading) {
         let mut batch = Batch::default();
-        self.see(&reading, &mut batch);
+        self.observe(&reading, &mut batch);
         self.append(&mut batch);
     }
 
-    fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
+    fn observe(&mut self, reading: &PositionReading, batch: &mut Batch) {
         self.stream = None;
         self.add_crc_errors(reading.crc_errors);
         let widths = Widths::from(reading);
@@ -107,7 +107,7 @@ impl Record {
             self.append(batch);
         }
         batch.widths = Some(widths);
-        batch.sightings.push(sighting(reading));
+        batch.sightings.push(position_sample(reading));
         self.last = Some(*reading);
     }
 
@@ -129,14 +129,14 @@ impl Record {
             self.append(batch);
         }
         batch.widths = Some(widths);
-        for (at, frame) in run.timed() {
+        for (at, frame) in run.with_times() {
             let Ok(reading) = frame else {
                 batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
             };
-            let reading = PositionReading::in_frame(at, reading, &run.layout);
+            let reading = PositionReading::from_frame(at, reading, &run.layout);
             let reading = PositionReading { is_split_known: run.is_split_known, ..reading };
-            batch.sightings.push(sighting(&reading));
+            batch.sightings.push(position_sample(&reading));
             self.last = Some(reading);
         }
     }
@@ -227,7 +227,7 @@ impl Recording for Record {
     }
 }
 
-fn sighting(reading: &PositionReading) -> PositionSample {
+fn position_sample(reading: &PositionReading) -> PositionSample {
     PositionSample {
         at: reading.at,
         position: i64::try_from(reading.position()).ok(),
@@ -279,7 +279,7 @@ mod tests {
         let frame = |at| Ok(PositionData { multiturn: 0, singleturn: at as u32, error: false, warning: false });
         FrameRun {
             first,
-            at: Moment::after_start(Duration::from_micros(50 * first)),
+            at: Moment::from_elapsed(Duration::from_micros(50 * first)),
             period_ns: 50_000,
             lost,
             frames: (first..first + count).map(frame).collect(),
@@ -359,7 +359,7 @@ mod tests {
         add(&mut record, run(500, 10, 0), 3);
         assert_eq!((record.positions(), record.dropped_count()), (200, 310), "nobody took three runs of them");
         // The frame numbers of another stream start at zero.
-        let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
+        let later = FrameRun { at: Moment::from_elapsed(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
         assert_eq!((record.positions(), record.dropped_count()), (205, 315));
         record.poll(None, false);

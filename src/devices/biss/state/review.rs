@@ -35,7 +35,7 @@ impl Reviewable for Biss {
         words::op(op, &prepared.identity.layout)
     }
 
-    fn leaves_mounting(prepared: &Prepared) -> bool {
+    fn skips_mounting_values(prepared: &Prepared) -> bool {
         !prepared.mounting_left.is_empty()
     }
 
@@ -60,7 +60,7 @@ impl Reviewable for Biss {
         warnings
     }
 
-    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
+    fn requirements(change: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
         if ops.iter().any(Op::turns) {

@@ -49,7 +49,7 @@ impl Encoder {
     }
 
     /// Ends the display of a guided procedure that was interrupted, and returns whether a procedure was running.
-    pub(super) fn cut_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
+    pub(super) fn interrupt_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
             EarlyEnd::Lost => None,
@@ -156,7 +156,7 @@ impl HasProfile for Encoder {
         self.wanted_profile().map(Body::new)
     }
 
-    fn known_body(&self) -> Option<KnownProfile> {
+    fn last_read_profile(&self) -> Option<KnownProfile> {
         let survey = self.survey.as_ref()?;
         let (mut data, mut missing) = (Vec::new(), Vec::new());
         for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {

@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, entry_row, expandable_ui, field, leave_supply, network, parity, recording, segments, serial, typed,
+    echo, entry_row, expandable_ui, field, leave_supply, network, parity, recording, segmented_control, serial, typed,
 };
 
 pub(crate) struct BissConnectForm;
@@ -34,7 +34,7 @@ impl TypedConnectForm for BissConnectForm {
             (BissLinkKind::Bus, "connect.biss_bus"),
             (BissLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.kind, ways);
+        segmented_control(ui, theme, &mut form.kind, ways);
         let words = match form.kind {
             BissLinkKind::Virtual | BissLinkKind::Replay => None,
             BissLinkKind::Pin => Some("connect.biss_pin_words"),
@@ -47,7 +47,7 @@ impl TypedConnectForm for BissConnectForm {
         match form.kind {
             BissLinkKind::Virtual => simulated_ui(ui, theme, form),
             BissLinkKind::Pin | BissLinkKind::Bus => {
-                segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {

@@ -69,11 +69,11 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
 fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     let or_none = |text: String| if text.is_empty() { theme.say("encoder_card.not_told") } else { text };
     let serial = format!("{}  {}", identity.serial_number, crate::bits::hex(&identity.serial_bytes));
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(serial.trim().to_owned())));
+    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(serial.trim().to_owned())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
-    row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.kind.profile.to_string()));
-    row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.kind.device_id)));
+    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware)));
+    row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.kind.profile.to_string()));
+    row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.kind.device_id)));
     manufacturer_ui(ui, theme, identity.kind.manufacturer);
     let layout = &identity.layout;
     let widths = TEXTS
@@ -105,11 +105,11 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
 
 fn recorded_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(identity.serial_number.clone())));
+    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
-    row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.profile_id.to_string()));
-    row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.device_id)));
+    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware)));
+    row(ui, theme, &say(theme, "biss_card.profile"), theme.monospace(identity.profile_id.to_string()));
+    row(ui, theme, &say(theme, "biss_card.device_id"), theme.monospace(crate::bits::hex(&identity.device_id)));
     manufacturer_ui(ui, theme, identity.manufacturer);
     if let Some(singleturn) = identity.singleturn_bits {
         let widths = TEXTS
@@ -126,7 +126,7 @@ fn recorded_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &Profile
 
 fn manufacturer_ui(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
     let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
-    row(ui, theme, &say(theme, "biss_card.manufacturer"), theme.mono(words));
+    row(ui, theme, &say(theme, "biss_card.manufacturer"), theme.monospace(words));
 }
 
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -153,7 +153,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         bits(ui, theme, status.warnings.as_ref(), icons::WARNING, palette.warn);
         if let Some(celsius) = status.celsius {
             let words = format!("{} °C", theme.number(celsius, 0));
-            row(ui, theme, &say(theme, "biss_status.temperature"), theme.mono(words));
+            row(ui, theme, &say(theme, "biss_status.temperature"), theme.monospace(words));
         }
         if let Some(mode) = status.mode {
             row(ui, theme, &say(theme, "biss_status.mode"), theme.words(&explained::mode(mode)));
@@ -164,7 +164,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
             let words = theme.words(&explained::preset(value, layout.singleturn_bits()));
-            row(ui, theme, &say(theme, "biss_status.preset"), theme.mono(words));
+            row(ui, theme, &say(theme, "biss_status.preset"), theme.monospace(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
             paragraph(ui, RichText::new(say(theme, "biss_status.open")).color(palette.warn));
@@ -188,7 +188,7 @@ fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&FlagRegister>, icon: &str, col
     for (bit, name) in bits.iter().flat_map(|bits| &bits.set) {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            ui.label(theme.mono(format!("b{bit}")));
+            ui.label(theme.monospace(format!("b{bit}")));
             let name = name
                 .as_ref()
                 .map_or_else(|| say(theme, "biss_status.unknown_bit"), |own| theme.words(&explained::name(own)));

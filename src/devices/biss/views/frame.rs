@@ -26,9 +26,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         let label = say(theme, "frame_card.title");
         frame_strip(ui, theme, &FrameStrip { label: &label, fields: &fields, bits: &bits });
         if let Some(reading) = reading {
-            row(ui, theme, &theme.say("live.raw"), theme.mono(theme.word(reading.raw())));
+            row(ui, theme, &theme.say("live.raw"), theme.monospace(theme.word(reading.raw())));
             if let Some(frame) = reading.frame {
-                row(ui, theme, &say(theme, "frame_card.frame"), theme.mono(theme.word(frame)));
+                row(ui, theme, &say(theme, "frame_card.frame"), theme.monospace(theme.word(frame)));
             }
         }
         if reading.is_some_and(|reading| reading.frame.is_none()) {

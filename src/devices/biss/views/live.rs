@@ -32,15 +32,15 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     });
     let Some(reading) = reading else { return };
     if !is_angle {
-        row(ui, theme, &theme.say("unit.steps"), theme.mono(reading.position().to_string()));
+        row(ui, theme, &theme.say("unit.steps"), theme.monospace(reading.position().to_string()));
     } else if ui.available_height() < LOW {
         // In a window of little height, the plot needs the space.
         let (turns, steps) = (theme.say("live.turns"), theme.say("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
-        row(ui, theme, &theme.say("live.turns"), theme.mono(reading.turns.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.mono(reading.steps.to_string()));
+        row(ui, theme, &theme.say("live.turns"), theme.monospace(reading.turns.to_string()));
+        row(ui, theme, &theme.say("live.step"), theme.monospace(reading.steps.to_string()));
         raw_row(ui, theme, theme.word(reading.raw()));
     }
     if let Some(stream) = encoder.streamed() {

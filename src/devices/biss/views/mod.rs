@@ -44,7 +44,7 @@ impl TabPage for Page {
 
 impl Page {
     /// Returns whether the page handles its own scrolling and keeps its buttons in place.
-    fn is_fixed(self) -> bool {
+    fn handles_scrolling(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
     }
 }
@@ -128,7 +128,7 @@ impl TypedDeviceView for BissView {
         (page, view): (Page, &mut BissUiState),
         actions: &mut Vec<Action>,
     ) {
-        if page.is_fixed() {
+        if page.handles_scrolling() {
             // Tables fill the available space.
             let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
             frame.show(ui, |ui| match page {
@@ -137,7 +137,7 @@ impl TypedDeviceView for BissView {
             });
             return;
         }
-        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
             Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Procedures => procedures::page_ui(ui, theme, studio, encoder, &mut view.procedures, actions),
             _ => encoder::page_ui(ui, theme, encoder, actions),

@@ -13,7 +13,7 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{
-    allowed_button, card, empty_placeholder, enabled_button, folding_card, labelled_entry, options, paragraph, row,
+    button_with_reason, card, empty_placeholder, enabled_button, folding_card, labelled_entry, options, paragraph, row,
     show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
@@ -148,7 +148,7 @@ fn mounting_ui(
         let wish = requested_run(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
-        if allowed_button(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
+        if button_with_reason(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
             && let Ok(run) = wish
         {
             let motor = own.motor.unwrap_or(MotorSource::Other);
@@ -235,7 +235,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         ui.add_space(theme.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
             let words = theme.words(&explained::preset(stored, layout.singleturn_bits()));
-            row(ui, theme, &say(theme, "preset_card.stored"), theme.mono(words));
+            row(ui, theme, &say(theme, "preset_card.stored"), theme.monospace(words));
         }
         paragraph(ui, theme.label(say(theme, "preset_card.fire_words")));
         ui.horizontal_wrapped(|ui| {

@@ -189,7 +189,7 @@ fn table(
     }
     // Visible registers are read once automatically when nothing else is running.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
-    let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.includes_group(own);
+    let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.should_read_group(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
         actions.push(Action::device(encoder.session.id, Biss::SeeBank(own.bank)));
     }

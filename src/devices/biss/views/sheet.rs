@@ -37,7 +37,7 @@ fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsEr
     for (field, value) in eds.values() {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            let at = ui.label(theme.mono(format!("0x{:02X}", field.offset)).color(theme.palette.muted));
+            let at = ui.label(theme.monospace(format!("0x{:02X}", field.offset)).color(theme.palette.muted));
             ui.add_space((OFFSET - at.rect.width()).max(0.0));
             let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {

@@ -63,9 +63,9 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match action {
-        HiperdriveAction::Factory if !all => output.remark(&TEXTS.text("hd_cli.not_saved").terminal()),
+        HiperdriveAction::Factory if !all => output.remark(&TEXTS.text("hd_cli.not_saved").terminal_text()),
         HiperdriveAction::Acknowledge if operations.is_empty() => {
-            output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive(&of).get()).terminal());
+            output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive(&of).get()).terminal_text());
         }
         _ => {}
     }

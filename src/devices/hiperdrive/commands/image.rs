@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::meaning::{self, DecodeContext, WordMeaning, control_words, parameter_name, status_word_text};
+use super::meaning::{self, DecodeContext, WordMeaning, control_word_text, parameter_name, status_word_text};
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     ActualValues, Answer, ControlWord, InputImage, Kind, Layout, OutputData, OutputImage, ParameterNumber,
@@ -26,7 +26,7 @@ pub(super) fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> Result<Vec<Wo
             (Ok(reading), Some(Direction::Out)) => readings.push(reading),
             (Ok(reading), None) => {
                 readings.push(reading);
-                readings.extend(from().filter(|_| !is_anything(bytes, layout)));
+                readings.extend(from().filter(|_| !has_nonzero_control(bytes, layout)));
             }
             (_, Some(Direction::In)) | (Err(_), None) => readings.extend(from()),
         }
@@ -40,7 +40,7 @@ fn layouts(length: usize, known: &DecodeContext) -> impl Iterator<Item = Layout>
 }
 
 /// Returns whether any control word is nonzero. No drive sends 0 as a status word.
-fn is_anything(bytes: &[u8], layout: Layout) -> bool {
+fn has_nonzero_control(bytes: &[u8], layout: Layout) -> bool {
     OutputImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
 
@@ -87,7 +87,7 @@ fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
     let mut lines = Vec::new();
     let mut list = Vec::new();
     for (number, drive) in (1..).zip(&image.drives) {
-        lines.push(format!("drive {number}: {}", in_words(drive)));
+        lines.push(format!("drive {number}: {}", actual_text(drive)));
         list.push(json!({
             "drive": number,
             "status": format!("{:04X}", drive.status.word()),
@@ -96,7 +96,7 @@ fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
             "position": drive.position,
         }));
     }
-    lines.extend(image.pkw.map(answer_words));
+    lines.extend(image.pkw.map(answer_text));
     Some(WordMeaning { direction: "IN", lines, json: json!({"drives": list}) })
 }
 
@@ -105,24 +105,24 @@ fn output_text(drive: &OutputData, control: ControlWord) -> String {
     let none = if *speed == 0 || *torque == 0 { "; with 0 % nothing begins" } else { "" };
     format!(
         "control word {word:04X} ({}), speed {speed} %, torque {torque} %, target {target}{}{none}",
-        control_words(control),
-        in_turns(*target)
+        control_word_text(control),
+        turns_text(*target)
     )
 }
 
-fn in_words(drive: &ActualValues) -> String {
+fn actual_text(drive: &ActualValues) -> String {
     let ActualValues { status, speed, position } = drive;
     let rpm = f64::from(*speed) / 10.0;
     format!(
         "status word {:04X} ({}), speed {rpm} rpm, position {position}{}",
         status.word(),
         status_word_text(*status),
-        in_turns(*position)
+        turns_text(*position)
     )
 }
 
 /// Formats a position in turns and degrees for a drive with default scaling.
-fn in_turns(position: i32) -> String {
+fn turns_text(position: i32) -> String {
     let (turn, steps) = turns(position);
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
@@ -141,13 +141,13 @@ fn decode_parameter_word(bytes: &[u8], known: &DecodeContext) -> Vec<WordMeaning
     let is_answer = !matches!(pkw.answer(), Answer::None | Answer::Unknown);
     let readings = [
         (is_request, "OUT", Direction::Out, pkw_request_text as fn(Pkw) -> String),
-        (is_answer, "IN", Direction::In, answer_words),
+        (is_answer, "IN", Direction::In, answer_text),
     ];
     readings
         .into_iter()
         .filter(|(is, _, direction, _)| *is && known.direction.is_none_or(|known| known == *direction))
         .map(|(_, direction, _, words)| {
-            let fits = direction == "OUT" || answer_fits(pkw, row);
+            let fits = direction == "OUT" || has_expected_width(pkw, row);
             let json = json!({"parameter": pkw.number(), "element": pkw.ind, "value": fits.then_some(pkw.pwe)});
             WordMeaning { direction, lines: vec![words(pkw)], json }
         })
@@ -170,7 +170,7 @@ fn pkw_request_text(pkw: Pkw) -> String {
     format!("parameter word: {request}")
 }
 
-fn answer_words(pkw: Pkw) -> String {
+fn answer_text(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
     let answer = match pkw.answer() {
         Answer::None => return "parameter word: nothing is answered".to_owned(),
@@ -184,7 +184,7 @@ fn answer_words(pkw: Pkw) -> String {
 }
 
 /// Returns whether the answer's width matches the parameter type.
-fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
+fn has_expected_width(pkw: Pkw, row: &ParameterRow) -> bool {
     match pkw.answer() {
         Answer::Word(_) => matches_width(row, true),
         Answer::Double(_) => matches_width(row, false),

@@ -17,7 +17,8 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     VARIANT,
 };
 use crate::devices::hiperdrive::protocol::{
-    DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
+    DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant,
+    nominal_value,
 };
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -84,7 +85,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
             return Err(failed(&TEXTS.text("hd_said.no_drive").with("drive", drive.get())));
         }
     }
-    let facts: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
+    let facts: Vec<DriveFact> = status.drives.iter().flat_map(drive_fact_list).collect();
     let list = |weight: FactSeverity| {
         facts.iter().filter(|own| own.severity == weight).map(DriveFact::json).collect::<Vec<Json>>()
     };
@@ -143,7 +144,7 @@ impl DriveFact {
 /// has counted since the last acknowledgement, and at least one during a fault. Older entries survive a power cycle
 /// (reference 4) and do not describe the present state. A drive outside its limits and a communication error are
 /// warnings.
-fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
+fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));
@@ -171,7 +172,7 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
 
 pub(super) fn error_text(code: ErrorCode) -> String {
     let words = words::error(code);
-    format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
+    format!("{}: {} {}", words.name.terminal_text(), words.cause.terminal_text(), words.remedy.terminal_text())
 }
 
 pub(super) fn state_keyword(state: State) -> &'static str {
@@ -210,7 +211,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     for drive in &status.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
         let (word, celsius) = (drive.status.word(), drive.temperature);
-        let state = words::state(drive.status.state()).terminal();
+        let state = words::state(drive.status.state()).terminal_text();
         lines.add(format!("drive {}", drive.number.get()), format!("{state} (0x{word:04X}), {celsius} °C{requested}"));
     }
     lines.text()
@@ -223,13 +224,13 @@ fn number_text(item: Item, number: i64) -> String {
     match (base, word, unit.strip_prefix("0.1 ")) {
         (STATUS, Some(word), _) => {
             let state = words::state(StatusWord::new(word).state());
-            format!("0x{word:04X} ({})", state.terminal())
+            format!("0x{word:04X} ({})", state.terminal_text())
         }
         (NEWEST_ERROR..=OLDEST_ERROR, Some(0), _) => "0x0000 (no error)".to_owned(),
         (NEWEST_ERROR..=OLDEST_ERROR, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
         (CONTROL | 116..=118, Some(word), _) => format!("0x{word:04X}"),
         (VARIANT, Some(word), _) => {
-            format!("{number} ({})", words::variant(Variant::new(word)).terminal())
+            format!("{number} ({})", words::variant(Variant::new(word)).terminal_text())
         }
         (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
         // The number fits into 32 bits.
@@ -251,7 +252,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
 
 /// Formats a string parameter, followed by the number it contains, if any, with the unit.
 fn nominal_text(text: &str, unit: &str) -> String {
-    match nominal(text).filter(|_| !unit.is_empty()) {
+    match nominal_value(text).filter(|_| !unit.is_empty()) {
         Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),
         None => text.to_owned(),
     }

@@ -66,7 +66,7 @@ pub(super) fn of_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMeanin
 
 fn control_meaning(control: ControlWord) -> WordMeaning {
     let names: Vec<&str> = control.set().map(|(_, name)| name).collect();
-    let lines = vec![format!("control word, {}", control_words(control))];
+    let lines = vec![format!("control word, {}", control_word_text(control))];
     WordMeaning { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
 }
 
@@ -77,14 +77,14 @@ fn status_meaning(status: StatusWord) -> WordMeaning {
 }
 
 /// Formats a control word: its purpose, then its bits.
-pub(super) fn control_words(control: ControlWord) -> String {
+pub(super) fn control_word_text(control: ControlWord) -> String {
     let bits: Vec<String> = control.set().map(|(bit, name)| format!("{bit} {name}")).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
     let then = if control.has(ControlBit::Acknowledge) { ", acknowledges a fault when bit 7 falls" } else { "" };
-    format!("{}{then}: {bits}", purpose(control))
+    format!("{}{then}: {bits}", control_word_purpose(control))
 }
 
-fn purpose(control: ControlWord) -> &'static str {
+fn control_word_purpose(control: ControlWord) -> &'static str {
     use ControlBit::{Control, Enable, JogOne, JogTwo, NoPause, NoStop, On, SpeedMode, Start};
     let speed = (control.has(NoStop), control.has(NoPause));
     match control {
@@ -147,7 +147,7 @@ pub(super) fn number_meaning(row: &ParameterRow, number: i64) -> String {
     match (row.number, word) {
         (CONTROL, Some(word)) => ControlWord::parse(word).map_or_else(
             |why| format!("{word:04X} ({why})"),
-            |control| format!("{word:04X} ({})", control_words(control)),
+            |control| format!("{word:04X} ({})", control_word_text(control)),
         ),
         (STATUS, Some(word)) => format!("{word:04X} ({})", status_word_text(StatusWord::new(word))),
         (NEWEST_ERROR..=OLDEST_ERROR, Some(0)) => "no error".to_owned(),

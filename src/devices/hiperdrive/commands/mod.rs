@@ -147,7 +147,7 @@ fn item(text: &str, of: &DriveOption) -> Result<Item> {
     });
     item.map_err(|error| {
         Failure::Usage(match error {
-            ItemError::NoParameter(number) => TEXTS.text("hd_said.unknown").with("number", number).terminal(),
+            ItemError::NoParameter(number) => TEXTS.text("hd_said.unknown").with("number", number).terminal_text(),
             error => error.to_string(),
         })
     })

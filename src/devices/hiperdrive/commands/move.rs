@@ -194,7 +194,7 @@ fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot>
 
 fn stop_reasons(came: &MotionOutcome, stood: Option<DriveSnapshot>, seconds: u16) -> Vec<String> {
     let first = match came {
-        MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal(),
+        MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal_text(),
         MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
         MotionOutcome::Late => format!(
             "The drive did not reach its target within {seconds} s and was stopped. Use --timeout to allow more \

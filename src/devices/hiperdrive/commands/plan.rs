@@ -26,13 +26,13 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
         && asked != *new
     {
-        output.remark(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal());
+        output.remark(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal_text());
     }
     for warning in warnings(&prepared.plan) {
-        output.remark(&words::warning(&warning).terminal());
+        output.remark(&words::warning(&warning).terminal_text());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
-        output.remark(&TEXTS.text("hd_cli.address_lost").terminal());
+        output.remark(&TEXTS.text("hd_cli.address_lost").terminal_text());
     }
     Ok(prepared)
 }
@@ -67,7 +67,10 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     for op in &plan.ops {
         let words = words::op(op);
         for change in &words.changes {
-            lines.add(words.item.terminal(), format!("{}  →  {}", change.old.terminal(), change.new.terminal()));
+            lines.add(
+                words.item.terminal_text(),
+                format!("{}  →  {}", change.old.terminal_text(), change.new.terminal_text()),
+            );
         }
     }
     let text = plan::text(plan, lines, prepared.cycles_seen, None);
@@ -79,7 +82,7 @@ pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
     for words in plan.ops.iter().map(words::op) {
         for change in &words.changes {
-            let (item, old, new) = (words.item.terminal(), change.old.terminal(), change.new.terminal());
+            let (item, old, new) = (words.item.terminal_text(), change.old.terminal_text(), change.new.terminal_text());
             text.push_str(&format!("{item}: {old} → {new}\n"));
         }
     }

@@ -34,7 +34,7 @@ impl ProfileCommands for HiperdriveCommands {
         let mut runner = Runner::open(common)?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         for types in &prepared.other_types {
-            output.remark(&words::other_type(types).terminal());
+            output.remark(&words::other_type(types).terminal_text());
         }
         for words in missing_items(&prepared) {
             output.remark(&words);

@@ -38,10 +38,10 @@ impl Runs for Hiperdrive {
 
     fn print_message(remark: &DeviceMessage) {
         match remark {
-            DeviceMessage::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal())),
+            DeviceMessage::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal_text())),
             DeviceMessage::RulesUnread(error) => {
-                let why = words::device(error).terminal();
-                say(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal()));
+                let why = words::device(error).terminal_text();
+                say(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal_text()));
             }
             DeviceMessage::RulesRead => {}
         }

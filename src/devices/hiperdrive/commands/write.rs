@@ -24,7 +24,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     require_consent(&write.consent)?;
     // The number alone does not tell the user what the write does.
     if let Change::Do(_) = change {
-        output.remark(&words::change(&change).terminal());
+        output.remark(&words::change(&change).terminal_text());
     }
     let mut runner = Runner::open(common)?;
     let drive = match change {
@@ -35,7 +35,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     if let Some(drive) = drive.filter(|_| operations.is_empty()) {
-        output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal());
+        output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal_text());
     }
     let done = print_write_result(output, &item.to_string(), &operations, &spent, &[], &changes)?;
     if let Some(drive) = drive.filter(|_| !operations.is_empty()) {

@@ -154,7 +154,7 @@ impl CyclicRunner {
             return self.is_gone(error.into());
         }
         self.motion.publish(&self.drives);
-        !self.drives.is_over()
+        !self.drives.is_finished()
     }
 
     fn apply_commands(&mut self) {

@@ -170,7 +170,7 @@ impl Motion {
 
     /// Requires the limits of a drive to be confirmed before it moves.
     pub fn revoke_limits_confirmation(&self, drive: DriveNumber) {
-        self.with_limits(drive, DriveLimits::unconfirm);
+        self.with_limits(drive, DriveLimits::require_confirmation);
     }
 
     /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have

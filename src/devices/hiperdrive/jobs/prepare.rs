@@ -37,17 +37,17 @@ pub(super) fn prepare(
         Change::Write(wanted) => {
             let (identity, state) = state(&mut master, beside(wanted))?;
             let plan = plan_edits(&state, wanted)?;
-            (identity, state.image, only(plan))
+            (identity, state.image, restore_from_plan(plan))
         }
         Change::Try(wanted) => {
             let (identity, state) = state(&mut master, beside(wanted))?;
             let plan = plan_edits(&state, wanted)?.without_save();
-            (identity, state.image, only(plan))
+            (identity, state.image, restore_from_plan(plan))
         }
         Change::SetPosition { drive, position, save } => {
             let (identity, state) = state(&mut master, Vec::new())?;
             let plan = plan_set_position(&state, *drive, *position)?;
-            (identity, state.image, only(if *save { plan } else { plan.without_save() }))
+            (identity, state.image, restore_from_plan(if *save { plan } else { plan.without_save() }))
         }
         Change::Do(service) => {
             let (identity, state) = state(&mut master, Vec::new())?;
@@ -63,14 +63,14 @@ pub(super) fn prepare(
                     }
                 }
             }
-            (identity, state.image, only(plan))
+            (identity, state.image, restore_from_plan(plan))
         }
         Change::Network(wanted) => {
             let (identity, state) = state(&mut master, Vec::new())?;
             let now = settings(&mut master)?;
             let switch = ParameterNumber::new(12).map(|number| master.read_number(number)).transpose()?;
             let plan = plan_network(&now, switch, wanted)?;
-            (identity, state.image, only(plan))
+            (identity, state.image, restore_from_plan(plan))
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
@@ -103,6 +103,6 @@ fn ensure_drives_present(identity: &Identity, change: &Change) -> Result<(), Err
     named.into_iter().try_for_each(|drive| identity.named(drive).map(|_| ()))
 }
 
-fn only(plan: HiperdrivePlan) -> Restore {
+fn restore_from_plan(plan: HiperdrivePlan) -> Restore {
     Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }

@@ -116,7 +116,7 @@ impl Hiperdrive {
     pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = context.clock.now();
-            let rules = self.master(context).shielded(|master| read_rules(master, drive.number))?;
+            let rules = self.master(context).run_uncancellable(|master| read_rules(master, drive.number))?;
             self.control.limit(identity, drive.number, rules, [began; GROUPS]);
         }
         Ok(())

@@ -57,7 +57,7 @@ pub enum Damage {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Late {
+pub struct LateReplyError {
     pub took: Duration,
     /// Time limit of a reply, excluding the margin for the line.
     pub waited: Duration,
@@ -117,7 +117,7 @@ pub enum Error {
         requested: RequestedItem,
         tries: u32,
         /// Reply that arrived too late, if any.
-        late: Option<Late>,
+        late: Option<LateReplyError>,
     },
     #[error("{requested}: {cause} (attempts: {tries})")]
     Damaged { requested: RequestedItem, tries: u32, cause: Damage },
@@ -231,7 +231,7 @@ impl Error {
 
     /// Returns whether the value is unavailable at present or on this device, although other parameters may be
     /// available.
-    pub const fn is_unsaid(&self) -> bool {
+    pub const fn is_unavailable(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 

@@ -168,7 +168,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
 /// drive is not requested (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
-        Err(error) if error.is_unsaid() => Ok(String::new()),
+        Err(error) if error.is_unavailable() => Ok(String::new()),
         ended => ended,
     }
 }
@@ -200,7 +200,7 @@ pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result
                 values.insert(number, value);
             }
             Err(Error::Length(error)) => wrong_lengths.push(error),
-            Err(error) if error.is_unsaid() => {}
+            Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),
         }
     }

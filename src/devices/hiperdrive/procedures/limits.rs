@@ -87,7 +87,7 @@ impl DriveLimits {
     }
 
     /// Requires the limits to be confirmed before the drive moves.
-    pub const fn unconfirm(&mut self) {
+    pub const fn require_confirmation(&mut self) {
         self.unconfirmed = true;
     }
 

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use connection::Opened;
 
-use super::error::{Damage, Late, Refusal, RequestedItem, WrongLength};
+use super::error::{Damage, LateReplyError, Refusal, RequestedItem, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::buses::ethernet_ip::protocol::{
@@ -94,10 +94,10 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which leads to a safe state, ignoring cancellation until it ends.
-    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.line.shield(true);
+    pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.ignore_cancellation(true);
         let result = work(self);
-        self.line.shield(before);
+        self.line.ignore_cancellation(before);
         result
     }
 
@@ -166,7 +166,7 @@ impl<'a> Master<'a> {
                 Ok(_) => return Ok(()),
                 Err(Error::Refused { refusal, .. }) => return Err(self.write_refusal_reason(number, wanted, refusal)?),
                 Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
-                    if triggers_action(row) || self.shielded(|master| master.read_number(number))? == wanted {
+                    if triggers_action(row) || self.run_uncancellable(|master| master.read_number(number))? == wanted {
                         return if triggers_action(row) { Err(error) } else { Ok(()) };
                     }
                     if tries >= TRIES {
@@ -212,7 +212,7 @@ impl<'a> Master<'a> {
     }
 
     /// Returns how long to wait for the operation that is started by setting a parameter to this value.
-    pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
+    pub(super) fn max_wait(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
         RetryPolicy::Never { takes }.within(self.station.link.timeout)
     }
@@ -283,7 +283,7 @@ impl<'a> Master<'a> {
             let trouble = match once(self)? {
                 Ok(answer) => {
                     self.station.line.answered();
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Ok(answer);
                 }
                 Err(trouble) => trouble,
@@ -296,7 +296,7 @@ impl<'a> Master<'a> {
             let longest = within + self.station.line.margin;
             // A refusal of the session was immediate.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
-            let may = self.line.may_ask_again(&mut self.station.line, tries, took);
+            let may = self.line.may_retry(&mut self.station.line, tries, took);
             match trouble {
                 // The request was not carried out: the device has forgotten the session.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
@@ -309,7 +309,7 @@ impl<'a> Master<'a> {
                 ExchangeError::Silence => {
                     let took = self.station.replies.longest_reply_time();
                     let is_late = self.station.late > late && took >= longest;
-                    let late = is_late.then_some(Late { took, waited: within });
+                    let late = is_late.then_some(LateReplyError { took, waited: within });
                     return Err(Error::NoReply { requested, tries, late });
                 }
                 ExchangeError::Damage(cause) => return Err(Error::Damaged { requested, tries, cause }),

@@ -22,7 +22,7 @@ mod temperature;
 pub mod write;
 
 pub use discover::{DiscoveredDevice, discover};
-pub use error::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
+pub use error::{Damage, Error, LateReplyError, Refusal, RequestedItem, WrongLength};
 pub use identify::{
     DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,
 };

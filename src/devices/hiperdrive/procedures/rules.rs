@@ -44,7 +44,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionR
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
         match master.read_number(of(base, drive)?) {
             Ok(value) => values.push((base, value)),
-            Err(error) if error.is_unsaid() => {}
+            Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),
         }
     }
@@ -66,7 +66,7 @@ pub fn read_rule(
 ) -> Result<MotionRules, Error> {
     let mut read = |base| match master.read_number(of(base, drive)?) {
         Ok(value) => Ok(Some(value)),
-        Err(error) if error.is_unsaid() => Ok(None),
+        Err(error) if error.is_unavailable() => Ok(None),
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {

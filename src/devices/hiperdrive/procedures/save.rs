@@ -74,7 +74,7 @@ pub fn read_state(
             Ok(position) => {
                 positions.insert(drive.number, position as i32);
             }
-            Err(error) if error.is_unsaid() => {}
+            Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),
         }
     }
@@ -97,7 +97,7 @@ fn read_image(
             }
             // A missing value cannot be stored; texts never are.
             Err(Error::NoPlace { .. } | Error::Unknown(_) | Error::Value { .. } | Error::WriteOnly { .. }) => {}
-            Err(error) if error.is_unsaid() => {}
+            Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),
         }
     }

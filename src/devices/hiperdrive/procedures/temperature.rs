@@ -48,7 +48,7 @@ impl Temperature {
 pub fn temperature(master: &mut Master<'_>, what: Temperature) -> Result<TemperatureReading, Error> {
     let celsius = match master.read_number(what.parameter()?) {
         Ok(celsius) => Some(celsius),
-        Err(error) if error.is_unsaid() => None,
+        Err(error) if error.is_unavailable() => None,
         Err(error) => return Err(error),
     };
     Ok(TemperatureReading { at: master.now(), what, celsius })

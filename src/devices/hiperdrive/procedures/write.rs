@@ -24,7 +24,7 @@ pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
 impl Interrupted {
     /// Returns the change made by the operation if it is unknown how far it got, or `None` if the operation did not
     /// start, for example after cancellation by the user.
-    pub fn unclear(&self) -> Option<String> {
+    pub fn uncertain_write(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
     }
 }
@@ -82,7 +82,7 @@ impl Write for DeviceWrite<'_, '_> {
         if !is_within_a_place(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
-        self.master.shielded(|master| perform(master, op, done))?;
+        self.master.run_uncancellable(|master| perform(master, op, done))?;
         done.carried_out(op.weight());
         Ok(())
     }
@@ -169,7 +169,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     // The time limit depends on the topology.
     topology(master)?;
     master.set(ParameterNumber::SAVE, code)?;
-    let patience = master.patience(ParameterNumber::SAVE, code);
+    let patience = master.max_wait(ParameterNumber::SAVE, code);
     await_idle(master, service, patience)
 }
 
@@ -185,7 +185,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,
-            Err(error) if error.is_unsaid() => -1,
+            Err(error) if error.is_unavailable() => -1,
             Err(error) => return Err(error),
         };
         if waited >= patience {

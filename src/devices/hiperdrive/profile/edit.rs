@@ -54,7 +54,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     }
     writes.sort_by_key(|write| {
         let upper_first = write.number.drive().is_some_and(|drive| upper_first.contains(&drive));
-        write.rank(upper_first)
+        write.sort_key(upper_first)
     });
     let saves = writes.iter().any(|write| write.number.row().is_some_and(|row| row.saved));
     let mut ops: Vec<Op> = writes.into_iter().map(Write::op).collect();
@@ -124,7 +124,7 @@ impl Write {
     }
 
     /// Returns the sort key of a write. The lowest key is written first.
-    fn rank(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
+    fn sort_key(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.base();
         let turn = match (base, self.new) {
             (REQUESTED, 1) => 0,
@@ -176,7 +176,7 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
     if lower >= upper {
         return Err(PlanError::LimitsCrossed { drive, lower, upper });
     }
-    let position = position.zip(device.scale(drive)).map(|(position, old)| rescaled(position, old, new));
+    let position = position.zip(device.scale(drive)).map(|(position, old)| rescale_position(position, old, new));
     if let Some(position) = position {
         if i32::try_from(position).is_err() {
             return Err(PlanError::PositionTooLarge { drive, position });
@@ -192,7 +192,7 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
 
 /// Returns the position of a drive in steps of another scale, which has 256 · numerator / denominator steps per turn.
 /// The result is rounded down, as by the drive.
-fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
+fn rescale_position(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());
     let steps = (i128::from(position) * times).div_euclid(by);

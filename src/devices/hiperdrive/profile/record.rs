@@ -70,12 +70,12 @@ impl HiperdriveProfile {
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
-        profile.mark_mounting();
+        profile.mark_mounting_values();
         profile
     }
 
     /// Marks the items that belong to the mounting, namely the reference of each drive (198), unless already marked.
-    pub fn mark_mounting(&mut self) {
+    pub fn mark_mounting_values(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
             if !self.is_marked(item) {
@@ -86,7 +86,7 @@ impl HiperdriveProfile {
     }
 
     /// Returns whether an item belongs to the mounting, because it is marked or is the reference of a drive.
-    pub fn is_mounting(&self, item: Item) -> bool {
+    pub fn is_mounting_value(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }
 

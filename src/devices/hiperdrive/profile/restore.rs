@@ -25,7 +25,7 @@ impl DeviceState {
     /// Returns the travel of the drive of a parameter, in the steps defined by an image.
     pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
         let Some(drive) = number.drive() else { return Travel::UNKNOWN };
-        Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
+        Travel { family: find_drive(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
     }
 }
 
@@ -77,7 +77,7 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
 pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
-        let (profile, device) = own.variant.zip(drive_at(device, own.number)?.variant)?;
+        let (profile, device) = own.variant.zip(find_drive(device, own.number)?.variant)?;
         (profile != device).then_some(OtherType::Drive { drive: own.number, profile, device })
     });
     whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
@@ -100,7 +100,7 @@ fn check_allowed(
         return Err(PlanError::OtherDevice { profile: of_profile.clone(), device: of_device.clone() });
     }
     for own in &profile.identity.drives {
-        let Some(there) = drive_at(device, own.number) else { continue };
+        let Some(there) = find_drive(device, own.number) else { continue };
         if !own.serial_number.is_empty() && own.serial_number != there.serial_number {
             let (profile, device) = (own.serial_number.clone(), there.serial_number.clone());
             return Err(PlanError::OtherDrive { drive: own.number, profile, device });
@@ -120,7 +120,7 @@ fn is_kept_on_device(
 
 /// Returns whether an item belongs to the mounting of another device or drive.
 fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
-    profile.is_mounting(item) && !is_same_place(profile, device, item)
+    profile.is_mounting_value(item) && !is_same_place(profile, device, item)
 }
 
 /// Returns whether the profile was read from this device and the parameter from this drive.
@@ -136,10 +136,10 @@ fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: It
     let same = |one: &str, other: &str| !one.is_empty() && one == other;
     let serial = |drive: Option<&ProfileDrive>| drive.map_or_else(String::new, |drive| drive.serial_number.clone());
     same(&profile.identity.serial_number, &device.serial_number)
-        && item.0.drive().is_none_or(|drive| same(&serial(profile.drive(drive)), &serial(drive_at(device, drive))))
+        && item.0.drive().is_none_or(|drive| same(&serial(profile.drive(drive)), &serial(find_drive(device, drive))))
 }
 
-fn drive_at(device: &ProfileIdentity, number: DriveNumber) -> Option<&ProfileDrive> {
+fn find_drive(device: &ProfileIdentity, number: DriveNumber) -> Option<&ProfileDrive> {
     device.drives.iter().find(|drive| drive.number == number)
 }
 

@@ -28,7 +28,7 @@ impl Profile for HiperdriveProfile {
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.structures("drives")? {
             let path = entries.path_of("number");
-            let place: u8 = entries.required("number", PLACE)?;
+            let place: u8 = entries.take_required("number", PLACE)?;
             let number =
                 DriveNumber::new(place).ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PLACE })?;
             if identity.drives.iter().any(|drive| drive.number == number) {
@@ -160,11 +160,12 @@ fn text(writer: &mut Writer, name: &str, own: &str) {
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     let path = entries.path_of("category");
-    let category = entries.optional::<String>("category", CATEGORY)?;
+    let category = entries.take_optional::<String>("category", CATEGORY)?;
     let topology = category
         .map(|category| Topology::from_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
     let topology = topology.transpose()?;
-    let mut text = |name: &str| entries.optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
+    let mut text =
+        |name: &str| entries.take_optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     let unknown = entries.rest()?;
@@ -172,8 +173,9 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 }
 
 fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive, ProfileError> {
-    let variant = entries.optional("variant", VARIANT)?.map(Variant::new);
-    let mut text = |name: &str| entries.optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
+    let variant = entries.take_optional("variant", VARIANT)?.map(Variant::new);
+    let mut text =
+        |name: &str| entries.take_optional::<String>(name, AllowedValues::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })

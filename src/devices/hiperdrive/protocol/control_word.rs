@@ -156,12 +156,12 @@ impl ControlWord {
     /// Returns the control word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by
     /// the drive.
     pub const fn hold_present_state(status: StatusWord) -> Self {
-        ControlWord::positioning(status.has(StatusBit::SetpointAcknowledged))
+        ControlWord::position_mode(status.has(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
     pub const fn for_start(status: StatusWord) -> Self {
-        ControlWord::positioning(!status.has(StatusBit::SetpointAcknowledged))
+        ControlWord::position_mode(!status.has(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the speed mode word for standstill: 1409h or 1419h, or 1429h or 1439h for an endless run.
@@ -250,7 +250,7 @@ impl ControlWord {
         !self.has(ControlBit::Enable) || !(jogs || moves)
     }
 
-    const fn positioning(start: bool) -> Self {
+    const fn position_mode(start: bool) -> Self {
         let word = ControlWord::ENABLED.with(ControlBit::NoStop).with(ControlBit::NoPause);
         if start { word.with(ControlBit::Start) } else { word }
     }

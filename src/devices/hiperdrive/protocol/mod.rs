@@ -51,5 +51,5 @@ pub use state::{State, TRANSITIONS, Transition, Trigger};
 pub use status_word::{StatusBit, StatusWord};
 pub use switches::AddressSwitch;
 pub use travel::{StepLimit, Travel};
-pub use value::{Kind, Value, ValueError, nominal};
+pub use value::{Kind, Value, ValueError, nominal_value};
 pub use variant::{VARIANTS, Variant, VariantRow};

@@ -38,7 +38,7 @@ impl ParameterRow {
     }
 
     /// Marks a drive parameter that the adapter or hub stores (manual, 152: sections 3.4 and 4.5; 190: its table row).
-    const fn in_device(self) -> Self {
+    const fn with_device_storage(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }
 
@@ -46,11 +46,11 @@ impl ParameterRow {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
 
-    const fn reaching(self, reach: StepLimit) -> Self {
+    const fn with_step_limit(self, reach: StepLimit) -> Self {
         ParameterRow { reach: Some(reach), ..self }
     }
 
-    const fn slow(self, slow: &'static [SlowValue]) -> Self {
+    const fn with_slow_values(self, slow: &'static [SlowValue]) -> Self {
         ParameterRow { slow, ..self }
     }
 }
@@ -129,7 +129,9 @@ pub const PARAMETERS: &[ParameterRow] = &[
     register(38, "free register 8"),
     register(40, "free register 9"),
     register(42, "free register 10"),
-    read(47, "save and reset", I16, "").written(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None).slow(SAVE_AND_RESET),
+    read(47, "save and reset", I16, "")
+        .written(OneOf(&[-4, -3, -2, -1, 1]), FactoryValue::None)
+        .with_slow_values(SAVE_AND_RESET),
     read(101, "control word", U16, "").written(Any, FactoryValue::Number(0)),
     percent(102, "speed"),
     percent(103, "torque"),
@@ -161,19 +163,19 @@ pub const PARAMETERS: &[ParameterRow] = &[
     text(129, "nominal speed", "rpm"),
     read(REQUESTED, "requested", U8, "")
         .kept(Within(0, 1), FactoryValue::Topology { adapter: 1, hub: 0 })
-        .in_device()
-        .slow(REQUEST),
+        .with_device_storage()
+        .with_slow_values(REQUEST),
     scale(NUMERATOR, "position scale numerator", 256),
     scale(DENOMINATOR, "position scale denominator", 1),
-    read(LOWER, "lower limit", I32, "steps").kept(Any, FactoryValue::Turns(-1)).reaching(StepLimit::Position),
-    read(UPPER, "upper limit", I32, "steps").kept(Any, FactoryValue::Turns(1)).reaching(StepLimit::Position),
+    read(LOWER, "lower limit", I32, "steps").kept(Any, FactoryValue::Turns(-1)).with_step_limit(StepLimit::Position),
+    read(UPPER, "upper limit", I32, "steps").kept(Any, FactoryValue::Turns(1)).with_step_limit(StepLimit::Position),
     scale(SPEED_NUMERATOR, "speed scale numerator", 10),
     scale(SPEED_DENOMINATOR, "speed scale denominator", 1),
     read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), FactoryValue::Number(350)),
-    read(170, "jog 1 step", I32, "steps").written(Any, FactoryValue::Number(4096)).reaching(StepLimit::Step),
+    read(170, "jog 1 step", I32, "steps").written(Any, FactoryValue::Number(4096)).with_step_limit(StepLimit::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
-    read(176, "jog 2 step", I32, "steps").written(Any, FactoryValue::Number(-4096)).reaching(StepLimit::Step),
+    read(176, "jog 2 step", I32, "steps").written(Any, FactoryValue::Number(-4096)).with_step_limit(StepLimit::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
     read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), FactoryValue::Number(1000)),
@@ -181,15 +183,15 @@ pub const PARAMETERS: &[ParameterRow] = &[
     read(RS485_ADDRESS, "RS-485 address", U8, "").kept(Within(0, 253), FactoryValue::Number(1)),
     read(RS485_BAUD, "RS-485 baud rate", U32, "baud")
         .kept(OneOf(&[9600, 19200, 38400]), FactoryValue::Number(38400))
-        .in_device(),
+        .with_device_storage(),
     read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, FactoryValue::Automatic),
     read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), FactoryValue::None),
     read(REFERENCE, "set actual position", I32, "steps")
         .kept(Any, FactoryValue::Number(0))
-        .reaching(StepLimit::Position),
+        .with_step_limit(StepLimit::Position),
     ParameterRow {
         access: Access::Write,
         ..read(RESET, "reset drive", U8, "").written(Within(0, 1), FactoryValue::None)
     }
-    .slow(RESET_DRIVE),
+    .with_slow_values(RESET_DRIVE),
 ];

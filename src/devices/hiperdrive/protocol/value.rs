@@ -123,7 +123,7 @@ impl Kind {
 
 /// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. The number is one if the
 /// value is preceded by an `A`, because it is then in tenths (manual 6.2).
-pub fn nominal(text: &str) -> Option<(f64, usize)> {
+pub fn nominal_value(text: &str) -> Option<(f64, usize)> {
     let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));
     digits.parse::<u32>().ok().map(|number| (f64::from(number) / by, decimals))
 }

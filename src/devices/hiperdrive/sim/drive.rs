@@ -277,7 +277,7 @@ impl Drive {
         if let Some(MotionStart::Job) = self.control.motion_start(self.control, self.status()) {
             self.begin(MotionStart::Job);
         }
-        let torque = effective_torque(self.percents().1);
+        let torque = effective_torque(self.speed_and_torque().1);
         let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
         let weak = wants && torque < self.load.percent;
         let wanted = if weak { AxisSetpoint::Rest } else { self.wanted() };
@@ -299,7 +299,7 @@ impl Drive {
     }
 
     fn wanted(&self) -> AxisSetpoint {
-        let rpm = f64::from(self.word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
+        let rpm = f64::from(self.word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.speed_and_torque().0.min(100)) / 100.0;
         let speed = rpm / 60.0 * TURN;
         let wanted = match self.motion {
             Motion::Rest | Motion::Paused { .. } => AxisSetpoint::Rest,
@@ -309,7 +309,7 @@ impl Drive {
         wanted.with(self.load.defect, self.axis.place())
     }
 
-    const fn percents(&self) -> (u8, u8) {
+    const fn speed_and_torque(&self) -> (u8, u8) {
         match self.motion {
             Motion::Job { jog: Some(Jog { speed, torque }), .. } => (speed, torque),
             _ => (self.out.speed, self.out.torque),
@@ -382,7 +382,7 @@ impl Drive {
 
     fn moves(&mut self, motion: Motion) {
         let before = std::mem::replace(&mut self.motion, motion);
-        let (speed, torque) = self.percents();
+        let (speed, torque) = self.speed_and_torque();
         if speed == 0 || torque == 0 || !self.may_move() {
             self.motion = before;
             return;

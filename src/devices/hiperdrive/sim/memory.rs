@@ -62,14 +62,14 @@ impl Memory {
     }
 
     /// Handles 47 = −2, which restores the last saved values that the adapter or hub itself stores.
-    pub(super) fn recall(&mut self) {
-        copy_own(&self.kept, &mut self.now);
+    pub(super) fn restore_saved(&mut self) {
+        copy_device_parameters(&self.kept, &mut self.now);
     }
 
     /// Handles 47 = −1, which restores the factory settings of the values that the adapter or hub itself stores,
     /// without saving them.
     pub(super) fn reset_device_values(&mut self) {
-        copy_own(&self.factory, &mut self.now);
+        copy_device_parameters(&self.factory, &mut self.now);
     }
 
     /// Restores all factory settings without saving them.
@@ -78,7 +78,7 @@ impl Memory {
     }
 }
 
-fn copy_own(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
+fn copy_device_parameters(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
     let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_kept_by_device());
     to.extend(from.iter().filter(|(number, _)| own(number)));
 }

@@ -199,7 +199,7 @@ impl Station {
         if let Some(request) = image.pkw.filter(|request| *request != self.words.0) {
             self.words.0 = request;
             let answer = self.answer(now, request);
-            self.answers = Some((self.answers_at().unwrap_or(now), answer));
+            self.answers = Some((self.delayed_reply_time().unwrap_or(now), answer));
         }
     }
 
@@ -248,7 +248,7 @@ impl Station {
     }
 
     /// Returns the time at which the last write is answered, if the reply is delayed.
-    pub const fn answers_at(&mut self) -> Option<Moment> {
+    pub const fn delayed_reply_time(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }
 
@@ -291,7 +291,7 @@ impl Station {
             }
             None if row.check(own, value, Travel::UNKNOWN).is_err() => Err(Refused::Value),
             None if own == ParameterNumber::SAVE => {
-                self.keep_or_reset(now, value);
+                self.save_or_reset(now, value);
                 Ok(())
             }
             None => {
@@ -302,7 +302,7 @@ impl Station {
     }
 
     /// Parameter 47 is written.
-    fn keep_or_reset(&mut self, now: Moment, value: i64) {
+    fn save_or_reset(&mut self, now: Moment, value: i64) {
         if value == -4 {
             self.reset(now);
             self.busy_until = now + self.resets;
@@ -319,7 +319,7 @@ impl Station {
         let each = |memory: &mut Memory| match value {
             1 => save(memory),
             -1 => memory.reset_device_values(),
-            -2 => memory.recall(),
+            -2 => memory.restore_saved(),
             -3 => {
                 memory.forget();
                 save(memory);

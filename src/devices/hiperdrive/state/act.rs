@@ -53,7 +53,7 @@ impl Unit {
                 self.moves.stop();
                 self.submit(HiperdriveJob::Give, services);
             }
-            HiperdriveAction::Drive(motor) => self.drive_by(motor, services),
+            HiperdriveAction::Drive(motor) => self.apply_motor_action(motor, services),
             HiperdriveAction::Axis(action) => self.apply_axis_action(action, services),
             HiperdriveAction::Save(path) => self.save(path, services),
         }
@@ -82,7 +82,7 @@ impl Unit {
     }
 
     /// Moves a drive, or refuses with a reason if the drive may not move.
-    fn drive_by(&mut self, motor: Motor, services: &mut Services) {
+    fn apply_motor_action(&mut self, motor: Motor, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
             Motor::JogHold => return self.moves.hold(),

@@ -266,7 +266,7 @@ impl Axis {
         self.chain.end().filter(|step| *step < self.step)
     }
 
-    pub fn reached(&self, step: AxisStep) -> Reached {
+    pub fn step_status(&self, step: AxisStep) -> Reached {
         let is_shown = step == self.step && self.over.is_none();
         match step {
             AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => {
@@ -282,7 +282,7 @@ impl Axis {
 
     /// Returns whether the supply was off, the saved values are present, and the axis has not moved.
     pub fn survived(&self) -> bool {
-        self.power.is_some_and(Power::is_survived)
+        self.power.is_some_and(Power::has_survived_power_cycle)
     }
 
     fn origin(&self, seen: &DriveFacts) -> Origin {

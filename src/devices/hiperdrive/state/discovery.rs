@@ -81,7 +81,7 @@ impl fmt::Debug for DiscoveryStub {
 ///
 /// # Errors
 /// The request could not be sent.
-fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
+fn broadcast_discovery() -> Result<Vec<DiscoveredDevice>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut shout = UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone())?;
     discover(&mut shout, &*clock, &CancelToken::default())
@@ -116,7 +116,7 @@ impl Finder for DiscoveryFinder {
                 let services = context.services();
                 let given = services.world.given.get::<DiscoveryStub>().cloned();
                 services.tasks.run("discover", move || {
-                    let found = given.map_or_else(ask_all, |discover| (discover.0)());
+                    let found = given.map_or_else(broadcast_discovery, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
                     let found = found.map_err(|error| words::device(&error));
                     Action::Done(Done::finder::<DiscoveryFinder>(Unit::TAB, DiscoveryReplies { number, found }))

@@ -139,7 +139,7 @@ impl Unit {
     }
 
     /// Processes the position of a drive and, if the drive is selected, records it.
-    fn see(&mut self, reading: DriveReading) {
+    fn observe(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
         if drive == self.drive() {
@@ -157,13 +157,13 @@ impl Unit {
 }
 
 impl SessionEvents for Unit {
-    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         if dropped > 0 {
             self.record.lose(dropped);
         }
         for sample in samples {
             match sample {
-                Sample::Position(reading) => self.see(reading),
+                Sample::Position(reading) => self.observe(reading),
                 Sample::Temperature(reading) => self.record.add_temperature(reading),
             }
         }
@@ -210,7 +210,7 @@ impl SessionEvents for Unit {
             HiperdriveOutput::Hello(identity) => {
                 self.session.just_connected = false;
                 // The connected drives may have changed since.
-                if self.is_another(&identity) || self.survey.is_none() || !self.has_polled {
+                if self.is_different_device(&identity) || self.survey.is_none() || !self.has_polled {
                     self.submit(HiperdriveJob::Survey, services);
                 }
             }
@@ -227,7 +227,7 @@ impl SessionEvents for Unit {
                 }
             }
             HiperdriveOutput::Check(lines) => self.check = Some(words::check(&lines)),
-            HiperdriveOutput::Position(reading) => self.see(reading),
+            HiperdriveOutput::Position(reading) => self.observe(reading),
             HiperdriveOutput::Value(number, value) => {
                 if let Some(survey) = &mut self.survey {
                     survey.values.insert(number, value);
@@ -275,14 +275,14 @@ impl SessionEvents for Unit {
         self.forget_plan();
     }
 
-    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             EarlyEnd::Failed(_) => self.moves.stop(),
             // Values required before a controlled drive moves are read, however the job ended.
             EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             EarlyEnd::Lost => {}
         }
-        let is_told = self.handle_cut_write(how, texts);
+        let is_told = self.handle_interrupted_write(how, texts);
         let begun = matches!(self.review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
         self.unsaved.ended(begun);
         is_told
@@ -293,7 +293,7 @@ impl SessionEvents for Unit {
     }
 
     /// Ends every motion first.
-    fn line_ends(&mut self) {
+    fn prepare_release(&mut self) {
         self.moves.end();
     }
 }

@@ -44,7 +44,7 @@ impl DeviceType for Unit {
         unit
     }
 
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

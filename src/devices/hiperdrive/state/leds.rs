@@ -69,7 +69,7 @@ impl Leds {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
 
-    pub const fn subject(&self) -> LedSubject {
+    pub const fn led_subject(&self) -> LedSubject {
         match (self.hub, self.s3) {
             (false, _) => LedSubject::Adapter,
             (true, 0) => LedSubject::Drives,
@@ -80,7 +80,7 @@ impl Leds {
     /// Sets the device and the position of S3. An LED whose state becomes impossible is switched off.
     pub fn look_at(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
-        if self.subject().row(self.drives).is_none() {
+        if self.led_subject().row(self.drives).is_none() {
             self.drives = DriveLedState::Off;
         }
     }
@@ -88,7 +88,7 @@ impl Leds {
     pub fn click(&mut self, lamp: Led) {
         match lamp {
             Led::Drives => {
-                let lights: Vec<DriveLedState> = self.subject().rows().iter().map(|row| row.light).collect();
+                let lights: Vec<DriveLedState> = self.led_subject().rows().iter().map(|row| row.light).collect();
                 self.drives = next(&lights, self.drives);
             }
             Led::Bus(NetworkLed::Module) => self.module = next(&BUS, self.module),
@@ -99,7 +99,7 @@ impl Leds {
 
     pub fn meaning_of(&self, lamp: Led) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
-            Led::Drives => drives(self.subject(), self.drives),
+            Led::Drives => drives(self.led_subject(), self.drives),
             Led::Bus(lamp) => bus(lamp, if lamp == NetworkLed::Module { self.module } else { self.network }),
             Led::Port => port(self.port),
         };
@@ -220,7 +220,7 @@ mod tests {
     fn led_texts_match_the_protocol_tables() {
         for (hub, s3) in [(false, 0), (true, 0), (true, 3)] {
             let mut leds = Leds { hub, s3, ..Leds::default() };
-            for row in leds.subject().rows() {
+            for row in leds.led_subject().rows() {
                 leds.drives = row.light;
                 let said = leds.meaning_of(Led::Drives);
                 same(&said.meaning, row.meaning);
@@ -247,7 +247,7 @@ mod tests {
             let mut seen = Vec::new();
             for _ in 0..lights {
                 leds.click(Led::Drives);
-                assert!(leds.subject().row(leds.drives).is_some() && !seen.contains(&leds.drives));
+                assert!(leds.led_subject().row(leds.drives).is_some() && !seen.contains(&leds.drives));
                 seen.push(leds.drives);
             }
             leds.click(Led::Drives);
@@ -269,10 +269,10 @@ mod tests {
     fn a_state_missing_on_another_led_becomes_off() {
         let mut leds = Leds { drives: DriveLedState::Alternating, ..Leds::of(Topology::Hub8) };
         leds.look_at(true, 9);
-        assert_eq!((leds.s3, leds.subject(), leds.drives), (8, LedSubject::Drive, DriveLedState::Off));
+        assert_eq!((leds.s3, leds.led_subject(), leds.drives), (8, LedSubject::Drive, DriveLedState::Off));
         leds.drives = DriveLedState::Red;
         leds.look_at(false, 8);
-        assert_eq!((leds.subject(), leds.drives), (LedSubject::Adapter, DriveLedState::Red));
+        assert_eq!((leds.led_subject(), leds.drives), (LedSubject::Adapter, DriveLedState::Red));
         assert!(!Leds::of(Topology::Adapter).hub);
     }
 }

@@ -29,7 +29,7 @@ impl DeviceModel for Unit {
         // Values read over an earlier link are void.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
         let motion = opened.aside.motion.clone();
-        self.session.adopt_line(opened, services);
+        self.session.attach_connection(opened, services);
         self.request_temperatures();
         if let Some(line) = self.session.line() {
             services.brakes.add(Box::new(motion), line.stopper());

@@ -242,8 +242,8 @@ impl DriveMotion {
     }
 
     /// Requires the limits of a drive to be confirmed before it moves.
-    pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
-        self.limits.entry(drive).or_default().unconfirm();
+    pub(super) fn require_confirmation(&mut self, drive: DriveNumber) {
+        self.limits.entry(drive).or_default().require_confirmation();
         if let Some(motion) = &self.motion {
             motion.revoke_limits_confirmation(drive);
         }
@@ -364,7 +364,7 @@ impl DriveMotion {
 
     /// Returns whether data have been arriving for long enough to be valid. The first packets of a connection contain
     /// no valid positions.
-    pub fn is_heard(&self) -> bool {
+    pub fn is_data_valid(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
         self.view.open && link.interval.saturating_mul(packets) >= ARRIVAL_TIME
@@ -407,12 +407,12 @@ impl DriveMotion {
     }
 
     /// Returns the effort of a running jog, if any.
-    pub fn jogs_with(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+    pub fn running_jog_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_effort(drive).filter(|_| self.is_jog(drive))
     }
 
     /// Returns the effort of a running move, step or run, if any.
-    pub fn moves_with(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+    pub fn running_move_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_effort(drive).filter(|_| !self.is_jog(drive))
     }
 

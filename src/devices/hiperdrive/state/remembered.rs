@@ -50,7 +50,7 @@ impl DriveMemory for Unit {
             }
         }
         let elsewhere = kept.newly_marked(&before.kept);
-        elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.unconfirm(drive));
+        elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.require_confirmation(drive));
         self.exchanged = Some(ExchangedValues { kept: next.clone(), ..self.remembered_values() });
         (next != *kept).then_some(next)
     }
@@ -58,7 +58,7 @@ impl DriveMemory for Unit {
     fn lock_by(&mut self, found: &RememberedDrives) {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.newly_marked(&before.kept).into_iter().filter_map(DriveNumber::new) {
-            self.moves.unconfirm(drive);
+            self.moves.require_confirmation(drive);
             // It is not a mark of this session.
             before.unconfirmed.insert(drive);
         }

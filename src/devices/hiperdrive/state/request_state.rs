@@ -176,7 +176,7 @@ impl Unit {
             let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
             Some(text.with_text("unit", TEXTS.text(own.unit())))
         };
-        ruler.measures().filter(wanted).filter_map(place).collect()
+        ruler.available_measures().filter(wanted).filter_map(place).collect()
     }
 
     /// Formats a range between two positions with the unit.
@@ -195,7 +195,7 @@ impl Unit {
     }
 
     /// Returns the states that a single control word can reach from the present state; none without control.
-    pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
+    pub fn reachable_states(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
         for row in state.transitions().filter(|row| row.word.is_some()) {
@@ -213,7 +213,7 @@ impl Unit {
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// Returns the request that leads a drive to a [`reachable`](Self::reachable) state, or `None` if no request does.
+    /// Returns the request that leads a drive to a [`reachable_states`](Self::reachable_states) state, or `None` if no request does.
     /// A fault is left by acknowledging it, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {

@@ -38,7 +38,7 @@ impl Reviewable for Hiperdrive {
         operation_texts(prepared, op, |_| None)
     }
 
-    fn leaves_mounting(prepared: &Prepared) -> bool {
+    fn skips_mounting_values(prepared: &Prepared) -> bool {
         !prepared.mounting_left.is_empty()
     }
 
@@ -63,7 +63,7 @@ impl Reviewable for Hiperdrive {
         texts
     }
 
-    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
+    fn requirements(change: &Change, prepared: &Prepared) -> Vec<Text> {
         let mut needs = vec![TEXTS.text("hd_review.needs_stop")];
         let resets = |op: &Op| {
             matches!(op, Op::Service(Service::Reset | Service::Factory | Service::FactoryAll | Service::Acknowledge(_)))

@@ -151,7 +151,7 @@ impl Unit {
     fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,
-            Value::Text(text) => return words::nominal(number, text),
+            Value::Text(text) => return words::nominal_value(number, text),
         };
         let drive = number.drive();
         match (number.base(), drive) {

@@ -39,7 +39,7 @@ impl Ruler {
         }
     }
 
-    pub fn measures(self) -> impl Iterator<Item = PositionUnit> {
+    pub fn available_measures(self) -> impl Iterator<Item = PositionUnit> {
         PositionUnit::ALL.into_iter().filter(move |measure| self.steps_per_measure(*measure).is_some())
     }
 
@@ -72,7 +72,7 @@ impl Ruler {
     }
 
     /// Converts the steps of a position to another scale. The result may not fit in 32 bits.
-    pub fn rescaled(self, steps: i64, to: PositionScale) -> i64 {
+    pub fn rescale_position(self, steps: i64, to: PositionScale) -> i64 {
         // Two 32-bit products of 16-bit numbers and a 33-bit one.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());
         let below = i128::from(to.denominator()) * i128::from(self.scale.numerator());
@@ -100,8 +100,8 @@ mod tests {
         assert_eq!(of(SPINDLE, 163_840, PositionUnit::Millimetres), 10.0);
         assert_eq!(of(hundredths(), 1234, PositionUnit::Millimetres), 12.34);
         assert_eq!(Ruler::FACTORY.of(1, PositionUnit::Millimetres), None);
-        assert_eq!(Ruler::FACTORY.measures().count(), 3);
-        assert_eq!(SPINDLE.measures().count(), 4);
+        assert_eq!(Ruler::FACTORY.available_measures().count(), 3);
+        assert_eq!(SPINDLE.available_measures().count(), 4);
     }
 
     #[test]
@@ -131,10 +131,13 @@ mod tests {
     fn a_position_is_rescaled_to_another_scale() {
         let to = PositionScale::new(400, 256).unwrap();
         // 511 turns: 33 488 896 of 65536 each are 204 400 of 400 each.
-        assert_eq!(SPINDLE.rescaled(33_488_896, to), 204_400);
-        assert_eq!(SPINDLE.rescaled(-33_488_896, to), -204_400);
-        assert_eq!(hundredths().rescaled(204_400, PositionScale::FACTORY), 33_488_896);
+        assert_eq!(SPINDLE.rescale_position(33_488_896, to), 204_400);
+        assert_eq!(SPINDLE.rescale_position(-33_488_896, to), -204_400);
+        assert_eq!(hundredths().rescale_position(204_400, PositionScale::FACTORY), 33_488_896);
         // Half a step rounds away from zero: 82 of 65536 are 0.5005 of 400.
-        assert_eq!((SPINDLE.rescaled(82, to), SPINDLE.rescaled(81, to), SPINDLE.rescaled(-82, to)), (1, 0, -1));
+        assert_eq!(
+            (SPINDLE.rescale_position(82, to), SPINDLE.rescale_position(81, to), SPINDLE.rescale_position(-82, to)),
+            (1, 0, -1)
+        );
     }
 }

@@ -54,7 +54,7 @@ impl Unit {
     pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
         let view = self.moves.drive(drive);
         let actual = self.actual(drive);
-        let is_heard = !self.moves.is_open() || self.moves.is_heard();
+        let is_heard = !self.moves.is_open() || self.moves.is_data_valid();
         let position = actual.filter(|own| own.status.is_present() && is_heard).map(|own| own.position);
         let errors = self.drive_status(drive).filter(|own| own.faults > 0);
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
@@ -67,7 +67,7 @@ impl Unit {
             moves: self.is_moving() || self.moves.is_under_way(),
             held: self.moves.held_motion(drive),
             actual,
-            actual_at: self.actual_at(drive),
+            actual_at: self.last_report_time(drive),
             position,
             values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
             unsaved: self.unsaved_values(drive),

@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain as words;
 impl Unit {
     /// Adopts a reading of the device. Edits are kept unless they belong to another device.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        if self.is_another(&survey.identity) {
+        if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
@@ -59,7 +59,7 @@ impl Unit {
             scales.is_some_and(|(before, now)| before != now)
         };
         for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
-            self.moves.unconfirm(drive);
+            self.moves.require_confirmation(drive);
         }
     }
 
@@ -149,7 +149,7 @@ impl Unit {
     }
 
     /// Returns whether the device is different from the one read before.
-    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+    pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| {
             (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
         })

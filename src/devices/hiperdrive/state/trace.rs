@@ -21,7 +21,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let name: Vec<Text> = frame.command.name().map(plain).into_iter().collect();
     let is_reply = entry.direction == Direction::Received;
     if is_reply && frame.status != EncapsulationStatus::OK {
-        return reported(plain(frame.status));
+        return reported_fault(plain(frame.status));
     }
     if frame.command != Command::SEND_RR_DATA {
         return name.into();
@@ -39,12 +39,12 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     }
     match Reply::parse(message) {
         Ok(reply) if reply.status == GeneralStatus::OK => vec![TEXTS.text("hd_trace.done")].into(),
-        Ok(reply) => reported(plain(reply.status)),
+        Ok(reply) => reported_fault(plain(reply.status)),
         Err(error) => broken(error),
     }
 }
 
-fn reported(text: Text) -> Explained {
+fn reported_fault(text: Text) -> Explained {
     Explained { meaning: vec![text], fault: Some(TraceFault::Reported) }
 }
 

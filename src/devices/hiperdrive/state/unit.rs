@@ -195,7 +195,7 @@ impl Unit {
 
     /// Returns the time of the last report of a drive on the session's clock, or `None` if the report was only part of
     /// a complete reading.
-    pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
+    pub(super) fn last_report_time(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
             Some(own) => own.received_at,
             None => self.readings.get(&drive).map(|reading| reading.at),

@@ -36,9 +36,9 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
 }
 
 /// Formats a string as a number with its unit, or returns `None` if the string is not a number.
-pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
+pub fn nominal_value(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
-    let (value, decimals) = protocol::nominal(text)?;
+    let (value, decimals) = protocol::nominal_value(text)?;
     Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", plain(unit)))
 }
 

@@ -8,7 +8,7 @@ use super::unsaved::Unsaved;
 use super::words;
 use crate::app::review::OperationTexts;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, some, unsaved_edits_remark};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared};
 use crate::devices::hiperdrive::profile::{
@@ -56,7 +56,7 @@ impl HasMemory for Unit {
     }
 
     fn carried_out(&mut self, _: &Committed, _: &mut Services) {
-        if let Some(prepared) = self.session.review.as_ref().and_then(Review::writing) {
+        if let Some(prepared) = self.session.review.as_ref().and_then(Review::plan_in_progress) {
             self.unsaved.done(&prepared.plan);
         }
     }
@@ -90,10 +90,10 @@ impl HasProfile for Unit {
     }
 
     fn remarks(&self) -> Vec<Text> {
-        some(&self.marks(), words::mark)
+        truncated_list(&self.marks(), words::mark)
     }
 
-    fn known_body(&self) -> Option<KnownProfile> {
+    fn last_read_profile(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
         // Values that the device refuses are in no profile; damaged ones should have been in this one.
         let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();

@@ -18,7 +18,7 @@ use crate::devices::hiperdrive::state::axis::{
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
+    button, button_with_reason, card, card_with, enabled_button, paragraph, primary_button, row, severity, split,
 };
 use crate::ui::widgets::{StepRow as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
@@ -60,7 +60,7 @@ impl AxisPanel<'_> {
         actions: &mut Vec<Action>,
     ) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
-        if allowed_button(ui, theme, &allowed, icon, word).clicked() {
+        if button_with_reason(ui, theme, &allowed, icon, word).clicked() {
             self.push(actions, Run::Press(own));
         }
     }
@@ -120,7 +120,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
         // Before the list: in a low window it is visible without scrolling.
         let allowed = unit.check_can_set_up();
         ui.horizontal(|ui| {
-            if primary(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
+            if primary_button(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
                 actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
@@ -143,7 +143,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
 
 fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let line = |step: AxisStep| {
-        let reached = shown.axis.reached(step);
+        let reached = shown.axis.step_status(step);
         let state = match reached {
             Reached::Done => StepState::Done,
             Reached::Now => StepState::Waiting,
@@ -159,7 +159,7 @@ fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         Line {
             title: theme.words(&words::title(step)),
             state,
-            word: theme.words(&words::reached(reached)),
+            word: theme.words(&words::step_status(reached)),
             note: found.map(|text| with_nonbreaking_spaces(theme.words(&text))).unwrap_or_default(),
             ..Line::default()
         }
@@ -174,7 +174,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     if shown.looked_at.is_zero() {
         ui.scroll_to_cursor(Some(egui::Align::TOP));
     }
-    if let Err(left) = Axis::may_leave(shown.looked_at) {
+    if let Err(left) = Axis::check_step_settled(shown.looked_at) {
         ui.ctx().request_repaint_after(left);
     }
     let place = AxisStep::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
@@ -230,7 +230,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries
 }
 
 fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         crate::ui::controls::fill(ui);
         let position = shown.seen.position.map_or_else(
             || say(theme, "hd_axis.none"),
@@ -254,7 +254,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
 /// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled, which stops the motion.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
-    let settled = Axis::may_leave(shown.looked_at).is_ok();
+    let settled = Axis::check_step_settled(shown.looked_at).is_ok();
     let step = axis.step();
     let allowed = axis.check_can_continue(seen);
     ui.horizontal_wrapped(|ui| {
@@ -268,7 +268,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
         }
         let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right_ui(ui, |ui| {
-            if primary(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
+            if primary_button(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
         });
@@ -279,7 +279,7 @@ fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-        let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.can_skip(shown.seen);
+        let allowed = Axis::check_step_settled(shown.looked_at).is_ok() && shown.axis.can_skip(shown.seen);
         if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {
             shown.push(actions, Run::Skip);
         }

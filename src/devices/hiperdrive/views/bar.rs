@@ -7,7 +7,7 @@ use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, message_label, name, paragraph};
+use crate::ui::controls::{button_with_reason, message_label, name, paragraph};
 use crate::ui::stop_debounce::{goes_down, means_motion, press_time};
 use crate::ui::{Theme, icons};
 
@@ -28,7 +28,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
                     false => ("hd_bar.take", unit.check_can_take_control(), Hiperdrive::Take),
                 };
                 let icon = if unit.moves.is_open() { icons::PLUGS } else { icons::PLUGS_CONNECTED };
-                if allowed_button(ui, theme, &allowed, icon, &say(theme, word)).clicked() {
+                if button_with_reason(ui, theme, &allowed, icon, &say(theme, word)).clicked() {
                     actions.push(Action::device(id, act));
                 }
                 if !is_hub {
@@ -63,7 +63,7 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let (palette, active) = (theme.palette, studio.can_stop_motion());
     let word = theme.say("hd_bar.stop");
     let (ink, fill) = if active { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
-    let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.strong(theme.sizes.section)).color(ink);
+    let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.bold_font(theme.sizes.section)).color(ink);
     let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
     // Pressing down counts: a stop does not wait for the release.
     let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP, button)).inner;
@@ -115,7 +115,7 @@ fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (Dri
     let name = theme.words(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();
     let ink = if is_shown { palette.text } else { palette.muted };
-    let font = theme.strong(theme.sizes.body);
+    let font = theme.bold_font(theme.sizes.body);
     let mut label = egui::text::LayoutJob::default();
     label.append(&drive.get().to_string(), 0.0, egui::TextFormat::simple(font.clone(), ink.into()));
     label.append(sign, 6.0, egui::TextFormat::simple(font, colour.into()));

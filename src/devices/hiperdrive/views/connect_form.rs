@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::state::{
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segments, typed};
+use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segmented_control, typed};
 use crate::ui::{Theme, icons};
 
 pub(crate) struct HiperdriveConnectForm;
@@ -32,7 +32,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
             (HiperdriveLinkKind::Network, "connect.hd_network"),
             (HiperdriveLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.kind, ways);
+        segmented_control(ui, theme, &mut form.kind, ways);
         ui.add_space(theme.space.between);
         match form.kind {
             HiperdriveLinkKind::Virtual => simulated_ui(ui, theme, form),

@@ -69,7 +69,7 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action
             ("hd_device.date", &identity.production_date),
             ("hd_device.version", &identity.version),
         ] {
-            row(ui, theme, &say(theme, label), theme.mono(value));
+            row(ui, theme, &say(theme, label), theme.monospace(value));
         }
     });
 }
@@ -86,13 +86,13 @@ fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         for drive in &identity.drives {
             ui.horizontal_wrapped(|ui| {
                 ui.label(theme.heading(drive.number.get().to_string()));
-                ui.label(theme.mono(&drive.name));
+                ui.label(theme.monospace(&drive.name));
                 let id = if drive.requested { "hd_drives.requested" } else { "hd_drives.not_requested" };
                 ui.label(theme.caption(say(theme, id)));
             });
-            row(ui, theme, &say(theme, "hd_device.serial"), theme.mono(&drive.serial_number));
-            row(ui, theme, &say(theme, "hd_device.version"), theme.mono(&drive.version));
-            row(ui, theme, &say(theme, "hd_device.article"), theme.mono(&drive.article_number));
+            row(ui, theme, &say(theme, "hd_device.serial"), theme.monospace(&drive.serial_number));
+            row(ui, theme, &say(theme, "hd_device.version"), theme.monospace(&drive.version));
+            row(ui, theme, &say(theme, "hd_device.article"), theme.monospace(&drive.article_number));
         }
         let places = identity.topology.drives();
         let taken = identity.drives.len();

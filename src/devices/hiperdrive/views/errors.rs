@@ -52,7 +52,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
             let words = explain::error(*code);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad));
-                ui.label(theme.mono(format!("{:04X}", code.code())));
+                ui.label(theme.monospace(format!("{:04X}", code.code())));
                 paragraph(ui, theme.words(&words.name));
             });
             paragraph(ui, theme.label(theme.words(&words.cause)));
@@ -78,21 +78,26 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         };
         let names = ["hd_health.error_word", "hd_health.motion_status", "hd_health.communication"];
         for (name, word) in names.into_iter().zip(status.words) {
-            row(ui, theme, &say(theme, name), theme.mono(format!("0x{word:04X}  {}", say(theme, com_word(word)))));
+            row(
+                ui,
+                theme,
+                &say(theme, name),
+                theme.monospace(format!("0x{word:04X}  {}", say(theme, com_status_id(word)))),
+            );
         }
-        row(ui, theme, &say(theme, "hd_health.faults"), theme.mono(status.faults.to_string()));
-        row(ui, theme, &say(theme, "hd_health.temperature"), theme.mono(format!("{} °C", status.temperature)));
+        row(ui, theme, &say(theme, "hd_health.faults"), theme.monospace(status.faults.to_string()));
+        row(ui, theme, &say(theme, "hd_health.temperature"), theme.monospace(format!("{} °C", status.temperature)));
         if let Some(whole) = &unit.status {
-            row(ui, theme, &say(theme, "hd_health.device"), theme.mono(format!("{} °C", whole.temperature)));
+            row(ui, theme, &say(theme, "hd_health.device"), theme.monospace(format!("{} °C", whole.temperature)));
             let volts = theme.number(whole.supply_tenths as f64 / 10.0, 1);
-            row(ui, theme, &say(theme, "hd_health.supply"), theme.mono(format!("{volts} V")));
+            row(ui, theme, &say(theme, "hd_health.supply"), theme.monospace(format!("{volts} V")));
         }
         paragraph(ui, theme.caption(say(theme, "hd_health.words")));
     });
 }
 
 /// Returns the meaning of a value of parameters 116 to 118 (reference 4).
-const fn com_word(word: u16) -> &'static str {
+const fn com_status_id(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",
         0xFFFF => "hd_health.no_answer",

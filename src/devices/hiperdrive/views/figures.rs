@@ -42,21 +42,26 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             return;
         }
         let milliseconds = theme.number(link.interval.as_secs_f64() * 1e3, 1);
-        row(ui, theme, &say(theme, "hd_link.interval"), theme.mono(format!("{milliseconds} ms")));
+        row(ui, theme, &say(theme, "hd_link.interval"), theme.monospace(format!("{milliseconds} ms")));
         let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
         row(ui, theme, &say(theme, "hd_link.priority"), say(theme, priority));
-        row(ui, theme, &say(theme, "hd_link.packets"), theme.mono(format!("{} → · ← {}", link.sent, link.received)));
+        row(
+            ui,
+            theme,
+            &say(theme, "hd_link.packets"),
+            theme.monospace(format!("{} → · ← {}", link.sent, link.received)),
+        );
         let bad =
             [("hd_link.missed", link.missed), ("hd_link.stale", link.stale), ("hd_link.malformed", link.malformed)];
         for (id, count) in bad {
             let ink = if count == 0 { theme.palette.text } else { theme.palette.warn };
-            row(ui, theme, &say(theme, id), theme.mono(count.to_string()).color(ink));
+            row(ui, theme, &say(theme, id), theme.monospace(count.to_string()).color(ink));
         }
         row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.words(&explain::parameter_words(view)));
         if let Some((least, greatest)) = link.intervals.range_us() {
             let off =
                 TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
-            row(ui, theme, &say(theme, "hd_link.jitter"), theme.mono(theme.words(&off)));
+            row(ui, theme, &say(theme, "hd_link.jitter"), theme.monospace(theme.words(&off)));
         }
         histogram(ui, theme, &view.link.intervals);
         paragraph(ui, theme.caption(say(theme, "hd_link.words")));

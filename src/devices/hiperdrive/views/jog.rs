@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{allowed_button, card, folding_card, paragraph, show_error_below};
+use crate::ui::controls::{button_with_reason, card, folding_card, paragraph, show_error_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 const PAD: f32 = 56.0;
@@ -25,7 +25,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         ui.add_space(theme.space.inside);
         let drafts = &mut view.jog_effort;
         let drive = unit.drive();
-        let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
+        let own = (unit.moves.jog_effort(drive), unit.moves.running_jog_effort(drive), drafts);
         let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
         let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
@@ -47,7 +47,7 @@ pub(super) fn step_card_ui(
         let allowed = &allowed.clone().and_then(|()| forms::ensure_entered(&view.step));
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if allowed_button(ui, theme, allowed, "", &say(theme, id)).clicked() {
+                if button_with_reason(ui, theme, allowed, "", &say(theme, id)).clicked() {
                     match forms::step(unit, &view.step, unit.measure, sign) {
                         Ok(by) => {
                             view.step_problem = None;

@@ -60,7 +60,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
             let (icon, ink) = severity(theme, meaning.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, RichText::new(theme.words(&meaning.meaning)).font(theme.strong(theme.sizes.body)));
+                paragraph(ui, RichText::new(theme.words(&meaning.meaning)).font(theme.bold_font(theme.sizes.body)));
             });
             paragraph(ui, theme.label(theme.words(&meaning.remedy)));
         });
@@ -85,7 +85,7 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
         Led::Bus(NetworkLed::Network) => say(theme, "hd_led.what_network"),
         Led::Port => say(theme, "hd_led.what_port"),
     };
-    let strong = theme.strong(theme.sizes.body);
+    let strong = theme.bold_font(theme.sizes.body);
     let named = painter.text(text, Align2::LEFT_BOTTOM, lamp.name(), strong, theme.palette.text.into());
     let caption = FontId::proportional(theme.sizes.caption);
     let beside = named.right_bottom() + vec2(theme.space.between, -1.0);

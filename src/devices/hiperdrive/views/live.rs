@@ -59,20 +59,20 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         return;
     }
     row(ui, theme, &say(theme, "hd_live.state"), RichText::new(word).color(colour));
-    row(ui, theme, &say(theme, "hd_effort.speed"), theme.mono(speed));
+    row(ui, theme, &say(theme, "hd_effort.speed"), theme.monospace(speed));
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     if let Some(target) = target {
         row(
             ui,
             theme,
             &say(theme, "hd_live.target"),
-            theme.mono(format!("{target} {}", say(theme, unit.measure.unit()))),
+            theme.monospace(format!("{target} {}", say(theme, unit.measure.unit()))),
         );
     }
     if ruler.scale == PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);
-        row(ui, theme, &theme.say("live.turns"), theme.mono(turn.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.mono(step.to_string()));
+        row(ui, theme, &theme.say("live.turns"), theme.monospace(turn.to_string()));
+        row(ui, theme, &theme.say("live.step"), theme.monospace(step.to_string()));
     }
     raw_row(ui, theme, actual.position.to_string());
 }

@@ -128,7 +128,7 @@ impl TypedDeviceView for HiperdriveView {
             frame.show(ui, |ui| parameters::page_ui(ui, theme, unit, &mut view.parameters, actions));
             return;
         }
-        page::scrolling(ui, theme, (unit.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (unit.session.id, page.place()), |ui| match page {
             // Each drive has its own entries, with their own undo.
             Page::Motion => {
                 let own = &mut view.drives.entry(drive).or_default().motion;

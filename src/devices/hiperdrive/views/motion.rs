@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
+    button_with_reason, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
     options, paragraph, row, show_error_below, text_entry, two_columns,
 };
 use crate::ui::stop_debounce::{goes_down, means_motion, press_time};
@@ -91,7 +91,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
 fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
-        theme.sunken().show(ui, |ui| {
+        theme.sunken_frame().show(ui, |ui| {
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
@@ -104,9 +104,9 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
                     let places = unit.position_texts(drive, steps);
                     places.iter().map(|place| theme.words(place)).collect::<Vec<_>>().join("   ")
                 });
-                row(ui, theme, &say(theme, "hd_limits.lower"), theme.mono(low));
-                row(ui, theme, &say(theme, "hd_limits.upper"), theme.mono(high));
-                if allowed_button(
+                row(ui, theme, &say(theme, "hd_limits.lower"), theme.monospace(low));
+                row(ui, theme, &say(theme, "hd_limits.upper"), theme.monospace(high));
+                if button_with_reason(
                     ui,
                     theme,
                     &unit.check_can_confirm(drive),
@@ -141,7 +141,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
         let present = actual.map(|actual| actual.status.state());
         let names = State::ALL.map(|state| theme.words(&explain::state(state)));
         let open = unit.moves.is_open();
-        let reachable: Vec<State> = if open { unit.reachable(drive) } else { Vec::new() };
+        let reachable: Vec<State> = if open { unit.reachable_states(drive) } else { Vec::new() };
         let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| theme.words(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
         if let Some(act) = state_machine(ui, theme, &machine).and_then(Unit::leads_to) {
@@ -197,7 +197,7 @@ fn to_position_ui(
         ui,
         theme,
         unit,
-        (unit.moves.move_effort(drive), unit.moves.moves_with(drive), drafts),
+        (unit.moves.move_effort(drive), unit.moves.running_move_effort(drive), drafts),
         &[],
         Motor::MoveEffort,
         actions,
@@ -206,14 +206,15 @@ fn to_position_ui(
     let allowed = effort.and(unit.may_move(drive));
     let can_go = allowed.clone().and_then(|()| forms::ensure_entered(&view.target));
     ui.horizontal_wrapped(|ui| {
-        if allowed_button(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
+        if button_with_reason(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
             view.target_problem = forms::target(unit, &view.target, unit.measure)
                 .map(|target| motor(actions, id, Motor::Move { target }))
                 .err();
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
-                let response = allowed_button(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
+                let response =
+                    button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // It replaces the pause button: a hasty second click was meant for that.
                 if response.clicked() && !means_motion(ui.ctx(), false, press_time(ui, pressed)) {
@@ -242,7 +243,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
         for (direction, word) in ways {
-            if allowed_button(ui, theme, allowed, "", &say(theme, word)).clicked() {
+            if button_with_reason(ui, theme, allowed, "", &say(theme, word)).clicked() {
                 motor(actions, id, Motor::Run { direction, end });
             }
         }
@@ -402,7 +403,7 @@ pub(super) fn length_ui(
     let mut measure = unit.measure;
     entry(ui, theme, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
-        let measures = ruler.measures().map(|own| (own, say(theme, own.unit())));
+        let measures = ruler.available_measures().map(|own| (own, say(theme, own.unit())));
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
             if choice(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {

@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::network::{self, Form};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, empty_placeholder, enabled_button, entry, folding_card, folding_card_with, mono_entry, options,
+    button_with_reason, empty_placeholder, enabled_button, entry, folding_card, folding_card_with, mono_entry, options,
     paragraph, problem, row, severity, split,
 };
 use crate::ui::{Theme, icons};
@@ -63,7 +63,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
         form_ui(ui, theme, &before, &mut form);
         if let Some(mac) = unit.network().and_then(|own| own.mac) {
             let mac: Vec<String> = mac.iter().map(|byte| format!("{byte:02X}")).collect();
-            row(ui, theme, &say(theme, "hd_net.mac"), theme.mono(mac.join(":")));
+            row(ui, theme, &say(theme, "hd_net.mac"), theme.monospace(mac.join(":")));
         }
         ui.add_space(theme.space.between);
         let wanted = form.settings(&now);
@@ -77,7 +77,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
         };
         ui.horizontal_wrapped(|ui| {
             let may = allowed.as_ref().map(|_| ()).map_err(Clone::clone);
-            if allowed_button(ui, theme, &may, icons::LIST_CHECKS, &say(theme, "hd_net.write")).clicked()
+            if button_with_reason(ui, theme, &may, icons::LIST_CHECKS, &say(theme, "hd_net.write")).clicked()
                 && let Ok(own) = allowed
             {
                 let change = Change::Network(own);
@@ -117,7 +117,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
         let word = say(theme, id);
         if !types {
             let shown = if was.is_empty() { say(theme, "hd_axis.none") } else { was.clone() };
-            row(ui, theme, &word, theme.mono(shown));
+            row(ui, theme, &word, theme.monospace(shown));
             continue;
         }
         entry(ui, theme, &word, |ui| {
@@ -170,7 +170,7 @@ fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             ui.horizontal_top(|ui| {
                 let ink = if position.is_now { theme.palette.accent } else { theme.palette.muted };
                 let mark = if position.is_now { icons::CARET_RIGHT } else { "" };
-                for (width, text) in [(16.0, RichText::new(mark)), (44.0, theme.mono(position.digits))] {
+                for (width, text) in [(16.0, RichText::new(mark)), (44.0, theme.monospace(position.digits))] {
                     let size = egui::vec2(width, 18.0);
                     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Min), |ui| {
                         ui.set_min_width(width);

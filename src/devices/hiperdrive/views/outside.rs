@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, card, paragraph, show_error_below};
+use crate::ui::controls::{button_with_reason, card, paragraph, show_error_below};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -23,7 +23,7 @@ pub(super) struct Draft {
 pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     unit.outside_limits_text(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
-    Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
+    Some(RichText::new(words).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad))
 }
 
 /// Draws a card stating how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
@@ -36,7 +36,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
     };
     theme.gap(ui);
     card(ui, theme, TEXTS.text("hd_outside.short"), |ui| {
-        let strong = RichText::new(theme.words(&words)).font(theme.strong(theme.sizes.body)).color(theme.palette.bad);
+        let strong =
+            RichText::new(theme.words(&words)).font(theme.bold_font(theme.sizes.body)).color(theme.palette.bad);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.bad));
             paragraph(ui, strong);
@@ -60,13 +61,13 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
                     Direction::Clockwise => "hd_outside.free_up",
                     Direction::Counterclockwise => "hd_outside.free_down",
                 };
-                if allowed_button(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
+                if button_with_reason(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
                     actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
                 }
             }
         });
         length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
-        if allowed_button(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
+        if button_with_reason(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
             let change = forms::steps(unit, &draft.place, unit.measure)
                 .and_then(|position| unit.reference_change(drive, position));
             draft.problem =

@@ -73,12 +73,12 @@ fn becomes_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.requested_ruler(drive);
     let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, PositionUnit::Steps.unit()));
-    row(ui, theme, &say(theme, "hd_scale.turn"), theme.mono(turn));
+    row(ui, theme, &say(theme, "hd_scale.turn"), theme.monospace(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };
     for measure in [PositionUnit::Turns, PositionUnit::Millimetres] {
         if let Some((low, high)) = ruler.of(low, measure).zip(ruler.of(high, measure)) {
             let words = format!("{} … {} {}", theme.number(low, 2), theme.number(high, 2), say(theme, measure.unit()));
-            row(ui, theme, &say(theme, "hd_move.range"), theme.mono(words));
+            row(ui, theme, &say(theme, "hd_move.range"), theme.monospace(words));
         }
     }
 }

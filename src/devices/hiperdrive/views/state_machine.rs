@@ -126,7 +126,7 @@ fn look(theme: &Theme, state: State, is_present: bool, is_reachable: bool, hover
 fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxStyle) {
     painter.rect_filled(rect, theme.radius, look.fill);
     painter.rect_stroke(rect, theme.radius, look.edge, StrokeKind::Inside);
-    let font = |size| if look.strong { theme.strong(size) } else { FontId::proportional(size) };
+    let font = |size| if look.strong { theme.bold_font(size) } else { FontId::proportional(size) };
     let room = rect.width() - 8.0;
     let whole = painter.layout_no_wrap(name.to_owned(), font(theme.sizes.body), look.ink);
     let words = if whole.size().x <= room {

@@ -147,14 +147,14 @@ fn line_ui(
         return;
     };
     let words = format!("{}  {warning}", icons::WARNING);
-    let strong = theme.strong(theme.sizes.section);
+    let strong = theme.bold_font(theme.sizes.section);
     let whole = painter.layout_no_wrap(words.clone(), strong, ink);
     let room = line.width() - painter.layout_no_wrap(position.to_owned(), font.clone(), ink).size().x - 16.0;
     // In a narrow window and a long language it is smaller, not cut.
     let galley = if whole.size().x <= room {
         whole
     } else {
-        painter.layout_no_wrap(words, theme.strong(theme.sizes.caption), ink)
+        painter.layout_no_wrap(words, theme.bold_font(theme.sizes.caption), ink)
     };
     painter.galley(Align2::LEFT_CENTER.anchor_size(line.left_center(), galley.size()).min, galley, ink);
     painter.text(line.right_center(), Align2::RIGHT_CENTER, position, font, ink);

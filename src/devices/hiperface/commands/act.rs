@@ -9,7 +9,7 @@ use super::write::{change_and_show, settings};
 use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
-use crate::cli::runner::unexpected;
+use crate::cli::runner::unexpected_output;
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
@@ -32,7 +32,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
         (HiperfaceAction::SetPosition, [wanted]) => set_position(act, wanted, false)?,
         (HiperfaceAction::Synchronise, [wanted]) => set_position(act, wanted, true)?,
         (HiperfaceAction::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
-            Change::CreateField { number: field(number)?, status: new_status(rest)? }
+            Change::CreateField { number: field(number)?, status: parse_field_status(rest)? }
         }
         (HiperfaceAction::ResizeField, [number, bytes]) => {
             Change::ResizeField { number: field(number)?, size: size(bytes)? }
@@ -98,7 +98,7 @@ fn size(text: &str) -> Result<FieldSize> {
 
 /// Parses a field status such as `32 code=2 ce=1 we=1`, or a status byte such as `0xE9`. By default, a field is
 /// writable and requires its access code.
-fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
+fn parse_field_status(words: &[&str]) -> Result<DataFieldStatus> {
     let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");
     let number =
@@ -141,7 +141,7 @@ fn reset(common: &CommonArgs, output: &Output) -> Result {
             output.show(&json!({"done": "reset", "codes": list}), &format!("restarted: {}", codes_text(&codes)))?;
             Ok(Done::Well)
         }
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }
 
@@ -153,7 +153,7 @@ fn configure_for_now(common: &CommonArgs, output: &Output, value: &str) -> Resul
             output.show(&json!({"done": "configure-for-now", "settings": settings.byte()}), &text)?;
             Ok(Done::Well)
         }
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }
 

@@ -14,7 +14,7 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     let mut request: Option<Request> = None;
     for bytes in &frames(words)? {
         let words = describe(bytes, request.as_ref());
-        let meaning = words.map(|facts| facts.iter().map(|facts| words::frame(facts).terminal()).collect());
+        let meaning = words.map(|facts| facts.iter().map(|facts| words::frame(facts).terminal_text()).collect());
         explained.push(Explained {
             shown: hex(bytes),
             compact: hex_compact(bytes),

@@ -7,10 +7,10 @@ use serde_json::{Value as Json, json};
 use super::args;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{CommonArgs, FindArgs, Position};
-use crate::cli::consent::can_ask;
+use crate::cli::consent::can_prompt;
 use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
-use crate::cli::runner::{JobFailure, unexpected};
+use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::{Runner, reported_codes};
 use crate::devices::hiperface::commands::table::Table;
@@ -28,7 +28,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
     if let Some(url) = &common.link
         && may_have_other_master(url)
         && !common.only_master
-        && !can_ask()
+        && !can_prompt()
     {
         return Err(Failure::Usage(
             "a search sends to every address: add --only-master if no drive is connected to this line or powered, or \
@@ -64,7 +64,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
             "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
              drive or controller, then try again."
         )])),
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }
 
@@ -229,7 +229,7 @@ fn show(
                 None => show_position(output, &reading),
             }
         }
-        Ok(other) => Err(unexpected(&other)),
+        Ok(other) => Err(unexpected_output(&other)),
         Err(error) if error.means_no_position() => match table {
             Some(table) => {
                 output.remark(&position_error_text(&error));
@@ -261,7 +261,7 @@ fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
 }
 
 fn position_error_text(error: &JobError) -> String {
-    explained::job(error).iter().map(|text| text.terminal()).collect()
+    explained::job(error).iter().map(|text| text.terminal_text()).collect()
 }
 
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {

@@ -23,7 +23,7 @@ use crate::result_of;
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let mut runner = Runner::open(common)?;
     let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
-    name_locked(output, &saved, "saved without its bytes");
+    report_locked_fields(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
     save_profile(&save.file, Body::new(saved.profile))?;
@@ -47,11 +47,11 @@ impl ProfileCommands for HiperfaceCommands {
         let prepared =
             result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
         if let Some(types) = prepared.other_type {
-            output.remark(&words::other_type(types).terminal());
+            output.remark(&words::other_type(types).terminal_text());
         }
         check_answers(output, &prepared, restore.dry_run)?;
         if let Some(text) = words::created_left(&prepared.created_left) {
-            output.remark(&text.terminal());
+            output.remark(&text.terminal_text());
         }
         for item in &prepared.missing {
             output.remark(&format!(
@@ -68,7 +68,7 @@ impl ProfileCommands for HiperfaceCommands {
 
     fn present(&self, common: &CommonArgs, output: &Output, _profile: Option<&Body>) -> Result<Body> {
         let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
-        name_locked(output, &saved, "compared without its bytes");
+        report_locked_fields(output, &saved, "compared without its bytes");
         Ok(Body::new(saved.profile))
     }
 
@@ -89,7 +89,7 @@ fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>>
     Ok(result_of!(runner.run(HiperfaceJob::Save(options))?, HiperfaceOutput::Saved(saved) => saved))
 }
 
-fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
+fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     for (field, code) in &saved.locked {
         output.remark(&format!(
             "Data field {field} is {what}: access code {code} is different. Specify it with --code {code}=HEX."
@@ -116,7 +116,7 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
 /// Reports data fields with bytes of unknown meaning, and fails if there is no decision for one of them. A dry run
 /// leaves such a field unchanged.
 fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
-    let words = |own: &UnknownField| words::unknown_field(own).terminal();
+    let words = |own: &UnknownField| words::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;
     let open: Vec<&UnknownField> = fields.iter().filter(|own| own.answer.is_none()).collect();
     if !dry_run && !open.is_empty() {

@@ -28,7 +28,7 @@ impl Runs for Hiperface {
 
     fn begin(session: &mut Session<Self>, given: &Given) -> CharacterFormat {
         if let Some(codes) = given.get::<AccessCodes>() {
-            codes.set_in(session.codes_mut());
+            codes.apply_codes(session.codes_mut());
         }
         session.station().format
     }
@@ -36,7 +36,7 @@ impl Runs for Hiperface {
     /// Prints every status code that the encoder announced, one per line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
-            say(&format!("{}\n", words::codes_unheard(*count).terminal()));
+            say(&format!("{}\n", words::codes_unheard(*count).terminal_text()));
         }
         for code in codes(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };

@@ -19,7 +19,7 @@ use crate::result_of;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
-    let change = change_of(item, &write.value)?;
+    let change = parse_change(item, &write.value)?;
     change_and_show(common, output, change, &write.consent, &item.to_string())
 }
 
@@ -44,7 +44,7 @@ pub(super) fn change_and_show(
     show_changed(output, item, &operations, &changes, &spent)
 }
 
-fn change_of(item: Item, value: &str) -> Result<Change> {
+fn parse_change(item: Item, value: &str) -> Result<Change> {
     match item {
         Item::Field(range) => {
             let bytes = parse_hex(value)
@@ -135,7 +135,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
 fn change_lines(plan: &HiperfacePlan) -> Lines {
     let mut lines = Lines::default();
     for op in &plan.ops {
-        let (old, new) = change_words(op);
+        let (old, new) = change_texts(op);
         lines.add(op.item().to_string(), format!("{old}  →  {new}"));
     }
     lines
@@ -154,7 +154,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
                 // An access code is never shown.
                 Op::ChangeCode { .. } => (None, None),
                 op => {
-                    let (old, new) = change_words(op);
+                    let (old, new) = change_texts(op);
                     (Some(old), Some(new))
                 }
             };
@@ -165,7 +165,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
 
 /// Returns the old and new values of an operation: status and settings as bytes accepted by `status:N` and `settings`,
 /// others as text.
-fn change_words(op: &Op) -> (String, String) {
+fn change_texts(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {
             (from.map_or_else(|| "not there".to_owned(), |from| format!("{from:?}")), format!("{to:?}"))
@@ -173,7 +173,7 @@ fn change_words(op: &Op) -> (String, String) {
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
         op => {
             let changes = words::op(op).changes.into_iter();
-            changes.map(|own| (own.old.terminal(), own.new.terminal())).next().unwrap_or_default()
+            changes.map(|own| (own.old.terminal_text(), own.new.terminal_text())).next().unwrap_or_default()
         }
     }
 }

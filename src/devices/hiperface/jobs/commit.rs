@@ -3,7 +3,7 @@
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWrite;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
-use crate::devices::hiperface::profile::{Base, Op, Recorded, ScalarValue, created_by};
+use crate::devices::hiperface::profile::{Base, Op, Recorded, ScalarValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::Body;
 use crate::store::DeviceKey;
@@ -54,7 +54,7 @@ impl Planned for Prepared {
             }
         }
         let mut profile = profile_of(&self.identity, base.fields.clone(), recorded);
-        profile.created = created_by(&self.plan);
+        profile.created = created_fields(&self.plan);
         backup_of(Body::new(profile)).emit()
     }
 }

@@ -62,7 +62,7 @@ impl Hiperface {
 
     /// Stores status codes before they are displayed. An unknown encoder is identified first, since the codes are
     /// stored in its logbook.
-    fn keep_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
+    fn store_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
         }
@@ -80,7 +80,7 @@ impl Hiperface {
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_read_codes();
         if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
-            self.keep_codes(context, &codes);
+            self.store_codes(context, &codes);
         }
     }
 }
@@ -128,7 +128,7 @@ impl Device for Hiperface {
     ) -> Result<HiperfaceOutput, JobError> {
         let result = self.carry_out(context, job, tell);
         let codes = self.station.take_read_codes();
-        self.keep_codes(context, &codes);
+        self.store_codes(context, &codes);
         result
     }
 
@@ -171,7 +171,7 @@ impl Device for Hiperface {
         }
         let line = &self.station.line;
         // A failure reports it anyway.
-        if line.is_troubled() || line.quality.troubles() == self.told_troubles {
+        if line.has_errors() || line.quality.troubles() == self.told_troubles {
             return None;
         }
         self.told_troubles = line.quality.troubles();
@@ -235,7 +235,7 @@ impl Hiperface {
             }
             HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(context))?),
             HiperfaceJob::Find(options) => {
-                let watch = &mut |news: SearchProgress<'_>| tell(message_of(news));
+                let watch = &mut |news: SearchProgress<'_>| tell(search_report(news));
                 HiperfaceOutput::Found(find::find(&mut self.master(context), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
@@ -246,7 +246,7 @@ impl Hiperface {
     }
 }
 
-fn message_of(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> {
+fn search_report(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> {
     match news {
         SearchProgress::Trying { done, total, attempt } => {
             JobReport::Progress(Progress { done, total, step: JobStep::Attempt(attempt.clone()) })

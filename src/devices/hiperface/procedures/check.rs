@@ -1,6 +1,6 @@
 //! Device check: the start-up sequence of the manual (figures 8 and 9) with a verdict for each item.
 
-use super::fields::tolerated;
+use super::fields::tolerate_read_error;
 use super::{
     Error, Identity, LineQuality, Master, UnreadableField, identify, read_analogue, read_position, read_status, reset,
     try_read_field,
@@ -95,7 +95,7 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
 fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
     let step = CheckStep::Position;
     let reading = read_position(master, identity.geometry);
-    match tolerated(master, reading)? {
+    match tolerate_read_error(master, reading)? {
         Ok(reading) => {
             let mut findings = vec![match reading.position {
                 Some(position) => CheckFinding::Position(position),
@@ -121,7 +121,7 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<H
     let mut worst = Verdict::Good;
     for (channel, limit) in label.limits() {
         let value = read_analogue(master, channel);
-        match tolerated(master, value)? {
+        match tolerate_read_error(master, value)? {
             Ok(value) => {
                 if value > limit {
                     worst = worst.max(Verdict::Attention);
@@ -165,7 +165,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
 /// Checks the line. If a request had to be repeated, the line works but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
-    let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };
+    let verdict = if quality.has_errors() { Verdict::Attention } else { Verdict::Good };
     HiperfaceStepResult { step: CheckStep::Line, verdict, findings: vec![CheckFinding::Line(quality)] }
 }
 

@@ -68,19 +68,22 @@ pub struct UnreadableField {
 /// The encoder no longer replies, or cancellation.
 pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
     let status = read_field_status(master, number);
-    let status = match tolerated(master, status)? {
+    let status = match tolerate_read_error(master, status)? {
         Ok(status) => status,
         Err(why) => return Ok(Err(UnreadableField { number, status: None, why })),
     };
     let field = read_field(master, number);
-    Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
+    Ok(tolerate_read_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
 /// Converts an error into the reason for an unreadable value, as long as the encoder replies to another request.
 ///
 /// # Errors
 /// The encoder no longer replies, or cancellation.
-pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) -> Result<Result<T, Error>, Error> {
+pub(super) fn tolerate_read_error<T>(
+    master: &mut Master<'_>,
+    result: Result<T, Error>,
+) -> Result<Result<T, Error>, Error> {
     match result {
         Ok(value) => Ok(Ok(value)),
         Err(error @ Error::Rejected { .. }) => Ok(Err(error)),
@@ -150,7 +153,7 @@ pub fn read_range(
         };
         failures += 1;
         in_a_row = 0;
-        master.may_try_again(&request, failures, trouble)?;
+        master.prepare_retry(&request, failures, trouble)?;
         let station = master.station();
         station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
         if let Some(first) = &mut first {

@@ -88,7 +88,7 @@ pub fn find(
     let before = (master.station().address, master.station().format);
     let mut search = Search { found: Vec::new(), watch };
     let result = search.run(master, options);
-    master.shielded(|master| {
+    master.run_uncancellable(|master| {
         master.station().address = before.0;
         master.set_format(before.1)
     })?;

@@ -45,10 +45,10 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which returns the encoder to a safe state, while ignoring cancellation.
-    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.line.shield(true);
+    pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.ignore_cancellation(true);
         let result = work(self);
-        self.line.shield(before);
+        self.line.ignore_cancellation(before);
         result
     }
 
@@ -92,7 +92,7 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which reads values to be stored, and requires every reply to be received twice.
-    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
         self.station.thorough = before;
@@ -126,7 +126,7 @@ impl<'a> Master<'a> {
             tries += 1;
             match self.attempt(request)? {
                 Ok(answer) => return self.settle(request, answer),
-                Err(trouble) => self.may_try_again(request, tries, trouble)?,
+                Err(trouble) => self.prepare_retry(request, tries, trouble)?,
             }
         }
     }
@@ -149,10 +149,10 @@ impl<'a> Master<'a> {
                 Ok(answer) => return self.acknowledge(request, answer).map(|()| tries),
                 Err(trouble) => trouble,
             };
-            let failure = self.may_try_again(request, tries, trouble);
+            let failure = self.prepare_retry(request, tries, trouble);
             let unclear = |cause| Error::Unclear { command: request.command(), cause: Box::new(cause) };
             // From here on the result must be determined, even after cancellation.
-            match self.shielded(&mut is_done) {
+            match self.run_uncancellable(&mut is_done) {
                 Ok(true) => return Ok(tries),
                 Ok(false) => failure?,
                 Err(cause) => return Err(unclear(cause)),
@@ -180,7 +180,7 @@ impl<'a> Master<'a> {
     }
 
     /// Prepares the line for the next attempt, or returns an error if no attempt is left.
-    pub(super) fn may_try_again(
+    pub(super) fn prepare_retry(
         &mut self,
         request: &Request,
         tries: u32,
@@ -193,10 +193,10 @@ impl<'a> Master<'a> {
             ExchangeFailure::Damage(_) => quality.damaged += 1,
         }
         let longest = self.station.timing().worst_case(request) + self.station.line.margin;
-        if self.line.may_ask_again(&mut self.station.line, tries, longest) {
+        if self.line.may_retry(&mut self.station.line, tries, longest) {
             if matches!(trouble, ExchangeFailure::Silence { .. }) {
                 let quiet = self.silence_duration();
-                self.line.hear_late(&mut self.station.line, tries, quiet)?;
+                self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?;
             }
             return Ok(());
         }
@@ -211,7 +211,7 @@ impl<'a> Master<'a> {
 
     /// Reads the status codes that a reply announces, and distinguishes a refusal from a reply.
     pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
-        self.station.line.recovered();
+        self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
         if *pending && request.command() != Command::ReadStatus {
             self.collect_codes()?;
@@ -227,9 +227,9 @@ impl<'a> Master<'a> {
     /// counting, and is necessary after 55h and 67h, when the encoder no longer replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
-            self.station.line.recovered();
+            self.station.line.clear_error();
             return Ok(());
         }
-        self.shielded(|master| master.settle(request, answered)).map(drop)
+        self.run_uncancellable(|master| master.settle(request, answered)).map(drop)
     }
 }

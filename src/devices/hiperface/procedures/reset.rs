@@ -26,13 +26,13 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
     let format = stored.format().ok_or(Error::ReservedFormat { settings: stored })?;
     master.send_broadcast(&Request::Reset)?;
-    let factory = format == CharacterFormat::FACTORY && stored.long_timeout();
+    let factory = format == CharacterFormat::FACTORY && stored.has_long_timeout();
     let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + RESERVE };
     // The encoder restarts even if the user cancels now; afterwards the session must know its settings.
-    master.shielded(|master| {
+    master.run_uncancellable(|master| {
         master.wait(wait)?;
         master.set_format(format)?;
-        master.station().long_timeout = stored.long_timeout();
+        master.station().long_timeout = stored.has_long_timeout();
         super::read_status(master)
     })
 }
@@ -52,9 +52,9 @@ pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettin
         Err(_) => Ok(()),
     };
     outcome?;
-    master.shielded(|master| {
+    master.run_uncancellable(|master| {
         master.set_format(format)?;
-        master.station().long_timeout = settings.long_timeout();
+        master.station().long_timeout = settings.has_long_timeout();
         let Err(error) = read_type_label(master) else { return Ok(()) };
         master.set_format(old_format)?;
         master.station().long_timeout = old_timeout;

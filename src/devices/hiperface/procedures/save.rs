@@ -22,7 +22,7 @@ pub fn save(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    master.thoroughly(|master| save_once(master, types, options, progress))
+    master.run_double_checked(|master| save_once(master, types, options, progress))
 }
 
 fn save_once(
@@ -64,6 +64,6 @@ pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Record
         created: Vec::new(),
         unknown_in_fields: Vec::new(),
     };
-    profile.mark_mounting();
+    profile.mark_mounting_values();
     profile
 }

@@ -59,7 +59,7 @@ impl Codes {
 pub struct AccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
 impl AccessCodes {
-    pub fn set_in(&self, codes: &mut Codes) {
+    pub fn apply_codes(&self, codes: &mut Codes) {
         for (number, code) in &self.0 {
             codes.set(*number, *code);
         }
@@ -242,7 +242,7 @@ mod tests {
         let given: AccessCodes =
             [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
         let mut codes = Codes::default();
-        given.set_in(&mut codes);
+        given.apply_codes(&mut codes);
         assert_eq!((codes.get(number(2)).byte(), codes.get(number(1)).byte()), (0xA7, 0x55));
         let text = format!("{given:?} {given:#?}");
         for code in ["9D", "9d", "157", "A7", "a7", "167"] {

@@ -1,6 +1,6 @@
 //! Reading everything that the pages of an encoder display in one job.
 
-use super::fields::tolerated;
+use super::fields::tolerate_read_error;
 use super::{
     Error, Identity, LineQuality, Master, Sample, UnreadableField, identify, read_all_fields, read_counter,
     read_sample, try_read_field,
@@ -69,9 +69,9 @@ pub(super) fn read_survey(
     };
     // Neither is needed for a restore: an encoder that refuses them is read regardless.
     let position = read_sample(master, identity.geometry);
-    let position = tolerated(master, position)?.ok();
+    let position = tolerate_read_error(master, position)?.ok();
     let counter = read_counter(master);
-    let counter = tolerated(master, counter)?.ok();
+    let counter = tolerate_read_error(master, counter)?.ok();
     let line = master.station().line.quality.clone();
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }

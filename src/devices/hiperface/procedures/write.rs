@@ -66,7 +66,7 @@ impl Write for EncoderWrite<'_, '_> {
                 return Err(Error::Changed { item: PlanItem::Item(Item::Field(FieldRange::of(field.number))) });
             }
         }
-        plan.base.scalars.iter().try_for_each(|scalar| confirm_scalar(master, *scalar, identity.geometry))
+        plan.base.scalars.iter().try_for_each(|scalar| check_scalar_unchanged(master, *scalar, identity.geometry))
     }
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
@@ -83,7 +83,7 @@ impl Write for EncoderWrite<'_, '_> {
 
     fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
         let range = position_range(self.identity.geometry);
-        done.verified = self.master.shielded(|master| verify(master, confirmed.plan(), range))?;
+        done.verified = self.master.run_uncancellable(|master| verify(master, confirmed.plan(), range))?;
         Ok(())
     }
 
@@ -103,7 +103,7 @@ impl Write for EncoderWrite<'_, '_> {
         for field in unlocked {
             let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
             let lock_again = |master: &mut Master<'_>| restore_lock(master, lock, confirmed, range, done);
-            if cause.is_lost() || self.master.shielded(lock_again).is_err() {
+            if cause.is_lost() || self.master.run_uncancellable(lock_again).is_err() {
                 self.left.unlocked.push(field);
             }
         }
@@ -119,7 +119,11 @@ fn may_have_been_executed(cause: &Error) -> bool {
     !matches!(cause, Error::Cancelled | Error::Rejected { .. })
 }
 
-fn confirm_scalar(master: &mut Master<'_>, scalar: ScalarValue, geometry: Option<Geometry>) -> Result<(), Error> {
+fn check_scalar_unchanged(
+    master: &mut Master<'_>,
+    scalar: ScalarValue,
+    geometry: Option<Geometry>,
+) -> Result<(), Error> {
     let (same, item) = match scalar {
         ScalarValue::Position(then) => {
             let now = ensure_standstill(master, geometry)?;
@@ -175,7 +179,8 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         }
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
-            let sent = master.send_verified(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
+            let sent = master
+                .send_verified(&request, |master| can_open_field(master, &confirmed.plan().base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
@@ -246,7 +251,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
 }
 
 /// Returns whether an access code opens a field that it protects. The code cannot be tested if there is no such field.
-fn opens(
+fn can_open_field(
     master: &mut Master<'_>,
     base: &Base,
     number: AccessCodeNumber,

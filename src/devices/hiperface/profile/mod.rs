@@ -19,5 +19,5 @@ pub use plan::{Base, HiperfacePlan, Op, ScalarValue};
 pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
 pub use restore::{
     DeviceState, PlanError, RequiredSetup, Restore, RestoreOptions, UnknownField, check_allowed, check_device,
-    created_by, plan_restore,
+    created_fields, plan_restore,
 };

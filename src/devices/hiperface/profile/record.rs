@@ -92,7 +92,7 @@ impl HiperfaceProfile {
     pub const COMMUTATION_BYTES: usize = 16;
 
     /// Marks all unmarked items that are recognised as mounting values.
-    pub fn mark_mounting(&mut self) {
+    pub fn mark_mounting_values(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };
             let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
@@ -112,7 +112,7 @@ impl HiperfaceProfile {
     }
 
     /// Returns whether a byte of a data field is a mounting value.
-    pub fn is_mounting(&self, field: u8, address: usize) -> bool {
+    pub fn is_mounting_value(&self, field: u8, address: usize) -> bool {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }
 
@@ -220,13 +220,13 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", AllowedValues::Text)?,
-        encoder_type: entries.required("encoder_type", AllowedValues::Byte)?,
-        encoder_name: entries.optional("encoder_name", AllowedValues::Text)?.unwrap_or_default(),
-        firmware_version: entries.optional("firmware_version", AllowedValues::Text)?.unwrap_or_default(),
-        firmware_date: entries.optional("firmware_date", AllowedValues::Text)?.unwrap_or_default(),
-        eeprom_bytes: entries.optional("eeprom_bytes", AllowedValues::Whole)?.unwrap_or_default(),
-        options: entries.optional("options", AllowedValues::Byte)?.unwrap_or_default(),
+        serial_number: entries.take_required("serial_number", AllowedValues::Text)?,
+        encoder_type: entries.take_required("encoder_type", AllowedValues::Byte)?,
+        encoder_name: entries.take_optional("encoder_name", AllowedValues::Text)?.unwrap_or_default(),
+        firmware_version: entries.take_optional("firmware_version", AllowedValues::Text)?.unwrap_or_default(),
+        firmware_date: entries.take_optional("firmware_date", AllowedValues::Text)?.unwrap_or_default(),
+        eeprom_bytes: entries.take_optional("eeprom_bytes", AllowedValues::Whole)?.unwrap_or_default(),
+        options: entries.take_optional("options", AllowedValues::Byte)?.unwrap_or_default(),
         extended_label: entries.bytes("extended_label")?,
         unknown: entries.rest()?,
     })
@@ -234,16 +234,16 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 
 fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     Ok(Interface {
-        address: entries.required("address", AllowedValues::Byte)?,
-        settings: LineSettings::from_byte(entries.required("settings", AllowedValues::Byte)?),
+        address: entries.take_required("address", AllowedValues::Byte)?,
+        settings: LineSettings::from_byte(entries.take_required("settings", AllowedValues::Byte)?),
         unknown: entries.rest()?,
     })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        position: entries.optional("position", AllowedValues::between(0, 4_294_967_295))?,
-        counter: entries.optional("counter", AllowedValues::between(0, 16_777_215))?,
+        position: entries.take_optional("position", AllowedValues::between(0, 4_294_967_295))?,
+        counter: entries.take_optional("counter", AllowedValues::between(0, 16_777_215))?,
         unknown: entries.rest()?,
     })
 }
@@ -256,14 +256,14 @@ fn parse_mounting_item(text: &str) -> Result<FieldRange, EntryError> {
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
-    let number: u8 = entries.required("number", AllowedValues::between(0, 254))?;
-    let status = DataFieldStatus::from_byte(entries.required("status", AllowedValues::Byte)?);
+    let number: u8 = entries.take_required("number", AllowedValues::between(0, 254))?;
+    let status = DataFieldStatus::from_byte(entries.take_required("status", AllowedValues::Byte)?);
     let wrong = |entries: &Entries, name: &str, error| Err(ProfileError::refused(entries.path_of(name), error));
     if !status.exists() {
         return wrong(&entries, "status", EntryError::Status(status.byte()));
     }
     let bytes = entries.bytes("bytes")?;
-    let locked = entries.optional("locked", AllowedValues::words(&["true", "false"]))?.unwrap_or(false);
+    let locked = entries.take_optional("locked", AllowedValues::words(&["true", "false"]))?.unwrap_or(false);
     if bytes.is_some() == locked {
         return wrong(&entries, "bytes", if locked { EntryError::Locked } else { EntryError::NotLocked });
     }

@@ -12,7 +12,7 @@ use std::fmt;
 
 pub use device::{check_allowed, check_device};
 pub use error::PlanError;
-pub use undo::created_by;
+pub use undo::created_fields;
 pub use unknown::UnknownField;
 
 use planner::Planner;

@@ -84,7 +84,7 @@ impl LineSettings {
     }
 
     /// Returns whether the time-out is 44/baud (bit 6 is set) rather than 11/baud.
-    pub const fn long_timeout(self) -> bool {
+    pub const fn has_long_timeout(self) -> bool {
         self.0 & Self::LONG_TIMEOUT != 0
     }
 
@@ -111,7 +111,7 @@ impl fmt::Display for LineSettings {
             Some(format) => write!(f, "{format}")?,
             None => write!(f, "reserved format")?,
         }
-        let timeout = if self.long_timeout() { 44 } else { 11 };
+        let timeout = if self.has_long_timeout() { 44 } else { 11 };
         let wiring = if self.is_bus() { "bus" } else { "standard" };
         write!(f, ", time-out {timeout} bits, {wiring}")
     }
@@ -138,7 +138,7 @@ mod tests {
             let settings = LineSettings::from_byte(byte);
             let format = CharacterFormat { baud: Baud::new(baud).unwrap(), parity };
             assert_eq!(settings.format(), Some(format), "{byte:02X}");
-            assert_eq!(settings.long_timeout(), long_timeout, "{byte:02X}");
+            assert_eq!(settings.has_long_timeout(), long_timeout, "{byte:02X}");
             assert_eq!(settings.is_bus(), bus, "{byte:02X}");
             assert_eq!(settings.with_format(format), Some(settings), "{byte:02X}");
             assert!(settings.is_valid());

@@ -206,7 +206,7 @@ fn single_bytes_decode_as_in_the_file() {
                 let format = settings.format().unwrap();
                 let shown = [
                     if settings.is_bus() { "bus" } else { "standard" }.to_owned(),
-                    if settings.long_timeout() { "44" } else { "11" }.to_owned(),
+                    if settings.has_long_timeout() { "44" } else { "11" }.to_owned(),
                     format!("{:?}", format.parity).to_lowercase(),
                     format.baud.to_string(),
                 ];

@@ -136,7 +136,7 @@ impl EncoderElectronics {
         match request {
             Request::ReadPosition => self.read_position(at),
             Request::SetPosition { position, code0 } | Request::Synchronise { position, code0 } => {
-                if !self.shaft.reaches(*position) {
+                if !self.shaft.can_reach(*position) {
                     return Err(StatusCode::ARGUMENT);
                 }
                 self.check_code0(*code0)?;
@@ -222,7 +222,7 @@ impl EncoderElectronics {
         data: &[u8],
         code: AccessCode,
     ) -> Result<(), StatusCode> {
-        self.memory.check_store(field, address, data.len(), code)?;
+        self.memory.check_store_request(field, address, data.len(), code)?;
         let half = data.get(..data.len().div_ceil(2)).unwrap_or(data);
         self.memory.store(field, address, half, code)?;
         self.wear.count(Command::StoreData);

@@ -279,7 +279,7 @@ impl Encoder {
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
-                self.end_of_frame(at, &reception);
+                self.handle_frame_end(at, &reception);
                 None
             }
             Activity::Executing { settings, verdict, .. } => self.answer(at, settings, verdict),
@@ -287,7 +287,7 @@ impl Encoder {
         }
     }
 
-    fn end_of_frame(&mut self, at: Moment, reception: &IncomingFrame) {
+    fn handle_frame_end(&mut self, at: Moment, reception: &IncomingFrame) {
         // A frame that ends while the settings change is lost.
         let Some(settings) = self.settings_at(at) else { return };
         let broadcast = match reception.bytes.first() {
@@ -334,7 +334,7 @@ impl Encoder {
     ) -> Option<Transmission> {
         let address = self.address().byte();
         if let Ok(request) = &verdict
-            && self.fails_during(request)
+            && self.is_power_lost_during(request)
         {
             self.power_off();
             return None;
@@ -360,9 +360,9 @@ impl Encoder {
     }
 
     /// Returns whether power is lost during this store, so that only half of it is written.
-    fn fails_during(&mut self, request: &Request) -> bool {
+    fn is_power_lost_during(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
-        if self.electronics.memory.check_store(*field, *address, data.len(), *code).is_err() {
+        if self.electronics.memory.check_store_request(*field, *address, data.len(), *code).is_err() {
             return false;
         }
         self.stores_begun = self.stores_begun.saturating_add(1);

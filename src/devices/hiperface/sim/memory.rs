@@ -50,7 +50,7 @@ impl Memory {
 
     /// Handles 4Eh.
     pub fn free(&self) -> FreeMemory {
-        let blocks = (self.bytes.len() - self.used()) / FieldSize::BLOCK;
+        let blocks = (self.bytes.len() - self.used_bytes()) / FieldSize::BLOCK;
         // Both fit: a memory has at most 255 blocks, and a field at least one.
         let byte = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
@@ -97,7 +97,13 @@ impl Memory {
     ///
     /// # Errors
     /// 12h, 11h, 0Fh if the field requires its access code, 0Eh if it is write-protected (FFh always is).
-    pub fn check_store(&self, field: u8, address: u8, count: usize, code: AccessCode) -> Result<(), StatusCode> {
+    pub fn check_store_request(
+        &self,
+        field: u8,
+        address: u8,
+        count: usize,
+        code: AccessCode,
+    ) -> Result<(), StatusCode> {
         let status = self.status(field)?;
         if usize::from(address) + count > status.size().bytes() {
             return Err(StatusCode::OUT_OF_FIELD);
@@ -109,9 +115,9 @@ impl Memory {
     /// Handles 4Bh.
     ///
     /// # Errors
-    /// Those of [`check_store`](Self::check_store); nothing is written.
+    /// Those of [`check_store_request`](Self::check_store_request); nothing is written.
     pub fn store(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
-        self.check_store(field, address, data.len(), code)?;
+        self.check_store_request(field, address, data.len(), code)?;
         let start = self.place(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
         let target = self.bytes.get_mut(start..start + data.len()).ok_or(StatusCode::OUT_OF_FIELD)?;
         target.copy_from_slice(data);
@@ -156,7 +162,7 @@ impl Memory {
 
     fn create(&mut self, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         self.check_code(status.code(), code)?;
-        if self.used() + status.size().bytes() > self.bytes.len() {
+        if self.used_bytes() + status.size().bytes() > self.bytes.len() {
             return Err(StatusCode::SIZE_FIXED);
         }
         self.fields.push(status);
@@ -164,8 +170,8 @@ impl Memory {
     }
 
     fn change(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
-        let present = self.check_owner(field, code)?;
-        let used_then = self.used() - present.size().bytes() + status.size().bytes();
+        let present = self.check_field_access(field, code)?;
+        let used_then = self.used_bytes() - present.size().bytes() + status.size().bytes();
         if present.size() != status.size() && (!self.is_last(field) || used_then > self.bytes.len()) {
             return Err(StatusCode::SIZE_FIXED);
         }
@@ -176,7 +182,7 @@ impl Memory {
     }
 
     fn delete(&mut self, field: u8, code: AccessCode) -> Result<(), StatusCode> {
-        self.check_owner(field, code)?;
+        self.check_field_access(field, code)?;
         if !self.is_last(field) {
             return Err(StatusCode::SIZE_FIXED);
         }
@@ -186,7 +192,7 @@ impl Memory {
 
     /// Returns the status of a field, if `code` is its access code (required even if CE is 0) and the field is not the
     /// encoder's own.
-    fn check_owner(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
+    fn check_field_access(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;
         if field == EXTENDED_LABEL_FIELD { Err(StatusCode::WRITE_PROTECTED) } else { Ok(present) }
@@ -200,7 +206,7 @@ impl Memory {
         usize::from(field) + 1 == self.fields.len()
     }
 
-    fn used(&self) -> usize {
+    fn used_bytes(&self) -> usize {
         self.fields.iter().map(|status| status.size().bytes()).sum()
     }
 

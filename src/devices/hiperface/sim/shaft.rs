@@ -42,7 +42,7 @@ impl Shaft {
         self.rpm.abs() > Self::MAX_RPM
     }
 
-    pub(super) fn reaches(&self, position: u32) -> bool {
+    pub(super) fn can_reach(&self, position: u32) -> bool {
         u64::from(position) < self.range()
     }
 
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (409, 511));
         shaft.set_position(at(0), 0x00FF_FFFF);
         assert_eq!(shaft.position(at(9)), 0x00FF_FFFF);
-        assert!(!shaft.reaches(0x0100_0000));
+        assert!(!shaft.can_reach(0x0100_0000));
     }
 
     /// Values at quarter periods are 511 counts for 2.5 V (01FFh in the reference), 613 for 3 V, and 409 for 2 V.

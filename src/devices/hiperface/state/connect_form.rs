@@ -63,7 +63,7 @@ impl Default for LinkForm {
             file: String::new(),
             baud: CharacterFormat::FACTORY.baud,
             parity: CharacterFormat::FACTORY.parity,
-            address: address_words(DeviceAddress::FACTORY.byte()),
+            address: address_text(DeviceAddress::FACTORY.byte()),
             echo: Echo::Unknown,
             long_timeout: true,
             model: model.name.to_owned(),
@@ -116,7 +116,7 @@ impl FormModel for LinkForm {
 
 impl LinkForm {
     /// Returns the available virtual encoders, starting with the default.
-    pub fn models() -> impl Iterator<Item = &'static str> {
+    pub fn model_names() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }
 
@@ -150,7 +150,7 @@ impl LinkForm {
         let is_taken = link.set(name, value).unwrap_or(false);
         (self.baud, self.parity, self.echo, self.long_timeout) = (link.baud, link.parity, link.echo, link.long_timeout);
         if is_taken && name == "address" {
-            self.address = address_words(link.address);
+            self.address = address_text(link.address);
         }
         is_taken
     }
@@ -220,7 +220,7 @@ impl LinkForm {
                 return with_addresses(TEXTS.text(id)).with("value", self.address.trim());
             }
             "model" => {
-                let models = Self::models().collect::<Vec<_>>().join(", ");
+                let models = Self::model_names().collect::<Vec<_>>().join(", ");
                 return TEXTS.text("form.model").with("value", value).with("models", models);
             }
             "periods" => "form.periods",
@@ -232,7 +232,7 @@ impl LinkForm {
     }
 }
 
-fn address_words(address: u8) -> String {
+fn address_text(address: u8) -> String {
     if address == BROADCAST { BROADCAST_WORD.to_owned() } else { format!("{address:02X}") }
 }
 

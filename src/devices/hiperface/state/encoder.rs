@@ -107,7 +107,7 @@ impl Encoder {
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
         // The edit may also be a commutation offset.
-        profile.mark_mounting();
+        profile.mark_mounting_values();
         Some(profile)
     }
 
@@ -117,7 +117,7 @@ impl Encoder {
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, it may be any of its type; an equal memory makes it count as the same.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
-        if self.is_another(&identity) || (self.identity.is_some() && unproven) {
+        if self.is_different_device(&identity) || (self.identity.is_some() && unproven) {
             self.handle_device_replacement(&identity.serial.serial_number, services);
         }
         let first = self.identity.is_none();
@@ -182,7 +182,7 @@ impl Encoder {
     }
 
     /// Returns whether the encoder is a different one from the one read before.
-    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+    pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))
     }

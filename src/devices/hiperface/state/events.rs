@@ -128,8 +128,8 @@ impl Encoder {
         if now.format.parity != format.parity {
             url.query.set("parity", format.parity.word());
         }
-        if now.long_timeout != settings.long_timeout() {
-            url.query.set("timeout", if settings.long_timeout() { "44" } else { "11" });
+        if now.long_timeout != settings.has_long_timeout() {
+            url.query.set("timeout", if settings.has_long_timeout() { "44" } else { "11" });
         }
     }
 
@@ -161,14 +161,14 @@ impl Encoder {
 
     fn apply_completed_steps(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
-        let Some(prepared) = self.review().and_then(Review::writing) else { return };
+        let Some(prepared) = self.review().and_then(Review::plan_in_progress) else { return };
         let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
         self.follow(&done, services);
     }
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.add_samples(samples, dropped);
     }
 
@@ -188,7 +188,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn is_answer(output: &HiperfaceOutput) -> bool {
+    fn is_device_reply(output: &HiperfaceOutput) -> bool {
         !matches!(output, HiperfaceOutput::CodeNoted)
     }
 
@@ -196,7 +196,7 @@ impl SessionEvents for Encoder {
         match output {
             HiperfaceOutput::Surveyed(survey) => self.apply_survey(*survey, services),
             HiperfaceOutput::Identity(identity) => {
-                let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
+                let proven = !identity.serial.serial_number.is_empty() && !self.is_different_device(&identity);
                 if proven {
                     self.codes_due.clone_from(&self.access_codes);
                 } else {
@@ -249,13 +249,13 @@ impl SessionEvents for Encoder {
         self.forget_plan();
     }
 
-    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
+    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
         if let EarlyEnd::Cancelled(error) = how {
             self.apply_completed_steps(error, services);
             self.asked = None;
             self.cancel_rest_reading();
         }
-        self.handle_cut_write(how, texts);
+        self.handle_interrupted_write(how, texts);
         // It is reported as well.
         false
     }
@@ -293,7 +293,7 @@ impl SessionEvents for Encoder {
         if gone.is_none() && !silent && !garbled {
             self.session.answers();
         }
-        let is_shown = self.handle_cut_write(EarlyEnd::Failed(error), &texts);
+        let is_shown = self.handle_interrupted_write(EarlyEnd::Failed(error), &texts);
         match gone {
             Some(why) => {
                 if is_shown {
@@ -301,7 +301,7 @@ impl SessionEvents for Encoder {
                 }
                 self.connection_lost(why, services);
             }
-            None if silent => self.session.fall_silent(texts, services),
+            None if silent => self.session.mark_silent(texts, services),
             None => {
                 self.session.report(Severity::Error, texts, is_shown || stands_there, services);
                 if error.has_begun() {

@@ -267,8 +267,9 @@ mod tests {
             (ChangeKind::Single, "repeat the change", "run the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {
-            let cut =
-                |cycles| interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal();
+            let cut = |cycles| {
+                interruption_text(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal_text()
+            };
             assert!(words(2, kind).contains(part), "{}", words(2, kind));
             assert!(words(0, kind).contains("Nothing was changed."), "{}", words(0, kind));
             assert!(cut(2).contains(terminal) && cut(2).contains("b.ron"), "{}", cut(2));

@@ -56,7 +56,7 @@ impl DeviceType for Encoder {
         encoder
     }
 
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

@@ -17,13 +17,13 @@ impl DeviceModel for Encoder {
 
     fn prepare(&self, world: &Environment) -> Prepare<Hiperface> {
         let codes = world.given.get::<AccessCodes>().cloned().unwrap_or_default();
-        Box::new(move |session| codes.set_in(session.codes_mut()))
+        Box::new(move |session| codes.apply_codes(session.codes_mut()))
     }
 
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
-        self.session.adopt_line(opened, services);
+        self.session.attach_connection(opened, services);
         self.update_watches();
         self.codes_due.clear();
         self.tried_code = None;

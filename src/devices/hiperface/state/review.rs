@@ -45,7 +45,7 @@ impl Reviewable for Hiperface {
         words::op(op)
     }
 
-    fn leaves_mounting(prepared: &Prepared) -> bool {
+    fn skips_mounting_values(prepared: &Prepared) -> bool {
         !prepared.mounting_left.is_empty()
     }
 
@@ -85,7 +85,7 @@ impl Reviewable for Hiperface {
         warnings
     }
 
-    fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
+    fn requirements(_: &Change, prepared: &Prepared) -> Vec<Text> {
         let mut needs = Vec::new();
         let mut codes: Vec<AccessCodeNumber> = Vec::new();
         for op in &prepared.plan.ops {

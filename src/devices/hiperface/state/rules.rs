@@ -26,13 +26,13 @@ pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &
 }
 
 /// Checks whether the field can change its size, which only the last field can.
-pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
+pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     status(field)?;
     allowed(plan_delete(memory, field))
 }
 
 pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowed {
-    resizable(memory, field)?;
+    check_resizable(memory, field)?;
     check_edits_preserved(staged, field.number, 0)
 }
 
@@ -68,7 +68,7 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
 }
 
 /// Checks that the bytes of every unwritten edit still exist after the plan.
-pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
+pub(super) fn preserves_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
             check_edits_preserved(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
@@ -119,10 +119,10 @@ mod tests {
         let mut staged = Staged::default();
         staged.refresh(vec![field.clone()]);
         let plan = plan_delete(memory, &field).unwrap();
-        assert_eq!(keeps_edits(&staged, &plan), Ok(()));
+        assert_eq!(preserves_edits(&staged, &plan), Ok(()));
         staged.put(0, 3, &[1]).unwrap();
-        assert_eq!(keeps_edits(&staged, &plan).unwrap_err().id(), "rules.edits");
+        assert_eq!(preserves_edits(&staged, &plan).unwrap_err().id(), "rules.edits");
         let grown = plan_redefine(memory, &field, DataFieldStatus::from_byte(0xC9)).unwrap();
-        assert_eq!(keeps_edits(&staged, &grown), Ok(()));
+        assert_eq!(preserves_edits(&staged, &grown), Ok(()));
     }
 }

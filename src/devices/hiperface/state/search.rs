@@ -42,7 +42,7 @@ impl Search {
         self.end.is_none()
     }
 
-    pub(crate) fn link_to(&self, found: &FoundEncoder) -> LinkUrl {
+    pub(crate) fn encoder_link(&self, found: &FoundEncoder) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());
         url.query.set("parity", found.format.parity.word());
@@ -148,7 +148,7 @@ impl Finder for SearchFinder {
             SearchAction::Choose(at) => {
                 let Some(search) = &self.search else { return };
                 if let Some(found) = search.found.get(at) {
-                    context.open_discovered(search.link_to(found));
+                    context.open_discovered(search.encoder_link(found));
                 }
             }
         }

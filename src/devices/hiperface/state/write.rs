@@ -55,16 +55,16 @@ impl HasMemory for Encoder {
         HiperfaceJob::Commit(Box::new(agreed))
     }
 
-    fn objection(&self, change: &Change) -> Option<Text> {
+    fn change_rejection(&self, change: &Change) -> Option<Text> {
         rules::change(&self.staged, change).err()
     }
 
     fn rejection_reason(&self, prepared: &Prepared) -> Option<Text> {
-        rules::keeps_edits(&self.staged, &prepared.plan).err()
+        rules::preserves_edits(&self.staged, &prepared.plan).err()
     }
 
     fn carried_out(&mut self, _: &Committed, services: &mut Services) {
-        let Some(prepared) = self.review().and_then(Review::writing) else { return };
+        let Some(prepared) = self.review().and_then(Review::plan_in_progress) else { return };
         let ops = prepared.plan.ops.clone();
         self.follow(&ops, services);
     }
@@ -101,7 +101,7 @@ impl HasProfile for Encoder {
         Some(Body::new(self.wanted_profile()?))
     }
 
-    fn known_body(&self) -> Option<KnownProfile> {
+    fn last_read_profile(&self) -> Option<KnownProfile> {
         let identity = self.identity.as_ref()?;
         let fields = self.staged.device().to_vec();
         let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));

@@ -7,12 +7,12 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, kind_words,
+    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, kind_text,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, split,
+    button_with_reason, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, split,
     text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
@@ -193,7 +193,7 @@ fn second_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, act
         number_ui(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;
         slot(ui, theme, encoder, Slot::Second, typed, actions);
-        match encoder.commutation.second(encoder.geometry()) {
+        match encoder.commutation.second_vector_result(encoder.geometry()) {
             Some(Ok((verdict, words))) => verdict_ui(ui, theme, verdict, &words),
             Some(Err(why)) => paragraph(ui, theme.label(theme.words(&why))),
             None => {}
@@ -225,7 +225,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
-            if allowed_button(ui, theme, &allowed, icons::CROSSHAIR, &say(theme, read)).clicked() {
+            if button_with_reason(ui, theme, &allowed, icons::CROSSHAIR, &say(theme, read)).clicked() {
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
@@ -249,10 +249,10 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
 /// Draws the position of a slot and how it was obtained, on one line with and without it.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
     let Some(reading) = encoder.commutation.reading(slot) else {
-        ui.label(theme.mono("–").color(theme.palette.muted));
+        ui.label(theme.monospace("–").color(theme.palette.muted));
         return;
     };
-    ui.label(theme.mono(theme.number(reading.fine_periods, 5)));
-    let words = theme.words(&kind_words(reading));
+    ui.label(theme.monospace(theme.number(reading.fine_periods, 5)));
+    let words = theme.words(&kind_text(reading));
     ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
 }

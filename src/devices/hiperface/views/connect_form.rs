@@ -13,9 +13,11 @@ use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction, SearchFinder};
-use crate::ui::controls::{allowed_button, button, choice, entry, fill, paragraph, spinner, text_entry};
+use crate::ui::controls::{button, button_with_reason, choice, entry, fill, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{echo, expandable_ui, network, parity, recording, segments, serial, typed};
+use crate::ui::dialogs::connect::entries::{
+    echo, expandable_ui, network, parity, recording, segmented_control, serial, typed,
+};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -47,7 +49,7 @@ impl TypedConnectForm for HiperfaceConnectForm {
             (LinkKind::Tcp, "connect.tcp"),
             (LinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.kind, kinds);
+        segmented_control(ui, theme, &mut form.kind, kinds);
         ui.add_space(theme.space.between);
         match form.kind {
             LinkKind::Virtual => simulated_ui(ui, theme, form),
@@ -68,10 +70,10 @@ impl TypedConnectForm for HiperfaceConnectForm {
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     entry(ui, theme, &say(theme, "connect.model"), |ui| {
-        let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
-        let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
+        let mut at = LinkForm::model_names().position(|model| model == form.model).unwrap_or(0);
+        let models = LinkForm::model_names().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
         if choice(ui, &say(theme, "connect.model"), &mut at, models)
-            && let Some(model) = LinkForm::models().nth(at)
+            && let Some(model) = LinkForm::model_names().nth(at)
         {
             model.clone_into(&mut form.model);
         }
@@ -122,7 +124,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, ac
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, theme);
-            } else if allowed_button(
+            } else if button_with_reason(
                 ui,
                 theme,
                 &dialog.url().map(drop),
@@ -138,7 +140,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, ac
             if let Some(progress) = search.and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(theme.mono(theme.words(&words::step_text(&progress.step))).color(theme.palette.muted));
+                ui.label(theme.monospace(theme.words(&words::step_text(&progress.step))).color(theme.palette.muted));
             }
         });
         if let Some(search) = search {

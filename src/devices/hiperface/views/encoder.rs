@@ -58,7 +58,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             row(ui, theme, &say(theme, "encoder_card.memory"), theme.words(&text));
         } else {
             let total = format!("{} B", identity.label.eeprom_bytes());
-            row(ui, theme, &say(theme, "encoder_card.memory"), theme.mono(total));
+            row(ui, theme, &say(theme, "encoder_card.memory"), theme.monospace(total));
         }
         line_quality_ui(ui, theme, encoder);
     });
@@ -71,7 +71,7 @@ fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     }
     let quality = &encoder.line_quality;
     let words = RichText::new(theme.words(&words::line_quality(quality)));
-    let words = if quality.is_troubled() { words.color(theme.palette.warn) } else { words };
+    let words = if quality.has_errors() { words.color(theme.palette.warn) } else { words };
     row(ui, theme, &say(theme, "encoder_card.line"), words);
 }
 
@@ -79,18 +79,18 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     let none = || theme.say("encoder_card.not_told");
     let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
     let serial = &identity.serial;
-    row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(&serial.serial_number)));
-    row(ui, theme, &say(theme, "encoder_card.type"), theme.mono(format!("{:02X}h", identity.label.encoder_type)));
+    row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(&serial.serial_number)));
+    row(ui, theme, &say(theme, "encoder_card.type"), theme.monospace(format!("{:02X}h", identity.label.encoder_type)));
     let resolution = match identity.geometry {
         Some(geometry) => theme.words(&words::geometry(geometry)),
         None => say(theme, "encoder_card.no_geometry"),
     };
     row(ui, theme, &say(theme, "encoder_card.resolution"), resolution);
     let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
-    row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware.trim())));
-    row(ui, theme, &say(theme, "encoder_card.address"), theme.mono(format!("{:02X}h", identity.address)));
+    row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(or_none(firmware.trim())));
+    row(ui, theme, &say(theme, "encoder_card.address"), theme.monospace(format!("{:02X}h", identity.address)));
     row(ui, theme, &say(theme, "encoder_card.settings"), theme.words(&words::line_settings(identity.label.settings)));
-    row(ui, theme, &say(theme, "encoder_card.options"), theme.mono(format!("{:02X}h", identity.label.options)));
+    row(ui, theme, &say(theme, "encoder_card.options"), theme.monospace(format!("{:02X}h", identity.label.options)));
 }
 
 fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -118,7 +118,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                     if code.is_warning() { (icons::WARNING, palette.warn) } else { (icons::X_CIRCLE, palette.bad) };
                 ui.horizontal_top(|ui| {
                     ui.label(RichText::new(icon).color(colour));
-                    ui.label(theme.mono(format!("{:02X}h", code.byte())));
+                    ui.label(theme.monospace(format!("{:02X}h", code.byte())));
                     ui.add(egui::Label::new(theme.words(&words::status(*code))).wrap().selectable(true));
                 });
             }
@@ -146,12 +146,12 @@ fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         for part in words::label(bytes) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;
-                let addresses = ui.label(theme.mono(&part.addresses).color(theme.palette.muted));
+                let addresses = ui.label(theme.monospace(&part.addresses).color(theme.palette.muted));
                 ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
                     paragraph(ui, theme.words(&part.meaning));
-                    paragraph(ui, theme.mono(&part.bytes).size(theme.sizes.caption).color(theme.palette.muted));
+                    paragraph(ui, theme.monospace(&part.bytes).size(theme.sizes.caption).color(theme.palette.muted));
                 });
             });
         }

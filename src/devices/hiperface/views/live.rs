@@ -44,8 +44,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         return;
     }
     if let Some((turns, steps)) = place {
-        row(ui, theme, &theme.say("live.turns"), theme.mono(turns.to_string()));
-        row(ui, theme, &theme.say("live.step"), theme.mono(steps.to_string()));
+        row(ui, theme, &theme.say("live.turns"), theme.monospace(turns.to_string()));
+        row(ui, theme, &theme.say("live.step"), theme.monospace(steps.to_string()));
     }
     raw_row(ui, theme, format!("{:08X}h  {}", reading.raw, reading.raw));
 }

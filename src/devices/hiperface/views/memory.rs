@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, Fie
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Staged, TEXTS, forms, rules};
 use crate::devices::hiperface::views::say;
-use crate::ui::controls::{allowed_button, choice, empty_placeholder, name, paragraph};
+use crate::ui::controls::{button_with_reason, choice, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
 };
@@ -234,14 +234,16 @@ fn field_header_ui(
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
-        if allowed_button(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &say(theme, word)).clicked() {
+        if button_with_reason(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &say(theme, word))
+            .clicked()
+        {
             change = Some(Change::LockField { number: field.number, lock });
         }
         code_menu_ui(ui, theme, &ready().and_then(|()| rules::status(field)), field, &mut change);
-        let resizable = ready().and_then(|()| rules::resizable(memory, field));
+        let resizable = ready().and_then(|()| rules::check_resizable(memory, field));
         size_menu_ui(ui, theme, &resizable, memory, (field, &encoder.staged), &mut change);
         let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
-        if allowed_button(ui, theme, &deletable, icons::TRASH, &say(theme, "memory.delete")).clicked() {
+        if button_with_reason(ui, theme, &deletable, icons::TRASH, &say(theme, "memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
         }
     });
@@ -279,7 +281,7 @@ fn size_menu_ui(
 ) {
     let word = say(theme, "memory.resize");
     if allowed.is_err() {
-        allowed_button(ui, theme, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
+        button_with_reason(ui, theme, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
         return;
     }
     let menu = ui.menu_button(format!("{}  {word}", icons::ARROWS_OUT_LINE_HORIZONTAL), |ui| {
@@ -324,7 +326,7 @@ fn create_ui(
         } else {
             Err(Text::new("session.not_ready"))
         };
-        if allowed_button(ui, theme, &allowed, icons::PLUS, &say(theme, "memory.create")).clicked() {
+        if button_with_reason(ui, theme, &allowed, icons::PLUS, &say(theme, "memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
             actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));

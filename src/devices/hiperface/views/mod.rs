@@ -92,7 +92,7 @@ impl TypedDeviceView for HiperfaceView {
                 .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));
             return;
         }
-        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
             Page::Encoder => encoder::page_ui(ui, theme, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, theme, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, theme, encoder, &mut view.setup, actions),

@@ -165,7 +165,7 @@ fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiS
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
     folding_card(ui, theme, TEXTS.text("address_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "address_card.words")));
-        entry(ui, theme, &say(theme, "address_card.now"), |ui| ui.label(theme.mono(now)));
+        entry(ui, theme, &say(theme, "address_card.now"), |ui| ui.label(theme.monospace(now)));
         entry(ui, theme, &say(theme, "address_card.new"), |ui| {
             text_entry(ui, &mut view.address, 64.0, &say(theme, "address_card.new"), "41");
             if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &say(theme, "address_card.plan"))
@@ -227,7 +227,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
 fn chosen_settings(stored: LineSettings) -> Chosen {
     Chosen {
         format: stored.format().unwrap_or(CharacterFormat::FACTORY),
-        long_timeout: stored.long_timeout(),
+        long_timeout: stored.has_long_timeout(),
         bus: stored.is_bus(),
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
         (InterbusAction::Check, []) => check_device(common, output),
         (InterbusAction::LeadBack, []) => lead_back(common, output),
         (InterbusAction::Default, []) => {
-            output.remark(&TEXTS.text("ib_disturbs.default").terminal());
+            output.remark(&TEXTS.text("ib_disturbs.default").terminal_text());
             change(common, output, act, |_| Ok(Change::Default))
         }
         (InterbusAction::Preset, []) => {
@@ -61,14 +61,14 @@ fn lead_back(common: &CommonArgs, output: &Output) -> Result {
     DisturbanceLevel::LeadingBack.announce(output);
     let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
-    let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
+    let (is, word) = (words::startup_mode_text(now).terminal_text(), format!("0x{:08X}", reading.word));
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
     let Reply::Error(error) = reading.reply() else {
         output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
         return Ok(Done::Well);
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
-    let why = words::refusal(error).terminal();
+    let why = words::refusal(error).terminal_text();
     Err(Failure::Failed(vec![format!("The encoder was returned to operation, but sends {word}: {why}")]))
 }
 

@@ -37,7 +37,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
 fn identity_text(identity: &Identity) -> String {
     let kind = if identity.flags.multiturn() { "multiturn" } else { "single turn" };
     let less = if identity.flags.steps_minus_one() { ", steps minus one" } else { "" };
-    let direction = words::direction(identity.direction).terminal();
+    let direction = words::direction(identity.direction).terminal_text();
     let mut lines = Lines::default();
     lines
         .add("encoder", format!("INTERBUS K3, {kind}{less}"))
@@ -45,7 +45,7 @@ fn identity_text(identity: &Identity) -> String {
         .add("software version", identity.software_version)
         .add("steps", format!("{} over {}", identity.steps, turns(identity.revolutions)))
         .add("direction", format!("{} ({direction})", identity.direction))
-        .add("mode", words::startup(identity.mode).terminal());
+        .add("mode", words::startup_mode_text(identity.mode).terminal_text());
     lines.text()
 }
 
@@ -73,11 +73,11 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
         .iter()
         .map(|error| {
             let word = format!("0x{:08X}", Reply::Error(*error).emit());
-            json!({"code": error.code.get(), "text": words::refusal(*error).terminal(), "word": word})
+            json!({"code": error.code.get(), "text": words::refusal(*error).terminal_text(), "word": word})
         })
         .collect();
     let warnings: Vec<Json> =
-        stray(&status).map(|(code, text)| json!({"code": code, "text": text})).into_iter().collect();
+        unexpected_bits(&status).map(|(code, text)| json!({"code": code, "text": text})).into_iter().collect();
     let json = json!({
         "ok": errors.is_empty(),
         "errors": errors,
@@ -92,8 +92,8 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
 }
 
 /// Returns the bits of a position word that should be 0.
-fn stray(status: &Status) -> Option<(u32, String)> {
-    let bits = u32::from(status.reading.stray()) << Value::BITS;
+fn unexpected_bits(status: &Status) -> Option<(u32, String)> {
+    let bits = u32::from(status.reading.unexpected_bits()) << Value::BITS;
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))
 }
 
@@ -102,14 +102,15 @@ fn celsius(tenths: i32) -> f64 {
 }
 
 fn status_text(status: &Status) -> String {
-    let error =
-        status.error.map(|error| format!("0x{:08X}: {}", Reply::Error(error).emit(), words::refusal(error).terminal()));
+    let error = status
+        .error
+        .map(|error| format!("0x{:08X}: {}", Reply::Error(error).emit(), words::refusal(error).terminal_text()));
     let mut lines = Lines::default();
     lines
         .add("errors", error.unwrap_or_else(|| "none".to_owned()))
-        .add("warnings", stray(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
+        .add("warnings", unexpected_bits(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
         .add("IN word", format!("0x{:08X}", status.reading.word))
-        .add("mode", words::startup(status.mode).terminal())
+        .add("mode", words::startup_mode_text(status.mode).terminal_text())
         .add("temperature", format!("{:.1} °C", celsius(status.temperature_tenths)))
         .add("operating time", format!("{} min", status.operating_minutes));
     lines.text()

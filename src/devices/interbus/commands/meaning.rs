@@ -43,7 +43,8 @@ impl WordMeaning {
 
 pub(super) fn k1_word_meaning(word: Single) -> WordMeaning {
     let position = word.position().get();
-    let words = format!("position {position} of a K1 encoder{}", stray(word.stray(), "above bit 11"));
+    let words =
+        format!("position {position} of a K1 encoder{}", unexpected_bits(word.unexpected_bits(), "above bit 11"));
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
@@ -54,7 +55,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
     let meaning = |command: Command, modes: Vec<EncoderMode>| {
-        let (words, value) = command_words(command);
+        let (words, value) = command_description(command);
         WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
     let legal = |command: Command| EncoderMode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
@@ -83,7 +84,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
             direction: "OUT",
             modes: vec![refused.mode],
             words: format!("not legal, {}", wrong_mode_text(refused.command)),
-            value: command_words(refused.command).1,
+            value: command_description(refused.command).1,
             legal: false,
         })
         .into_iter()
@@ -93,7 +94,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
 fn wrong_mode_text(command: Command) -> String {
     let modes: Vec<&str> =
         EncoderMode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(EncoderMode::name).collect();
-    format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
+    format!("\"{}\" is for {} mode", command_description(command).0, modes.join(" or "))
 }
 
 /// Returns the meaning of an IN word in the known mode, or in every mode in which the word may occur.
@@ -109,7 +110,7 @@ pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeanin
     use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
     let mut all = match reply {
         Reply::Run { value, stray: bits } => {
-            let stray = stray(bits.into(), "in bits 30 to 25");
+            let stray = unexpected_bits(bits.into(), "in bits 30 to 25");
             let number = value.get();
             vec![
                 meaning(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
@@ -149,11 +150,11 @@ pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeanin
     all
 }
 
-fn stray(bits: u32, place: &str) -> String {
+fn unexpected_bits(bits: u32, place: &str) -> String {
     if bits == 0 { String::new() } else { format!("; warning: 0x{bits:X} {place} should be 0") }
 }
 
-fn command_words(command: Command) -> (String, Option<u32>) {
+fn command_description(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {
         Command::Set(Parameter::Default, _) => {
@@ -217,7 +218,7 @@ fn outputs(word: u32, shift: Option<WindowShift>) -> String {
         }
         None => format!("window 0x{:05X} (--shift says of which bits)", output.window),
     };
-    format!("{} on; {window}{}", cams(output.outputs.into()), stray(output.stray.into(), "in bits 30 to 25"))
+    format!("{} on; {window}{}", cams(output.outputs.into()), unexpected_bits(output.stray.into(), "in bits 30 to 25"))
 }
 
 fn echo(reply: Reply, mode: EncoderMode) -> String {
@@ -229,10 +230,10 @@ fn echo(reply: Reply, mode: EncoderMode) -> String {
     let with = if manufacturer { ", manufacturer bit" } else { "" };
     match (reply.echoed_command(mode), code) {
         (Some(command), 0) if !matches!(command, Command::CamStart(..) | Command::CamStop(..)) => {
-            format!("echo of \"{}\"", command_words(command).0)
+            format!("echo of \"{}\"", command_description(command).0)
         }
-        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", command_words(command).0),
-        (Some(command), _) => format!("echo of \"{}\"", command_words(command).0),
+        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", command_description(command).0),
+        (Some(command), _) => format!("echo of \"{}\"", command_description(command).0),
         (None, 0) if data == Value::default() => format!("busy{with}"),
         (None, 0) => format!("busy{with}, data {}", data.get()),
         (None, code) => format!("echo of code {code}{with}, data {}", data.get()),
@@ -242,16 +243,16 @@ fn echo(reply: Reply, mode: EncoderMode) -> String {
 fn read_out(value: Value, read_out: Option<ReadOutNumber>) -> String {
     let number = value.get();
     match read_out {
-        Some(read_out) => format!("{} {}", name(read_out), scaled(value, read_out)),
+        Some(read_out) => format!("{} {}", name(read_out), scaled_value(value, read_out)),
         None => format!(
             "read-out value {number} (0x{number:X}); as temperature {}, as operating time {} (--read-out says what it is)",
-            scaled(value, ReadOutNumber::TEMPERATURE),
-            scaled(value, ReadOutNumber::OPERATING_TIME),
+            scaled_value(value, ReadOutNumber::TEMPERATURE),
+            scaled_value(value, ReadOutNumber::OPERATING_TIME),
         ),
     }
 }
 
-fn scaled(value: Value, read_out: ReadOutNumber) -> String {
+fn scaled_value(value: Value, read_out: ReadOutNumber) -> String {
     match read_out.value(value) {
         ReadOutValue::Plain(number) => format!("{number} (0x{number:X})"),
         ReadOutValue::Minutes(minutes) => format!("{minutes} min"),
@@ -268,7 +269,7 @@ fn scaled(value: Value, read_out: ReadOutNumber) -> String {
             flags.value().get(),
             if flags.steps_minus_one() { "steps−1 mode" } else { "steps as they are" },
             if flags.multiturn() { "multiturn" } else { "single turn" },
-            stray(flags.unknown(), "is unknown and"),
+            unexpected_bits(flags.unknown(), "is unknown and"),
         ),
     }
 }

@@ -19,7 +19,7 @@ use clap::builder::PossibleValue;
 use self::args::{InterbusAction, WordOptions};
 use crate::cli::args::{Command, CommonArgs, ConsentArgs, SimulateArgs};
 use crate::cli::commands::{CommandId, DeviceCommands, enum_values, options_of};
-use crate::cli::consent::{ask, can_ask};
+use crate::cli::consent::{ask, can_prompt};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
@@ -127,7 +127,7 @@ impl DisturbanceLevel {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);
         let consented = consent.is_some_and(|consent| consent.yes);
-        if !matches!(self, DisturbanceLevel::Programs) || is_virtual || consented || !can_ask() {
+        if !matches!(self, DisturbanceLevel::Programs) || is_virtual || consented || !can_prompt() {
             return Ok(());
         }
         if ask("Does the machine stand still? [y/N] ") {
@@ -142,6 +142,6 @@ impl DisturbanceLevel {
             DisturbanceLevel::Programs => "ib_disturbs.programs",
             DisturbanceLevel::LeadingBack => "ib_disturbs.lead_back",
         };
-        output.remark(&TEXTS.text(id).terminal());
+        output.remark(&TEXTS.text(id).terminal_text());
     }
 }

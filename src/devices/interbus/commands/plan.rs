@@ -26,13 +26,13 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     };
     let prepared =
         result_of!(runner.run(InterbusJob::Prepare(change))?, InterbusOutput::Prepared(prepared) => *prepared);
-    if !reads_all && prepared.plan.ops.iter().any(is_shorter) {
-        output.remark(&TEXTS.text("ib_disturbs.shorter").terminal());
+    if !reads_all && prepared.plan.ops.iter().any(reduces_steps) {
+        output.remark(&TEXTS.text("ib_disturbs.shorter").terminal_text());
     }
     Ok(prepared)
 }
 
-fn is_shorter(op: &Op) -> bool {
+fn reduces_steps(op: &Op) -> bool {
     let Op::Parameterise(changes) = op else { return false };
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
@@ -49,11 +49,11 @@ pub(super) fn commit(
     }
     let wear = prepared.wear();
     check_wear::<Interbus>(consent, &prepared)?;
-    let wear_text = words::wear(&prepared).map(|text| text.terminal());
+    let wear_text = words::wear(&prepared).map(|text| text.terminal_text());
     if let Some(wear_text) = &wear_text {
         output.remark(wear_text);
     }
-    let stop = TEXTS.text("ib_disturbs.writing").terminal();
+    let stop = TEXTS.text("ib_disturbs.writing").terminal_text();
     let text = format!("{}{stop}", shown(&prepared).text);
     let mut texts = vec![text.as_str()];
     if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(wear_text)) = (wear, &wear_text) {

@@ -13,7 +13,7 @@ use crate::cli::profiles::{
     UnrestoredItems, print_missing, print_skipped_mounting, profile_to_restore, restore_options, save_profile,
     write_restore,
 };
-use crate::cli::runner::unexpected;
+use crate::cli::runner::unexpected_output;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, required_programs};
@@ -39,7 +39,7 @@ impl ProfileCommands for InterbusCommands {
         disturbs.begin(common, output, Some(&restore.consent))?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
-            output.remark(&words::other_type(types).terminal());
+            output.remark(&words::other_type(types).terminal_text());
         }
         print_missing(output, &prepared.missing);
         print_skipped_mounting(output, &prepared.mounting_left);
@@ -54,7 +54,7 @@ impl ProfileCommands for InterbusCommands {
     fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,
-            Some(profile) => as_far_as(common, output, profile)?,
+            Some(profile) => read_comparable_profile(common, output, profile)?,
         };
         Ok(Body::new(profile))
     }
@@ -66,7 +66,7 @@ impl ProfileCommands for InterbusCommands {
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)
                 .err()?;
         Some(match error {
-            PlanError::OtherType(types) => words::other_type(types).terminal(),
+            PlanError::OtherType(types) => words::other_type(types).terminal_text(),
             PlanError::OtherDevice { profile, device } => {
                 format!("The profile is of serial number {profile}, the encoder has {device}.")
             }
@@ -80,11 +80,11 @@ fn saved(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
     DisturbanceLevel::Programs.begin(common, output, None)?;
     match runner.run(InterbusJob::Save { programs: true })? {
         InterbusOutput::Saved(profile) => Ok(*profile),
-        other => Err(unexpected(&other)),
+        other => Err(unexpected_output(&other)),
     }
 }
 
-fn as_far_as(common: &CommonArgs, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
+fn read_comparable_profile(common: &CommonArgs, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
     let needed = required_programs(profile);
     let mut runner = Runner::open(common)?;
     let disturbs = if needed.is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };

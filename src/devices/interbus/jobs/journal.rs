@@ -64,7 +64,7 @@ impl Journal for Notes {
         warn(self.excursions().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
-    fn is_back(&mut self, serial_number: &str) {
+    fn record_return(&mut self, serial_number: &str) {
         warn(self.excursions().remove(KIND, &self.name(serial_number)));
     }
 
@@ -76,7 +76,7 @@ impl Journal for Notes {
         }
     }
 
-    fn may_have_stored(&mut self, serial_number: &str, stores: u64) {
+    fn record_possible_stores(&mut self, serial_number: &str, stores: u64) {
         let begun = match self.begun.remove(serial_number) {
             None if stores > 0 => warn(self.intend(serial_number, stores)),
             begun => begun,

@@ -35,7 +35,7 @@ pub(super) fn prepare(
         }
         Change::Write(wanted) => {
             device = state(&affected_programs(wanted))?;
-            only(plan_edits(&device.image, wanted)?)
+            restore_from_plan(plan_edits(&device.image, wanted)?)
         }
         Change::Item(item, value) => {
             let needed = match item {
@@ -45,15 +45,15 @@ pub(super) fn prepare(
             device = state(&needed)?;
             let mut wanted = Image { shift: None, ..device.image.clone() };
             wanted.put(*item, *value);
-            only(plan_edits(&device.image, &wanted)?)
+            restore_from_plan(plan_edits(&device.image, &wanted)?)
         }
         Change::Preset { value } => {
             device = state(&[])?;
-            only(plan_preset(&device.image.parameters, *value)?)
+            restore_from_plan(plan_preset(&device.image.parameters, *value)?)
         }
         Change::Default => {
             device = state(&[])?;
-            only(plan_default(&device.image.parameters))
+            restore_from_plan(plan_default(&device.image.parameters))
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
@@ -86,6 +86,6 @@ fn affected_programs(wanted: &Image) -> Vec<ProgramNumber> {
     }
 }
 
-fn only(plan: InterbusPlan) -> Restore {
+fn restore_from_plan(plan: InterbusPlan) -> Restore {
     Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }

@@ -110,7 +110,7 @@ pub fn check(
             ));
             lines.push(identity(&survey));
             lines.push(temperature(survey.temperature_tenths));
-            lines.extend(worn(wear(&survey.identity)));
+            lines.extend(wear_result(wear(&survey.identity)));
         }
         Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
         Err(error) => {
@@ -182,7 +182,7 @@ fn temperature(tenths: i32) -> InterbusStepResult {
     InterbusStepResult::of(CheckStep::Temperature, vec![(verdict, CheckFinding::Temperature(tenths))])
 }
 
-fn worn(wear: Wear) -> Option<InterbusStepResult> {
+fn wear_result(wear: Wear) -> Option<InterbusStepResult> {
     let (verdict, seen) = wear.judged()?;
     Some(InterbusStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

@@ -34,5 +34,5 @@ pub trait ProcessData {
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
     /// Sets whether cancellation is ignored, and returns the previous setting.
-    fn shield(&mut self, shielded: bool) -> bool;
+    fn ignore_cancellation(&mut self, shielded: bool) -> bool;
 }

@@ -80,7 +80,7 @@ impl<'a> Gateway<'a> {
         let mut tries = 0;
         loop {
             tries += 1;
-            let trouble = match self.ask_once(requested)? {
+            let trouble = match self.request_once(requested)? {
                 Ok(registers) => {
                     *self.state.silent = false;
                     return Ok(registers);
@@ -115,7 +115,7 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn ask_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
+    fn request_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
         // Not 0: a device that ignores the number uses that.
@@ -232,7 +232,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
 fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
-    let requested = match (function, carried_word(true, sent, order)) {
+    let requested = match (function, process_data_word(true, sent, order)) {
         (4, _) => RequestedItem::Input { register },
         (3, _) => RequestedItem::Output { register },
         (_, Some(Carried::Out(word))) => RequestedItem::Write { register, word },
@@ -304,8 +304,8 @@ impl ProcessData for Gateway<'_> {
         Ok(self.line.wait(duration)?)
     }
 
-    fn shield(&mut self, shielded: bool) -> bool {
-        self.line.shield(shielded)
+    fn ignore_cancellation(&mut self, shielded: bool) -> bool {
+        self.line.ignore_cancellation(shielded)
     }
 }
 
@@ -317,7 +317,7 @@ pub enum Carried {
 }
 
 /// Returns the process data word in a traced frame, sent or received, or `None` if the frame contains none.
-pub fn carried_word(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
+pub fn process_data_word(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),
         (false, [4, 4, a, b, c, d]) => Some(Carried::In(word(order, [*a, *b, *c, *d]))),

@@ -131,7 +131,7 @@ pub fn read_programs(
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.run_guarded(|master| {
         master.go(mode)?;
-        master.stay();
+        master.keep_current_mode();
         Ok(master.mode().unwrap_or(mode))
     })
 }

@@ -24,12 +24,12 @@ pub trait Journal {
     fn record_excursion(&mut self, serial_number: &str, excursion: &ModeSwitch);
 
     /// Records that the encoder is back in its previous mode.
-    fn is_back(&mut self, serial_number: &str);
+    fn record_return(&mut self, serial_number: &str);
 
     /// Records, in advance, the number of cam programs to be selected, since leaving a program may store it.
     fn record_intent(&mut self, serial_number: &str, stores: u64);
 
     /// Records how many cam programs the encoder may have stored. Does nothing if no store was announced and none can
     /// have happened.
-    fn may_have_stored(&mut self, serial_number: &str, stores: u64);
+    fn record_possible_stores(&mut self, serial_number: &str, stores: u64);
 }

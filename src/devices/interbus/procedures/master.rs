@@ -139,10 +139,10 @@ impl<'a> Master<'a> {
     }
 
     /// Runs `work`, which returns the encoder to a safe state, and ignores cancellation until it is done.
-    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.data.shield(true);
+    pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.data.ignore_cancellation(true);
         let result = work(self);
-        self.data.shield(before);
+        self.data.ignore_cancellation(before);
         result
     }
 
@@ -157,7 +157,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
-        self.leave_value()?;
+        self.await_no_value()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
         self.until(command, ExpectedWord::Value, self.patience, |CycleResult { word, same, .. }| {
@@ -226,7 +226,7 @@ impl<'a> Master<'a> {
                 there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
                 (sent.is_settled() && there.is_stable()).then_some(Ok(()))
             });
-        self.shielded(Self::return_to_operation).and(fired)
+        self.run_uncancellable(Self::return_to_operation).and(fired)
     }
 
     /// Sends a command in every cycle until `judge` returns a result, given the IN word and how long that word has been
@@ -265,7 +265,7 @@ impl<'a> Master<'a> {
     fn cycle(&mut self, command: Command) -> Result<u32, Error> {
         let before = self.out.replace(command);
         self.input = match self.data.cycle(command.emit()) {
-            Err(error) if is_unwritten(&error) => {
+            Err(error) if is_write_refused(&error) => {
                 self.out = before;
                 return Err(error);
             }
@@ -300,7 +300,7 @@ impl<'a> Master<'a> {
     /// Returns the most likely reason for a missing reply.
     fn timeout_error(&mut self, command: Command, awaited: ExpectedWord, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
-        match self.shielded(|master| master.data.output()) {
+        match self.run_uncancellable(|master| master.data.output()) {
             Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },
             Err(error) => return error,
             Ok(_) => {}
@@ -316,12 +316,12 @@ impl<'a> Master<'a> {
     }
 
     fn ensure_legal(&self, command: Command) -> Result<(), Error> {
-        Ok(command.ensure_legal(self.mode_at_start())?)
+        Ok(command.ensure_legal(self.effective_mode())?)
     }
 
     /// Returns the mode in which the encoder will interpret the next word; any read-out is ended before another word is
     /// sent.
-    fn mode_at_start(&self) -> EncoderMode {
+    fn effective_mode(&self) -> EncoderMode {
         match self.is {
             Some(StartupMode::Cams(_)) => EncoderMode::Cam,
             // The manual does not define the effect of other words then.
@@ -337,6 +337,6 @@ impl<'a> Master<'a> {
 
 /// Returns whether the gateway refused the word itself, so that it was not written. After any other exception, it may
 /// have been written.
-fn is_unwritten(error: &Error) -> bool {
+fn is_write_refused(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

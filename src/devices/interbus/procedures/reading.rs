@@ -73,7 +73,7 @@ impl WordReading {
     }
 
     /// Returns the bits of a running word that should be 0.
-    pub fn stray(&self) -> u8 {
+    pub fn unexpected_bits(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,
             _ => 0,

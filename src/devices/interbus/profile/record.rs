@@ -81,21 +81,21 @@ impl InterbusProfile {
             recorded,
             unknown: UnknownEntries::default(),
         };
-        profile.mark_mounting();
+        profile.mark_mounting_values();
         profile
     }
 
     /// Marks the items that depend on the mounting: preset and zero shift.
-    pub fn mark_mounting(&mut self) {
+    pub fn mark_mounting_values(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
-            if !self.is_mounting(item) {
+            if !self.is_mounting_value(item) {
                 self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: Unknown::new() });
             }
         }
     }
 
     /// Returns whether an item is marked as a mounting value.
-    pub fn is_mounting(&self, item: Item) -> bool {
+    pub fn is_mounting_value(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 

@@ -50,7 +50,7 @@ pub fn plan_restore(
         };
         if to == from {
             unchanged += 1;
-        } else if is_other && profile.is_mounting(item) {
+        } else if is_other && profile.is_mounting_value(item) {
             if options.with_mounting { &mut mounting_written } else { &mut mounting_left }.push(item);
         }
         wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });

@@ -26,7 +26,7 @@ impl Profile for InterbusProfile {
         };
         let mut unknown = UnknownEntries::default();
         let mut image = Image::of(read_parameters(entries.structure("parameters")?, &mut unknown)?);
-        image.shift = entries.optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
+        image.shift = entries.take_optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
         let mut names = CamNames::default();
         for entries in entries.structures("programs")? {
             let path = entries.path_of("program");
@@ -105,7 +105,7 @@ impl InterbusProfile {
             };
             let more = self.unknown.cams.get(&(at, cam)).map(entries_text).unwrap_or_default();
             let (cam, start, stop) = (cam.get(), start.get(), stop.get());
-            writer.entry_in_list(&format!("(cam: {cam}, start: {start}, stop: {stop}{called}{more})"));
+            writer.write_list_element(&format!("(cam: {cam}, start: {start}, stop: {stop}{called}{more})"));
         }
         writer.close(']');
         if let Some(unknown) = self.unknown.programs.get(&at) {
@@ -163,7 +163,7 @@ fn name(writer: &mut Writer, name: &str) {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let serial_number = entries.optional("serial_number", AllowedValues::Text)?.unwrap_or_default();
+    let serial_number = entries.take_optional("serial_number", AllowedValues::Text)?.unwrap_or_default();
     let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
     Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
 }
@@ -172,7 +172,7 @@ fn read_parameters(mut entries: Entries, unknown: &mut UnknownEntries) -> Result
     let steps = value(&mut entries, "steps")?.get();
     let revolutions = value(&mut entries, "revolutions")?.get();
     let path = entries.path_of("direction");
-    let word: String = entries.required("direction", DIRECTION)?;
+    let word: String = entries.take_required("direction", DIRECTION)?;
     let direction = word.parse::<Direction>().map_err(|_| ProfileError::Shape { path, expected: DIRECTION })?;
     let preset = value(&mut entries, "preset")?.get();
     let zero_shift = value(&mut entries, "zero_shift")?.get();
@@ -186,16 +186,16 @@ fn read_program(
     unknown: &mut UnknownEntries,
 ) -> Result<(ProgramNumber, Program), ProfileError> {
     let path = entries.path_of("program");
-    let number: u32 = entries.required("program", AllowedValues::Whole)?;
+    let number: u32 = entries.take_required("program", AllowedValues::Whole)?;
     let at = u8::try_from(number)
         .ok()
         .and_then(ProgramNumber::new)
         .ok_or_else(|| ProfileError::refused(path, EntryError::Item(ItemError::Program { number: number.into() })))?;
-    names.set_program(at, entries.optional("name", AllowedValues::Text)?.unwrap_or_default());
-    let mut program = Program { mask: entries.required("mask", AllowedValues::Byte)?, ..Program::default() };
+    names.set_program(at, entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default());
+    let mut program = Program { mask: entries.take_required("mask", AllowedValues::Byte)?, ..Program::default() };
     for mut entries in entries.structures("cams")? {
         let path = entries.path_of("cam");
-        let number: u32 = entries.required("cam", AllowedValues::Whole)?;
+        let number: u32 = entries.take_required("cam", AllowedValues::Whole)?;
         let cam = u8::try_from(number).ok().and_then(CamNumber::new);
         let wrong = |error: EntryError| ProfileError::refused(path, error);
         let Some(cam) = cam else {
@@ -205,7 +205,7 @@ fn read_program(
             return Err(wrong(EntryError::CamTwice(cam)));
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
-        names.set_cam(at, cam, entries.optional("name", AllowedValues::Text)?.unwrap_or_default());
+        names.set_cam(at, cam, entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default());
         add_unknown(&mut unknown.cams, (at, cam), entries.rest()?);
     }
     add_unknown(&mut unknown.programs, at, entries.rest()?);
@@ -228,11 +228,11 @@ fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        software_version: entries.optional("software_version", AllowedValues::Whole)?,
-        operating_minutes: entries.optional("operating_minutes", AllowedValues::Whole)?,
-        temperature_tenths: entries.optional("temperature_tenths", AllowedValues::Whole)?,
+        software_version: entries.take_optional("software_version", AllowedValues::Whole)?,
+        operating_minutes: entries.take_optional("operating_minutes", AllowedValues::Whole)?,
+        temperature_tenths: entries.take_optional("temperature_tenths", AllowedValues::Whole)?,
         mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
-        preset_flag: entries.optional("preset_flag", AllowedValues::Whole)?,
+        preset_flag: entries.take_optional("preset_flag", AllowedValues::Whole)?,
         unknown: entries.rest()?,
     })
 }
@@ -242,7 +242,7 @@ fn value(entries: &mut Entries, name: &str) -> Result<Value, ProfileError> {
 }
 
 fn optional_value(entries: &mut Entries, name: &str) -> Result<Option<Value>, ProfileError> {
-    let Some(number) = entries.optional(name, NUMBER)? else { return Ok(None) };
+    let Some(number) = entries.take_optional(name, NUMBER)? else { return Ok(None) };
     let shape = || ProfileError::Shape { path: entries.path_of(name), expected: NUMBER };
     Value::new(number).ok_or_else(shape).map(Some)
 }

@@ -101,7 +101,7 @@ impl Single {
     }
 
     /// Returns the bits that should be 0 but are set.
-    pub const fn stray(self) -> u32 {
+    pub const fn unexpected_bits(self) -> u32 {
         self.emit() & !self.position().get()
     }
 }

@@ -75,14 +75,14 @@ impl Gear {
 
     /// Converts disc steps to position steps: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual only states
     /// that both numbers form a gear). The result does not wrap, so the complete range yields all steps.
-    pub const fn scaled(self, raw: u32) -> u64 {
+    pub const fn scaled_value(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }
 
-    /// Returns the position that the encoder sends for a disc position, which is [`scaled`](Self::scaled) within the
+    /// Returns the position that the encoder sends for a disc position, which is [`scaled_value`](Self::scaled_value) within the
     /// range (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // Less than `steps`, which has 25 bits.
-        Value::of_word(self.scaled(raw % self.range()) as u32)
+        Value::of_word(self.scaled_value(raw % self.range()) as u32)
     }
 }

@@ -83,11 +83,11 @@ impl Reply {
         match self {
             Reply::Run { value, stray } => u32::from(stray & 0x3F) << Value::BITS | value.get(),
             Reply::Busy { manufacturer, data } => echo(manufacturer) | data.get(),
-            Reply::Echo { manufacturer, code, data } => echo(manufacturer) | code.in_word() | data.get(),
+            Reply::Echo { manufacturer, code, data } => echo(manufacturer) | code.to_word_bits() | data.get(),
             Reply::ReadOut(value) => READ_OUT | value.get(),
             Reply::UnknownReadOut(data) => READ_OUT | 2 << Value::BITS | data.get(),
-            Reply::Unknown { code, data } => READ_OUT | code.in_word() | data.get(),
-            Reply::Error(error) => ERROR | error.code.in_word() | error.data.get(),
+            Reply::Unknown { code, data } => READ_OUT | code.to_word_bits() | data.get(),
+            Reply::Error(error) => ERROR | error.code.to_word_bits() | error.data.get(),
         }
     }
 

@@ -53,7 +53,7 @@ impl Code {
     }
 
     /// Returns the code at its position within a word.
-    pub const fn in_word(self) -> u32 {
+    pub const fn to_word_bits(self) -> u32 {
         (self.0 as u32) << Value::BITS
     }
 }

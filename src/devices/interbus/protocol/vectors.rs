@@ -255,8 +255,11 @@ fn classes_have_their_id_codes() {
     assert_eq!((class_of_id(54).count(), class_of_id(0).count()), (4, 0));
     assert_eq!(Class::ALL.map(Class::bytes), [(2, 0), (4, 0), (4, 4)]);
     let (k1, k2) = (Single::parse_k1(0x1FFF), Single::parse_k2(0x0312_3456));
-    assert_eq!((Single::parse_k1(0x0FFF).position(), k1.position(), k1.stray()), (value(4095), value(4095), 0x1000));
-    assert_eq!((k2.position(), k2.stray()), (value(0x112_3456), 0x0200_0000));
+    assert_eq!(
+        (Single::parse_k1(0x0FFF).position(), k1.position(), k1.unexpected_bits()),
+        (value(4095), value(4095), 0x1000)
+    );
+    assert_eq!((k2.position(), k2.unexpected_bits()), (value(0x112_3456), 0x0200_0000));
     assert_eq!((k1.emit(), k2.emit()), (0x1FFF, 0x0312_3456));
 }
 
@@ -286,7 +289,7 @@ fn the_gear_rounds_down() {
     ];
     for (steps, turns, raw, scaled) in cases {
         let gear = Gear::new(steps, turns).unwrap();
-        assert_eq!(gear.scaled(raw), scaled, "{steps} steps, {turns} turns, {raw}");
+        assert_eq!(gear.scaled_value(raw), scaled, "{steps} steps, {turns} turns, {raw}");
     }
     let gear = Gear::new(255, 1).unwrap();
     assert_eq!((gear.position(8191), gear.position(8192), gear.position(12_287)), (value(254), value(0), value(127)));

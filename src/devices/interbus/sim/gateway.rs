@@ -117,7 +117,7 @@ impl Shared {
     /// Applies the configured faults to a reply. TCP delivers complete data or none, so what would be a one-byte fault
     /// on a serial line affects the whole reply.
     fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
-        let passage = self.faults.passage(&mut self.rng, 0);
+        let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
         if passage.inserted.is_some() {
             reply.iter_mut().for_each(|byte| *byte = self.rng.u8(..));

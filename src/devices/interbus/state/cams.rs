@@ -13,7 +13,7 @@ mod tests;
 pub mod words;
 
 pub use grid::{Tick, next_grid_line, rounded, ticks};
-pub use moving::{DragTarget, drawn, moved, pulled};
+pub use moving::{DragTarget, apply_drag, drawn, moved};
 pub use snap::{SnapSettings, snap};
 
 use super::staged::{EditedValues, Mark, Staged};

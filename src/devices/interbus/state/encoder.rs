@@ -10,7 +10,7 @@ use super::trace::Meaning;
 use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, Session, Source, some};
+use crate::app::session::{HasDraft, HasMemory, HasProfile, Phase, Session, Source, truncated_list};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Survey, WordReading};
@@ -82,7 +82,7 @@ impl Encoder {
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<Mark> = self.marks();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
-        some(&cams::words::marks(&marks), Text::clone)
+        truncated_list(&cams::words::marks(&marks), Text::clone)
     }
 
     pub fn profile(&self) -> Option<&InterbusProfile> {
@@ -134,7 +134,7 @@ impl Encoder {
         self.record.last().and_then(WordReading::position)
     }
 
-    pub(super) fn order(&self) -> WordOrder {
+    pub(super) fn word_order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
     }
@@ -191,7 +191,7 @@ impl Encoder {
 
     /// Adopts the results of a survey. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
-        if self.is_another(&survey.identity) {
+        if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
@@ -211,7 +211,7 @@ impl Encoder {
     }
 
     /// Returns whether the identity belongs to an encoder other than the one last read.
-    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+    pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }
 

@@ -75,7 +75,7 @@ impl Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<WordReading>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<WordReading>, dropped: u64) {
         if let Some(image) = self.staged.device() {
             self.preview.follow(&image.programs);
         }
@@ -146,8 +146,8 @@ impl SessionEvents for Encoder {
         self.forget_plan();
     }
 
-    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
-        self.handle_cut_write(how, texts)
+    fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        self.handle_interrupted_write(how, texts)
     }
 
     /// Submits a job. Jobs that replace the position or switch outputs are submitted only if the machine stands still.

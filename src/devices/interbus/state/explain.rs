@@ -12,7 +12,7 @@ use crate::devices::interbus::state::TEXTS;
 pub use check::check;
 pub use entry::entry;
 pub use gateway::{damage_text, exception_text};
-pub use item::{direction, parameter, read_out, startup};
+pub use item::{direction, parameter, read_out, startup_mode_text};
 pub use write::{change, op, other_type, plan, wear, weight, written};
 
 use crate::app::Text;
@@ -94,11 +94,14 @@ pub fn encoder(error: &Error) -> Text {
             TEXTS.text("interbus.word_order").with("input", word(*input)).with("swapped", word(*swapped))
         }
         Error::Implausible(why) => implausible(*why),
-        Error::NoMode { wanted, is } => {
-            TEXTS.text("interbus.no_mode").with_text("wanted", startup(*wanted)).with_text("is", startup(*is))
+        Error::NoMode { wanted, is } => TEXTS
+            .text("interbus.no_mode")
+            .with_text("wanted", startup_mode_text(*wanted))
+            .with_text("is", startup_mode_text(*is)),
+        Error::NotSelectable { mode } => {
+            TEXTS.text("interbus.not_selectable").with_text("mode", startup_mode_text(*mode))
         }
-        Error::NotSelectable { mode } => TEXTS.text("interbus.not_selectable").with_text("mode", startup(*mode)),
-        Error::UnknownMode { mode } => TEXTS.text("interbus.unknown_mode").with_text("mode", startup(*mode)),
+        Error::UnknownMode { mode } => TEXTS.text("interbus.unknown_mode").with_text("mode", startup_mode_text(*mode)),
         Error::Moving { from, to } => TEXTS.text("interbus.moving").with("from", from).with("to", to),
         Error::NotTaken { item, wanted, reads } => {
             TEXTS.text("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
@@ -155,10 +158,10 @@ fn standing(standing: &LeftState) -> Text {
         (Some(found), Some(is)) if found != is => TEXTS
             .text("ib_standing.other")
             .with_text("state", state)
-            .with_text("found", startup(found))
-            .with_text("is", startup(is)),
+            .with_text("found", startup_mode_text(found))
+            .with_text("is", startup_mode_text(is)),
         (Some(found), _) => {
-            TEXTS.text("ib_standing.found").with_text("state", state).with_text("found", startup(found))
+            TEXTS.text("ib_standing.found").with_text("state", state).with_text("found", startup_mode_text(found))
         }
         (None, _) => state,
     }

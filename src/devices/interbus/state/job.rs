@@ -14,7 +14,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
         InterbusJob::Check => Text::new("job.check"),
         InterbusJob::Read(item) => Text::new("job.read").with("item", item),
         InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", words::read_out(*what)),
-        InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", words::startup(*mode)),
+        InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", words::startup_mode_text(*mode)),
         InterbusJob::Save { .. } => Text::new("job.save"),
         InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
         InterbusJob::Commit(_) => Text::new("job.write"),

@@ -37,7 +37,7 @@ impl DeviceType for Encoder {
         Encoder::with(session, staged.unwrap_or_default())
     }
 
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

@@ -17,8 +17,8 @@ impl DeviceModel for Encoder {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
-        self.trace = Meaning::new(self.order());
-        self.session.adopt_line(opened, services);
+        self.trace = Meaning::new(self.word_order());
+        self.session.attach_connection(opened, services);
         self.submit(InterbusJob::Hello, services);
     }
 

@@ -84,13 +84,13 @@ impl Reading {
         };
         let single = |own: Single| {
             let position = TEXTS.text("ib_word.position").with("position", own.position().get());
-            let bits = || TEXTS.text("ib_word.stray").with("bits", format!("0x{:X}", own.stray()));
-            (position, (own.stray() != 0).then(bits))
+            let bits = || TEXTS.text("ib_word.stray").with("bits", format!("0x{:X}", own.unexpected_bits()));
+            (position, (own.unexpected_bits() != 0).then(bits))
         };
         let known = WordContext { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
         let (meaning, warning) = match self.source {
             WordSource::Out => (word_meaning::out(number, self.mode), None),
-            WordSource::In => (word_meaning::word_text(number, &known), word_meaning::stray(number)),
+            WordSource::In => (word_meaning::word_text(number, &known), word_meaning::unexpected_bits(number)),
             // Four digits.
             WordSource::K1 => single(Single::parse_k1(number as u16)),
             WordSource::K2 => single(Single::parse_k2(number)),

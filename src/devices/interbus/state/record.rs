@@ -35,7 +35,7 @@ impl Record {
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.record_dropped(dropped);
         for reading in readings {
-            self.see(&reading);
+            self.observe(&reading);
             self.last = Some(reading);
         }
     }
@@ -45,7 +45,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    fn see(&mut self, reading: &WordReading) {
+    fn observe(&mut self, reading: &WordReading) {
         let at = reading.at;
         match reading.mode {
             Some(StartupMode::Velocity) => {
@@ -72,7 +72,7 @@ impl Record {
                 at,
                 position: position.map(i64::from),
                 is_bad: position.is_none(),
-                is_warned: reading.stray() != 0 || is_beyond,
+                is_warned: reading.unexpected_bits() != 0 || is_beyond,
             };
             self.track.add(&[sighting], &meaning(reading.gear));
         }

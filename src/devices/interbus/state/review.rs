@@ -30,7 +30,7 @@ impl Reviewable for Interbus {
         words::op(op)
     }
 
-    fn leaves_mounting(prepared: &Prepared) -> bool {
+    fn skips_mounting_values(prepared: &Prepared) -> bool {
         !prepared.mounting_left.is_empty()
     }
 
@@ -54,7 +54,7 @@ impl Reviewable for Interbus {
         warnings
     }
 
-    fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
+    fn requirements(_: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = vec![TEXTS.text("ib_review.needs_stop")];
         if ops.iter().any(|op| matches!(op, Op::Program(_))) {
@@ -79,7 +79,7 @@ impl Reviewable for Interbus {
         .with("last", WEAR_LAST)
     }
 
-    fn is_worn(prepared: &Prepared) -> bool {
+    fn reaches_wear_limit(prepared: &Prepared) -> bool {
         // Above the manufacturer's limit the user must confirm once more, also if it would otherwise be refused.
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }

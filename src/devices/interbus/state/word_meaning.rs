@@ -102,7 +102,7 @@ pub fn word_text(word: u32, known: &WordContext) -> Text {
 }
 
 /// Returns a warning if bits are set that should be 0.
-pub fn stray(word: u32) -> Option<Text> {
+pub fn unexpected_bits(word: u32) -> Option<Text> {
     match Reply::parse(word) {
         Reply::Run { stray, .. } if stray != 0 => {
             Some(TEXTS.text("ib_word.stray").with("bits", format!("0x{:08X}", u32::from(stray) << Value::BITS)))
@@ -193,6 +193,10 @@ mod tests {
         let temperature = WordContext { read_out: Some(ReadOutNumber::TEMPERATURE), ..known(EncoderMode::ReadOut) };
         assert_eq!(english(word_text(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
         assert_eq!(word_text(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
-        assert!(stray(0x0412_3456).is_some() && stray(0x0012_3456).is_none() && stray(0xC200_00FF).is_none());
+        assert!(
+            unexpected_bits(0x0412_3456).is_some()
+                && unexpected_bits(0x0012_3456).is_none()
+                && unexpected_bits(0xC200_00FF).is_none()
+        );
     }
 }

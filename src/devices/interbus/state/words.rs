@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
     EncoderMode, Flags, Interface, LedRow, Parameter, ReadOutNumber, ReadOutValue, Value,
 };
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::explain::{direction, startup};
+use crate::devices::interbus::state::explain::{direction, startup_mode_text};
 
 pub fn parameter(parameter: Parameter) -> Text {
     TEXTS.text(match parameter {
@@ -47,7 +47,7 @@ pub fn read_out_value(value: ReadOutValue) -> Text {
             1,
         ),
         ReadOutValue::TenthsOfDegree(tenths) => celsius(tenths),
-        ReadOutValue::StartupMode(own) => startup(own),
+        ReadOutValue::StartupMode(own) => startup_mode_text(own),
         ReadOutValue::Flags(own) => flags(own),
     }
 }

@@ -4,7 +4,7 @@ use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, some, unsaved_edits_remark};
+use crate::app::session::{ApprovedPlanOf, HasMemory, HasProfile, KnownProfile, truncated_list, unsaved_edits_remark};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
 use crate::devices::interbus::profile::{
@@ -63,7 +63,7 @@ impl HasMemory for Encoder {
     }
 
     fn rereads_after_write(&mut self) {
-        let programs = self.review().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
+        let programs = self.review().and_then(Review::plan_in_progress).and_then(|own| changed_programs(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }
 
@@ -85,10 +85,10 @@ impl HasProfile for Encoder {
     }
 
     fn remarks(&self) -> Vec<Text> {
-        some(&words::marks(&self.marks()), Text::clone)
+        truncated_list(&words::marks(&self.marks()), Text::clone)
     }
 
-    fn known_body(&self) -> Option<KnownProfile> {
+    fn last_read_profile(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
         let is_missing = |number: &ProgramNumber| base.image.program(*number).is_none();
         let missing: Vec<Text> = ProgramNumber::all()
@@ -111,7 +111,7 @@ impl HasProfile for Encoder {
 }
 
 /// Returns the programs that a plan changes, or `None` if it may change any of them.
-fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
+fn changed_programs(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
     let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
     (!plan.ops.contains(&Op::Default)).then_some(of_programs)
 }

@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segments, typed};
+use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segmented_control, typed};
 
 pub(crate) struct InterbusConnectForm;
 
@@ -30,7 +30,7 @@ impl TypedConnectForm for InterbusConnectForm {
             (InterbusLinkKind::Gateway, "connect.gateway"),
             (InterbusLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.kind, ways);
+        segmented_control(ui, theme, &mut form.kind, ways);
         if form.kind == InterbusLinkKind::Gateway {
             paragraph(ui, theme.caption(say(theme, "connect.gateway_words")));
         }

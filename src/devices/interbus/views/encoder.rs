@@ -52,10 +52,10 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             let identity = &survey.identity;
             ui.label(theme.value(say(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
-            row(ui, theme, &serial, theme.mono(&identity.serial_number));
-            row(ui, theme, &say(theme, "ib_card.version"), theme.mono(identity.software_version.to_string()));
+            row(ui, theme, &serial, theme.monospace(&identity.serial_number));
+            row(ui, theme, &say(theme, "ib_card.version"), theme.monospace(identity.software_version.to_string()));
             row(ui, theme, &say(theme, "ib_card.flags"), theme.words(&words::flags(identity.flags)));
-            row(ui, theme, &say(theme, "ib_card.mode"), theme.words(&explain::startup(identity.mode)));
+            row(ui, theme, &say(theme, "ib_card.mode"), theme.words(&explain::startup_mode_text(identity.mode)));
             let range = words::range(identity.steps, identity.revolutions);
             row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
             let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
@@ -65,7 +65,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         } else if let Some(profile) = encoder.profile() {
             ui.label(theme.value(say(theme, "ib_card.class")));
             ui.add_space(theme.space.inside);
-            row(ui, theme, &serial, theme.mono(&profile.identity.serial_number));
+            row(ui, theme, &serial, theme.monospace(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
             let range = words::range(parameters.steps, parameters.revolutions);
             row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
@@ -97,10 +97,10 @@ fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
                 empty_placeholder(ui, theme, &say(theme, "ib_sends.nothing"), None);
             }
             Some(reading) => {
-                row(ui, theme, &say(theme, "ib_sends.word"), theme.mono(format!("0x{:08X}", reading.word)));
+                row(ui, theme, &say(theme, "ib_sends.word"), theme.monospace(format!("0x{:08X}", reading.word)));
                 let meaning = word_meaning::word_text(reading.word, &encoder.known());
                 row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&meaning));
-                if let Some(warning) = word_meaning::stray(reading.word) {
+                if let Some(warning) = word_meaning::unexpected_bits(reading.word) {
                     paragraph(ui, RichText::new(theme.words(&warning)).color(theme.palette.warn));
                     paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));
                 }
@@ -125,7 +125,12 @@ fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         let modes = [usual, StartupMode::Velocity].into_iter().chain(programs);
         ui.add_enabled_ui(ready, |ui| {
             entry(ui, theme, &word, |ui| {
-                choice(ui, &word, &mut wanted, modes.map(|mode| (mode, theme.words(&explain::startup(mode)))));
+                choice(
+                    ui,
+                    &word,
+                    &mut wanted,
+                    modes.map(|mode| (mode, theme.words(&explain::startup_mode_text(mode)))),
+                );
             });
         });
         if wanted != own {

@@ -29,7 +29,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(theme.label(unit));
         if last.is_some_and(|reading| !reading.is_valid()) {
             mark(ui, theme, "live.invalid", palette.bad);
-        } else if last.is_some_and(|reading| reading.stray() != 0) {
+        } else if last.is_some_and(|reading| reading.unexpected_bits() != 0) {
             mark(ui, theme, "live.warning", palette.warn);
         }
     });
@@ -44,9 +44,14 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
         if let Some(place) = place {
-            row(ui, theme, &theme.say("live.turns"), theme.mono(place.turns.to_string()));
-            row(ui, theme, &theme.say("live.step"), theme.mono(place.steps.to_string()));
-            row(ui, theme, &say(theme, "ib_live.angle"), theme.mono(format!("{} °", theme.number(place.degrees, 3))));
+            row(ui, theme, &theme.say("live.turns"), theme.monospace(place.turns.to_string()));
+            row(ui, theme, &theme.say("live.step"), theme.monospace(place.steps.to_string()));
+            row(
+                ui,
+                theme,
+                &say(theme, "ib_live.angle"),
+                theme.monospace(format!("{} °", theme.number(place.degrees, 3))),
+            );
         }
         raw_row(ui, theme, word);
     }

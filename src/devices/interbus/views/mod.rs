@@ -109,7 +109,7 @@ impl TypedDeviceView for InterbusView {
         }
         let shown = (page == Page::Cams).then(|| view.cams.shown());
         marks::marks_ui(ui, theme, encoder, shown);
-        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| {
             if page != Page::Backups {
                 standstill::bar_ui(ui, theme, encoder, actions);
             }

@@ -163,7 +163,7 @@ fn preset_ui(
         });
         show_error_below(ui, theme, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
-            row(ui, theme, &say(theme, "ib_preset.now"), theme.mono(position.to_string()));
+            row(ui, theme, &say(theme, "ib_preset.now"), theme.monospace(position.to_string()));
         }
         ui.add_space(theme.space.inside);
         if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ib_preset.default")).clicked() {
@@ -206,9 +206,9 @@ fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         list.auto_shrink([false, true]).show(ui, |ui| {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
-                    ui.label(theme.mono(format!("0x{:08X}", step.out)));
+                    ui.label(theme.monospace(format!("0x{:08X}", step.out)));
                     ui.label(theme.label(theme.words(&word_meaning::command_text(step.command))));
-                    ui.label(theme.mono(format!("0x{:08X}", step.input)));
+                    ui.label(theme.monospace(format!("0x{:08X}", step.input)));
                     let known = word_meaning::WordContext::of(step.command, encoder.shift());
                     ui.add(
                         egui::Label::new(theme.label(theme.words(&word_meaning::word_text(step.input, &known))))

@@ -38,7 +38,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                 });
                 let value = encoder.read_out(row.read_out);
                 let value = value.map(|value| theme.words(&words::read_value(row.read_out, value)));
-                ui.add(egui::Label::new(theme.mono(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
+                ui.add(egui::Label::new(theme.monospace(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
                 if at % columns == columns - 1 {
                     ui.end_row();
                 }
@@ -53,8 +53,8 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                 let name = theme.words(&explain::read_out(what));
                 let number = what.register().unwrap_or_default();
                 let value = encoder.read_out(what).map_or_else(|| "–".to_owned(), |own| format!("0x{:X}", own.get()));
-                let button =
-                    egui::Button::new(theme.mono(format!("{number:X}  {value}"))).min_size([REGISTER, 28.0].into());
+                let button = egui::Button::new(theme.monospace(format!("{number:X}  {value}")))
+                    .min_size([REGISTER, 28.0].into());
                 if crate::ui::controls::name(ui.add_enabled(ready, button), ready, &name).clicked() {
                     actions.push(Action::device(id, Interbus::ReadOut(what)));
                 }

@@ -61,7 +61,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
         mono_entry(ui, theme, text, width, &word, &say(theme, "ib_reader.hint"));
         for line in reading.lines(text) {
             ui.horizontal_top(|ui| {
-                let own = ui.label(theme.mono(&line.word));
+                let own = ui.label(theme.monospace(&line.word));
                 ui.add_space((WORD - own.rect.width()).max(0.0));
                 match &line.meaning {
                     Ok(meaning) => {

@@ -15,7 +15,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mu
     }
     let id = encoder.session.id;
     let mut stopped = encoder.is_stopped();
-    theme.sunken().show(ui, |ui| {
+    theme.sunken_frame().show(ui, |ui| {
         ui.set_width(ui.available_width().max(0.0));
         ui.horizontal_wrapped(|ui| {
             let ink = if stopped { theme.palette.good } else { theme.palette.warn };

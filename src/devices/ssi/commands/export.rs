@@ -10,7 +10,7 @@ use super::profiles::{document, write};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Reads, Times, TooWideError, bit_table, c99, english, frame_picture, scl, settings_sheet, structured_text,
+    Reads, Times, TooWideError, bit_table, c99, english, frame_picture, scl_source, settings_sheet, structured_text,
     structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
@@ -28,7 +28,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
         SsiFormat::C => c99(layout, title),
         SsiFormat::St => structured_text(layout, title),
         SsiFormat::StDword => structured_text_32(layout, title).map_err(wide)?,
-        SsiFormat::Scl => scl(layout, title).map_err(wide)?,
+        SsiFormat::Scl => scl_source(layout, title).map_err(wide)?,
         SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
         SsiFormat::Csv => bit_table(layout, &english),
         SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english),
@@ -47,12 +47,12 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
             let timing = match times {
                 Some(times) => times.reckon(&reads),
                 None => {
-                    output.remark(&TEXTS.text("ssi_timing.general").terminal());
+                    output.remark(&TEXTS.text("ssi_timing.general").terminal_text());
                     Times::of_any_encoder(&reads)
                 }
             };
             for warning in timing.warnings {
-                output.remark(&words::timing(&warning).terminal());
+                output.remark(&words::timing(&warning).terminal_text());
             }
             timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english).svg()
         }
@@ -68,5 +68,5 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
 }
 
 fn wide(error: TooWideError) -> Failure {
-    Failure::Failed(vec![words::wide(error).terminal()])
+    Failure::Failed(vec![words::wide(error).terminal_text()])
 }

@@ -43,12 +43,12 @@ fn json(search: &Search, families: &Families) -> Json {
         .classes
         .iter()
         .map(|class| {
-            let others: Vec<String> = class.members.iter().skip(1).map(|member| member.spec(families)).collect();
+            let others: Vec<String> = class.members.iter().skip(1).map(|member| member.spec_text(families)).collect();
             json!({
-                "spec": spec(class, families),
+                "spec": spec_text(class, families),
                 "score": class.evidence.score,
                 "explained": class.evidence.explained,
-                "why": why(class),
+                "why": evidence_text(class),
                 "same": others,
             })
         })
@@ -68,38 +68,39 @@ fn text(search: &Search, families: &Families) -> String {
     let mut lines = Lines::default();
     lines.add("frames", search.frames);
     for (number, class) in (1..).zip(&search.classes) {
-        lines.add(format!("layout {number}"), spec(class, families));
+        lines.add(format!("layout {number}"), spec_text(class, families));
         lines.add("  score", format!("{:.2}", class.evidence.score));
-        lines.add("  why", why(class));
+        lines.add("  why", evidence_text(class));
         let others = class.members.len().saturating_sub(1);
         if others > 0 {
-            let shown: Vec<String> = class.members.iter().skip(1).take(3).map(|member| member.spec(families)).collect();
+            let shown: Vec<String> =
+                class.members.iter().skip(1).take(3).map(|member| member.spec_text(families)).collect();
             let same = format!("{}, as {}", count(others, "layout"), shown.join(" or "));
             lines.add("  the same here", same);
         }
     }
-    let verdict = words::doubt(search.doubt).terminal();
+    let verdict = words::doubt(search.doubt).terminal_text();
     let next = next(search).map_or_else(String::new, |next| next + "\n");
     format!("{}{verdict}\n{next}", lines.text())
 }
 
 /// Returns the most probable layout of a class.
-fn spec(class: &Class, families: &Families) -> String {
-    class.members.first().map_or_else(String::new, |member| member.spec(families))
+fn spec_text(class: &Class, families: &Families) -> String {
+    class.members.first().map_or_else(String::new, |member| member.spec_text(families))
 }
 
-fn why(class: &Class) -> String {
-    let frame = class.members.first().map(|member| words::frame(&member.layout).terminal());
-    let evidence = words::evidence_for(&class.evidence).terminal();
+fn evidence_text(class: &Class) -> String {
+    let frame = class.members.first().map(|member| words::frame(&member.layout).terminal_text());
+    let evidence = words::evidence_for(&class.evidence).terminal_text();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns which motion would distinguish the remaining layouts, or `None` if no doubt remains.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
-    let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());
+    let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
-    let open = open.map(|open| words::open(*open).terminal());
+    let open = open.map(|open| words::open(*open).terminal_text());
     let all: Vec<String> = doubt.into_iter().chain(open).collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

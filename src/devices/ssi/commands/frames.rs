@@ -88,7 +88,7 @@ impl<'a> DecodedFrame<'a> {
             }
         }
         let findings = self.layout.findings(self.reading);
-        let told = findings.iter().map(|finding| format!("{}\n", words::finding_text(finding).terminal()));
+        let told = findings.iter().map(|finding| format!("{}\n", words::finding_text(finding).terminal_text()));
         lines.text() + &told.collect::<String>()
     }
 }

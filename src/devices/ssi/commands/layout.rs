@@ -36,7 +36,7 @@ pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) ->
         return choose_frame_layout(spec, frame);
     }
     let families = families(output)?;
-    if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
+    if is_file(spec, &families) { from_file(output, spec, &families) } else { of_family(output, spec, &families) }
 }
 
 /// Returns the encoder families, with the user's own before the built-in ones. Errors of unusable families are printed.
@@ -44,7 +44,7 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
     let (families, broken) = read_families(&store);
     for error in broken {
-        output.remark(&words::store(&error).terminal());
+        output.remark(&words::store(&error).terminal_text());
     }
     Ok(families)
 }
@@ -65,7 +65,7 @@ fn choose_frame_layout(spec: &str, frame: std::result::Result<Descriptor, SpecEr
     Ok(Chosen { profile, layout, times: None, title: spec.to_owned() })
 }
 
-fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
+fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
     let failure = |error| failed(&explain::profile(path, &error, KindRegistry::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
@@ -100,7 +100,7 @@ fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiP
 
 fn print_advice(output: &Output, resolved: &ResolvedFrame) {
     for advice in &resolved.advice {
-        output.remark(&words::advice_text(advice).terminal());
+        output.remark(&words::advice_text(advice).terminal_text());
     }
 }
 

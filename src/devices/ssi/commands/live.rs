@@ -35,12 +35,12 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let mut first = None;
     let job = || SsiJob::Read;
     let ended = readings(&mut runner, position, job, |came| {
-        for (at, word) in words(came)?.timed() {
+        for (at, word) in words(came)?.with_times() {
             let decoded = DecodedFrame::new(&chosen.layout, word);
             let first = *first.get_or_insert(SampleTime::from(at));
             let begun = tally.note(&chosen.layout, decoded.reading, at.into());
             for finding in begun.iter().filter(|one| is_reported(one, first == at.into())) {
-                say(&format!("{}: {}\n", seconds(at.into()), explained::finding_text(finding).terminal()));
+                say(&format!("{}: {}\n", seconds(at.into()), explained::finding_text(finding).terminal_text()));
             }
             if position.csv {
                 output.print(&row(at, &decoded))?;
@@ -50,7 +50,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
         }
         Ok(())
     });
-    for noted in tally.noted().iter().filter(|noted| is_reported(&noted.finding, Some(noted.first) == first)) {
+    for noted in tally.finding_counts().iter().filter(|noted| is_reported(&noted.finding, Some(noted.first) == first)) {
         let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
         say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
     }
@@ -140,7 +140,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
     let chosen = layout(output, "status", &status.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
-    let Some((_, word)) = words.timed().next() else {
+    let Some((_, word)) = words.with_times().next() else {
         return Err(Failure::Failed(vec!["The adapter returned no word. Try again.".to_owned()]));
     };
     let decoded = DecodedFrame::new(&chosen.layout, word);
@@ -159,7 +159,8 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
         lines.add("", "This frame has no error bits.");
     }
     lines.add("position", place(&decoded));
-    let finding_lines = findings.iter().map(|finding| format!("{}\n", explained::finding_text(finding).terminal()));
+    let finding_lines =
+        findings.iter().map(|finding| format!("{}\n", explained::finding_text(finding).terminal_text()));
     output.show(&json, &(lines.text() + &finding_lines.collect::<String>()))?;
     Ok(Done::Well)
 }

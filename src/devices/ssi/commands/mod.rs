@@ -21,7 +21,7 @@ use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::sim::{AtAdapter, Encoder};
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::profile::Body;
 
 pub(crate) struct SsiCommands;
@@ -124,12 +124,12 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
         Some(spec) => {
             let chosen = layout::choose(&output.as_text(), &SsiLayoutArgs { spec })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
-            AtAdapter::sending(Encoder { layout: chosen.layout, direction, preset })
+            AtAdapter::with_default_encoder(Encoder { layout: chosen.layout, direction, preset })
         }
         None => AtAdapter::DELIVERED,
     };
     // In place of the delivered one, which has the same settings.
-    let others = at_adapter().iter().copied().filter(|device| device.keys() != encoder.keys());
+    let others = attachable_kinds().iter().copied().filter(|device| device.keys() != encoder.keys());
     let devices: Vec<&dyn AttachableKind> = [&encoder as &dyn AttachableKind].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))

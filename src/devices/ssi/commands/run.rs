@@ -51,7 +51,7 @@ pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Re
             ..chosen.profile.reads()
         };
         for warning in times.reckon(&reads).warnings {
-            output.remark(&words::timing(&warning).terminal());
+            output.remark(&words::timing(&warning).terminal_text());
         }
     }
     Ok(runner)

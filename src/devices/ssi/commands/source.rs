@@ -23,7 +23,7 @@ pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     };
     let frames = frames.map_err(|why| failed(&why))?;
     if frames.left_out > 0 {
-        output.remark(&TEXTS.text("ssi_capture.left_out").with("count", frames.left_out).terminal());
+        output.remark(&TEXTS.text("ssi_capture.left_out").with("count", frames.left_out).terminal_text());
     }
     Ok(frames)
 }

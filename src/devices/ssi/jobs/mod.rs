@@ -130,15 +130,15 @@ impl Device for Ssi {
         })
     }
 
-    fn pace(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
+    fn set_sample_interval(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if interval.is_none() {
-            self.station.recount();
+            self.station.reset_request_count();
         }
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(context).end_words()
+            && let Err(error) = self.master(context).stop_word_stream()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }

@@ -6,7 +6,7 @@ use super::Ssi;
 use crate::buses::bridge::jobs::FORMAT;
 use crate::buses::bridge::sim::Adapter;
 use crate::devices::ssi::procedures::{LinkParameters, Station};
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
 use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
@@ -42,7 +42,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, bridge:, replay:"));
     }
-    let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, at_adapter())?;
+    let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, attachable_kinds())?;
     Ok((Station::from_query(&url.query, reply_margin(url.scheme))?, adapter))
 }
 

@@ -39,7 +39,7 @@ impl<'a> Master<'a> {
     /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal, or errors of the
     /// connection.
     pub fn hello(&mut self) -> Result<Identity, Error> {
-        self.end_words()?;
+        self.stop_word_stream()?;
         self.repeated(|master| master.adapter().hello())?;
         let Some(hello) = self.station.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
         if !hello.capabilities.has(Capabilities::SSI) {
@@ -121,13 +121,13 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Errors of the adapter; the stream is then ended before the next request.
-    pub fn end_words(&mut self) -> Result<(), Error> {
+    pub fn stop_word_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.asked = 0;
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        let shielded = self.line.shield(true);
+        let shielded = self.line.ignore_cancellation(true);
         let ended = flow.end(&mut self.adapter());
-        self.line.shield(shielded);
+        self.line.ignore_cancellation(shielded);
         match SampleStream::ended(ended) {
             Ok(true) => Ok(()),
             Ok(false) => {
@@ -149,8 +149,8 @@ impl<'a> Master<'a> {
         if !self.station.adapter.switches_supply_off() {
             return Ok(());
         }
-        self.line.shield(true);
-        self.end_words()?;
+        self.line.ignore_cancellation(true);
+        self.stop_word_stream()?;
         Ok(self.adapter().leave_supply()?)
     }
 
@@ -191,7 +191,7 @@ impl<'a> Master<'a> {
     fn read_configured_word(&mut self) -> Result<Words, Error> {
         let Identity { asking, clock_hz, .. } = self.hello()?;
         let taken = self.repeated(Self::read_single_word);
-        let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
+        let (word, at) = taken.map_err(|error| self.handle_possible_reset(error))?;
         Ok(Words::one(at, word, asking, clock_hz))
     }
 
@@ -200,7 +200,7 @@ impl<'a> Master<'a> {
         let Reply::SsiRead { t_us, raw } = answered.reply else {
             return Err(AdapterError::other(Request::SsiRead.operation(), &answered.reply).into());
         };
-        Ok((raw, self.station.adapter.moment_of(t_us, &answered)))
+        Ok((raw, self.station.adapter.local_time_of(t_us, &answered)))
     }
 
     fn begin(&mut self, streamed: Streamed) -> Result<(), Error> {
@@ -212,7 +212,7 @@ impl<'a> Master<'a> {
             }
             SampleStream::begin(&mut master.adapter(), streamed, after)
         });
-        self.station.flow = Some(flow.map_err(|error| self.may_be_reset(error))?);
+        self.station.flow = Some(flow.map_err(|error| self.handle_possible_reset(error))?);
         Ok(())
     }
 
@@ -224,15 +224,15 @@ impl<'a> Master<'a> {
             tries += 1;
             let failure = match once(self) {
                 Ok(answer) => {
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Ok(answer);
                 }
                 Err(failure) => failure,
             };
             let is_silent = matches!(failure, Failure::Adapter(AdapterError::Silent));
             if is_silent
-                && self.station.adapter.has_spoken()
-                && self.line.may_ask_again(&mut self.station.line, tries, longest)
+                && self.station.adapter.has_received()
+                && self.line.may_retry(&mut self.station.line, tries, longest)
             {
                 continue;
             }
@@ -241,7 +241,7 @@ impl<'a> Master<'a> {
     }
 
     /// Notes that the adapter may have been reset and must be configured again, unless the error is a cancellation.
-    fn may_be_reset(&mut self, error: Error) -> Error {
+    fn handle_possible_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();
         }
@@ -250,7 +250,7 @@ impl<'a> Master<'a> {
 
     /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
-        if error != Error::Cancelled && self.end_words().is_err() {
+        if error != Error::Cancelled && self.stop_word_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }

@@ -138,7 +138,7 @@ impl Station {
         }
     }
 
-    pub(crate) fn recount(&mut self) {
+    pub(crate) fn reset_request_count(&mut self) {
         self.asked = 0;
     }
 

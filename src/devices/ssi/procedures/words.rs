@@ -49,7 +49,7 @@ impl Words {
         Words {
             first,
             // Not before the start of the stream.
-            at: Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
+            at: Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
             period_ns,
             lost,
             clocks: asking.clocks,
@@ -69,7 +69,7 @@ impl Words {
     }
 
     /// Iterates over the words, each with the time at which it was read.
-    pub fn timed(&self) -> impl Iterator<Item = (Moment, u64)> {
+    pub fn with_times(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))
     }
@@ -88,12 +88,12 @@ mod tests {
         let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };
         let asking = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
         let run = Words::run(&portion, &data, asking, 1_500_000, 50);
-        let at = |us| Moment::after_start(Duration::from_micros(us));
-        assert_eq!(run.timed().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
+        let at = |us| Moment::from_elapsed(Duration::from_micros(us));
+        assert_eq!(run.with_times().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
         assert_eq!((run.is_stream_start(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
         assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
         let lone = Words::one(at(9), 5, asking, 1_000_000);
-        assert_eq!(lone.timed().collect::<Vec<_>>(), [(at(9), 5)]);
+        assert_eq!(lone.with_times().collect::<Vec<_>>(), [(at(9), 5)]);
         assert_eq!((lone.is_stream_start(), lone.is_streamed()), (true, false));
     }
 }

@@ -27,16 +27,16 @@ impl Profile for SsiProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let name = entries.optional("name", AllowedValues::Text)?.unwrap_or_default();
+        let name = entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default();
         // Keys are in lower case; a user may write the type's name.
-        let family = entries.optional("family", AllowedValues::Text)?.map(|key: String| key.to_ascii_lowercase());
+        let family = entries.take_optional("family", AllowedValues::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = UnknownEntries::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
         let refused = |error| ProfileError::refused(path, EntryError::Layout(error));
         let layout = Layout::new(descriptor.clone()).map_err(refused)?;
         let direction = word(entries, "direction")?.unwrap_or_default();
-        let preset = entries.optional("preset", AllowedValues::Whole)?.unwrap_or(0);
+        let preset = entries.take_optional("preset", AllowedValues::Whole)?.unwrap_or(0);
         let last = layout.coding().last();
         if preset > last {
             return Err(ProfileError::refused(entries.path_of("preset"), EntryError::Preset { preset, last }));
@@ -191,7 +191,7 @@ fn write_range(writer: &mut Writer, range: &Range) {
 fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Item = String>) {
     if lines.len() > 0 {
         writer.open(name, '[');
-        lines.for_each(|line| writer.entry_in_list(&line));
+        lines.for_each(|line| writer.write_list_element(&line));
         writer.close(']');
     }
 }
@@ -210,34 +210,34 @@ fn default_area_clocks(frame: &Descriptor) -> u8 {
 
 fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Descriptor, ProfileError> {
     let mut frame = Descriptor {
-        clocks: entries.required("clocks", SMALL)?,
+        clocks: entries.take_required("clocks", SMALL)?,
         range: read_range(&mut entries)?,
         code: word(&mut entries, "code")?.unwrap_or(Code::Binary),
         coded: word(&mut entries, "over")?.unwrap_or(GrayCoverage::Position),
         area: 0,
-        lead: entries.optional("lead", SMALL)?.unwrap_or(0),
-        between: entries.optional("between", SMALL)?.unwrap_or(0),
-        shift_right: entries.optional("shift", FLAG)?.unwrap_or(false),
+        lead: entries.take_optional("lead", SMALL)?.unwrap_or(0),
+        between: entries.take_optional("between", SMALL)?.unwrap_or(0),
+        shift_right: entries.take_optional("shift", FLAG)?.unwrap_or(false),
         errors: Vec::new(),
         parity: None,
         repeat: None,
-        inverted: entries.optional("inverted", FLAG)?.unwrap_or(false),
+        inverted: entries.take_optional("inverted", FLAG)?.unwrap_or(false),
         patterns: Vec::new(),
     };
-    frame.area = entries.optional("area", SMALL)?.unwrap_or_else(|| default_area_clocks(&frame));
+    frame.area = entries.take_optional("area", SMALL)?.unwrap_or_else(|| default_area_clocks(&frame));
     for entries in entries.structures("errors")? {
         let (bit, more) = read_error(entries)?;
         unknown.errors.push((bit.name.clone(), more));
         frame.errors.push(bit);
     }
     if let Some(mut entries) = entries.optional_structure("parity")? {
-        let clock = entries.required("clock", SMALL)?;
-        frame.parity = Some(Parity { clock, even: entries.required("even", FLAG)? });
+        let clock = entries.take_required("clock", SMALL)?;
+        frame.parity = Some(Parity { clock, even: entries.take_required("even", FLAG)? });
         unknown.parity = entries.rest()?;
     }
     if let Some(mut entries) = entries.optional_structure("repeat")? {
-        let word = entries.required("word", SMALL)?;
-        frame.repeat = Some(Repeat { word, gap: entries.optional("gap", SMALL)?.unwrap_or(1) });
+        let word = entries.take_required("word", SMALL)?;
+        frame.repeat = Some(Repeat { word, gap: entries.take_optional("gap", SMALL)?.unwrap_or(1) });
         unknown.repeat = entries.rest()?;
     }
     for entries in entries.structures("patterns")? {
@@ -254,13 +254,13 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
 /// Parses the position range, given as turn and step bits, as a number of steps, or as a length. Exactly one of the
 /// three is allowed.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
-    let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
-    let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;
-    let steps: Option<u32> = entries.optional("steps", AllowedValues::Whole)?;
-    let turns: Option<u32> = entries.optional("turns", AllowedValues::Whole)?;
+    let multiturn: Option<u8> = entries.take_optional("multiturn", SMALL)?;
+    let singleturn: Option<u8> = entries.take_optional("singleturn", SMALL)?;
+    let steps: Option<u32> = entries.take_optional("steps", AllowedValues::Whole)?;
+    let turns: Option<u32> = entries.take_optional("turns", AllowedValues::Whole)?;
     let revolutions = read_revolutions(entries)?;
-    let bits: Option<u8> = entries.optional("bits", SMALL)?;
-    let step_nanometres: Option<u32> = entries.optional("step_nanometres", AllowedValues::Whole)?;
+    let bits: Option<u8> = entries.take_optional("bits", SMALL)?;
+    let step_nanometres: Option<u32> = entries.take_optional("step_nanometres", AllowedValues::Whole)?;
     let given = [
         ("singleturn", singleturn.is_some()),
         ("multiturn", multiturn.is_some()),
@@ -304,7 +304,9 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
 
 fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileError> {
     let path = entries.path_of("revolutions");
-    let Some(value) = entries.optional::<Value>("revolutions", AllowedValues::Revolutions)? else { return Ok(None) };
+    let Some(value) = entries.take_optional::<Value>("revolutions", AllowedValues::Revolutions)? else {
+        return Ok(None);
+    };
     let revolutions = match value {
         Value::String(text) => text.parse().ok(),
         value => value.into_rust().ok().map(|numerator| Fraction { numerator, denominator: 1 }),
@@ -314,11 +316,11 @@ fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileEr
 
 fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError> {
     let bit = ErrorBit {
-        name: entries.required("name", AllowedValues::Text)?,
-        clock: entries.required("clock", SMALL)?,
+        name: entries.take_required("name", AllowedValues::Text)?,
+        clock: entries.take_required("clock", SMALL)?,
         meaning: required_word(&mut entries, "meaning")?,
-        active_low: entries.optional("active_low", FLAG)?.unwrap_or(false),
-        cleared_by_transfer: entries.optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
+        active_low: entries.take_optional("active_low", FLAG)?.unwrap_or(false),
+        cleared_by_transfer: entries.take_optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
     };
     Ok((bit, entries.rest()?))
 }
@@ -326,26 +328,26 @@ fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError>
 fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
     let wrong = |path| ProfileError::Shape { path, expected: AllowedValues::Frame };
     let path = entries.path_of("word");
-    let word = match entries.required::<Value>("word", AllowedValues::Frame)? {
+    let word = match entries.take_required::<Value>("word", AllowedValues::Frame)? {
         Value::String(word) if word == ONES => Word::Ones,
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
-    let name = entries.required("name", AllowedValues::Text)?;
+    let name = entries.take_required("name", AllowedValues::Text)?;
     Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
 fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<ReadingSettings, ProfileError> {
     let usual = ReadingSettings::default();
-    let clock_hz = entries.optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
+    let clock_hz = entries.take_optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
     if !(1_000..=20_000_000).contains(&clock_hz) {
         return Err(ProfileError::Shape { path: entries.path_of("clock_hz"), expected: CLOCK_HZ });
     }
-    let pause_us = entries.optional("pause_us", PAUSE_US)?.unwrap_or(usual.pause_us);
+    let pause_us = entries.take_optional("pause_us", PAUSE_US)?.unwrap_or(usual.pause_us);
     if pause_us == 0 {
         return Err(ProfileError::Shape { path: entries.path_of("pause_us"), expected: PAUSE_US });
     }
-    let cable_metres = entries.optional("cable_metres", METRES)?;
-    let synchronous = entries.optional("synchronous", FLAG)?.unwrap_or(usual.synchronous);
+    let cable_metres = entries.take_optional("cable_metres", METRES)?;
+    let synchronous = entries.take_optional("synchronous", FLAG)?.unwrap_or(usual.synchronous);
     unknown.reading = entries.rest()?;
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
@@ -353,7 +355,7 @@ fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) ->
 /// Parses an entry whose value must be one of a fixed set of keywords.
 fn word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
-    let Some(word) = entries.optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };
+    let Some(word) = entries.take_optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };
     word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
 }
 

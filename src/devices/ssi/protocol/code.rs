@@ -68,7 +68,7 @@ impl PositionCode {
         let (bits, offset) = match code {
             Code::Binary | Code::Gray => (binary_bits, 0),
             Code::GrayExcess if last.is_multiple_of(2) => return Err(CodeError::Odd(u128::from(last) + 1)),
-            Code::GrayExcess => (binary_bits, (ones(binary_bits) - last) / 2),
+            Code::GrayExcess => (binary_bits, (low_bits_mask(binary_bits) - last) / 2),
             Code::Bcd => {
                 let digits = last.checked_ilog10().map_or(1, |log| log + 1);
                 let bits = u8::try_from(4 * digits).ok().filter(|bits| *bits <= 64);
@@ -131,7 +131,7 @@ pub(super) const fn bits_of(number: u64) -> u8 {
 }
 
 /// Returns a mask of 0 to 64 ones, right-justified.
-pub(super) const fn ones(bits: u8) -> u64 {
+pub(super) const fn low_bits_mask(bits: u8) -> u64 {
     if bits >= 64 { u64::MAX } else { (1 << bits) - 1 }
 }
 

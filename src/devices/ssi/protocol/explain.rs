@@ -87,7 +87,7 @@ impl FrameFinding {
 
 impl Layout {
     /// Returns the content of each clock, first to last.
-    pub fn roles(&self) -> Vec<Role> {
+    pub fn clock_roles(&self) -> Vec<Role> {
         let descriptor = self.descriptor();
         let word = descriptor.word();
         let mut roles = vec![Role::Zero; usize::from(descriptor.clocks)];
@@ -127,7 +127,7 @@ impl Layout {
     /// Returns every bit of a frame with its meaning.
     pub fn cells(&self, frame: u64) -> Vec<Cell> {
         let clocks = self.clocks();
-        let numbered = (1..=clocks).zip(self.roles());
+        let numbered = (1..=clocks).zip(self.clock_roles());
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
@@ -143,10 +143,10 @@ impl Layout {
         }
         let has_ones_pattern = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
         if flags.has(Flags::ONES) && !has_ones_pattern {
-            findings.push(FrameFinding::StuckHigh { sure: self.is_no_position(reading) });
+            findings.push(FrameFinding::StuckHigh { sure: self.is_position_invalid(reading) });
         }
         if flags.has(Flags::ZEROS) {
-            findings.push(FrameFinding::StuckLow { sure: self.is_no_position(reading) });
+            findings.push(FrameFinding::StuckLow { sure: self.is_position_invalid(reading) });
         }
         for (index, bit) in descriptor.errors.iter().enumerate() {
             if flags.has(Flags::error(index)) {
@@ -167,12 +167,12 @@ impl Layout {
 
     /// Returns whether the position may be used.
     pub fn is_valid(&self, reading: FrameReading) -> bool {
-        let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_no_position(reading);
+        let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_position_invalid(reading);
         !reading.flags.any(self.invalid()) && !stuck
     }
 
     /// Returns whether the reading carries a flag that a healthy encoder never causes.
-    fn is_no_position(&self, reading: FrameReading) -> bool {
+    fn is_position_invalid(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
         reading.flags.any(errors)

@@ -15,7 +15,7 @@ mod tests;
 mod text;
 
 pub use c::c99;
-pub use halves::{TooWideError, scl, structured_text_32};
+pub use halves::{TooWideError, scl_source, structured_text_32};
 pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
 pub use picture::{Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 pub use sheet::settings_sheet;

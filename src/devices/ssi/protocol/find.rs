@@ -96,13 +96,13 @@ pub struct Proposal {
 impl Proposal {
     /// Returns the layout as one word for the command line: a family with as few settings as possible, or else a
     /// complete frame specification.
-    pub fn spec(&self, families: &Families) -> String {
+    pub fn spec_text(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
             let settings = families.named(key)?.settings_for_frame(descriptor)?;
             Some(settings.emit(key))
         });
-        named.unwrap_or_else(|| descriptor.spec())
+        named.unwrap_or_else(|| descriptor.spec_text())
     }
 }
 
@@ -208,7 +208,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     }
     for group in &mut groups {
         // If steps vary, a lowest bit that never changes is not one: it is a parity, or a zero that the code covers.
-        if verdict::is_varied(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
+        if verdict::has_varied_steps(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
             group.members.retain(|member| !member.trial.never_odd);
         }
         group.members.sort_by(|a, b| a.weight.total_cmp(&b.weight));
@@ -216,7 +216,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         let mut known = HashSet::new();
         group.members.retain(|member| {
             let family = member.family.as_ref().map(|(key, _)| key.clone());
-            known.insert((family, member.layout.descriptor().spec()))
+            known.insert((family, member.layout.descriptor().spec_text()))
         });
         let most = group.members.first().map_or(0.0, |member| member.weight) + IMPROBABLE;
         group.members.retain(|member| member.weight <= most);

@@ -50,7 +50,7 @@ impl Descriptor {
     }
 
     /// Returns the frame as one word, without the names and meanings of error bits, and without patterns.
-    pub fn spec(&self) -> String {
+    pub fn spec_text(&self) -> String {
         let own = Self::plain(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];
         let mut word = |name: &str, value: Option<String>| words.extend(value.map(|value| format!("{name}={value}")));
@@ -198,9 +198,9 @@ mod tests {
             "frame,clocks=26,bits=24,step=500,code=bcd,parity=even@26,ones=1+25",
             "frame,clocks=51,st=25,repeat=25+1",
         ] {
-            assert_eq!(frame(text).spec(), text);
+            assert_eq!(frame(text).spec_text(), text);
         }
-        assert_eq!(frame("FRAME, st=13").spec(), "frame,clocks=13,st=13");
+        assert_eq!(frame("FRAME, st=13").spec_text(), "frame,clocks=13,st=13");
     }
 
     #[test]

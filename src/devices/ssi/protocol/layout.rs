@@ -9,7 +9,7 @@ pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
 #[cfg(test)]
 pub(crate) use tests::layouts as any_layouts;
 
-use super::code::{PositionCode, gray_to_binary, ones, to_gray};
+use super::code::{PositionCode, gray_to_binary, low_bits_mask, to_gray};
 use super::descriptor::{Descriptor, GrayCoverage};
 
 /// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
@@ -183,13 +183,13 @@ impl Layout {
         let even = (word & before).count_ones().is_multiple_of(2);
         word |= if even == self.even() { 0 } else { bit };
         let frame = self.repeated(word);
-        Some(if self.descriptor.inverted { !frame & ones(self.clocks()) } else { frame })
+        Some(if self.descriptor.inverted { !frame & low_bits_mask(self.clocks()) } else { frame })
     }
 
     /// Decodes a frame, ignoring bits above its clocks.
     #[inline]
     pub fn decode(&self, frame: u64) -> FrameReading {
-        let all = ones(self.clocks());
+        let all = low_bits_mask(self.clocks());
         let frame = frame & all;
         let mut flags = Flags::ONES.when(frame == all).with(Flags::ZEROS.when(frame == 0));
         for (index, pattern) in self.patterns.iter().enumerate() {
@@ -212,8 +212,8 @@ impl Layout {
         if self.descriptor.shift_right {
             let area = word >> self.behind_area;
             flags = flags.with(Flags::PADDING.when(area >> (self.descriptor.area - 1) != 0));
-            let back = area << 1 & ones(self.descriptor.area);
-            word = word & ones(self.behind_area) | back << self.behind_area;
+            let back = area << 1 & low_bits_mask(self.descriptor.area);
+            word = word & low_bits_mask(self.behind_area) | back << self.behind_area;
         }
         if self.descriptor.coded == GrayCoverage::Area {
             word = self.over(word, gray_to_binary);
@@ -240,7 +240,7 @@ impl Layout {
     /// Applies `what` to the bits of a word that are Gray coded as a whole.
     fn over(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
         let (bits, behind) = self.gray;
-        what(word >> behind & ones(bits)) << behind | word & !(ones(bits) << behind)
+        what(word >> behind & low_bits_mask(bits)) << behind | word & !(low_bits_mask(bits) << behind)
     }
 
     fn even(&self) -> bool {
@@ -255,7 +255,7 @@ impl Layout {
     /// Compares a word with its repetition in the frame.
     fn repetition(&self, frame: u64, word: u64) -> Flags {
         let differs = frame ^ self.repeated(word);
-        let again = self.repeated(ones(self.descriptor.word()));
+        let again = self.repeated(low_bits_mask(self.descriptor.word()));
         Flags::REPEAT.when(differs & again != 0).with(Flags::PADDING.when(differs & !again != 0))
     }
 }

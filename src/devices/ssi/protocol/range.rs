@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::code::{bits_of, ones};
+use super::code::{bits_of, low_bits_mask};
 use crate::expected::AllowedValues;
 
 /// Range of positions from 0 up to a maximum.
@@ -114,7 +114,7 @@ impl Range {
                 }
                 match multiturn + singleturn {
                     0 => Err(RangeError::Empty),
-                    bits => Ok(ones(bits)),
+                    bits => Ok(low_bits_mask(bits)),
                 }
             }
             Range::Steps { per_turn, turns } => {
@@ -130,7 +130,7 @@ impl Range {
             Range::RoundAxis { steps, .. } => Ok(u64::from(steps) - 1),
             Range::Length { bits: 0, .. } => Err(RangeError::Empty),
             Range::Length { bits, .. } if bits > 64 => Err(RangeError::Wide { field: "position", bits, limit: 64 }),
-            Range::Length { bits, .. } => Ok(ones(bits)),
+            Range::Length { bits, .. } => Ok(low_bits_mask(bits)),
         }
     }
 
@@ -138,7 +138,7 @@ impl Range {
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
-                let steps = position & ones(singleturn);
+                let steps = position & low_bits_mask(singleturn);
                 let turns = position.checked_shr(u32::from(singleturn)).unwrap_or(0);
                 Location::Shaft { turns, steps, degrees: angle(steps, power_of_two(singleturn)) }
             }
@@ -169,7 +169,9 @@ impl Range {
     pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
         let last = self.last().ok()?;
         let position = match *self {
-            Range::Bits { singleturn, .. } if steps <= ones(singleturn) => turns.checked_mul(1 << singleturn)? | steps,
+            Range::Bits { singleturn, .. } if steps <= low_bits_mask(singleturn) => {
+                turns.checked_mul(1 << singleturn)? | steps
+            }
             Range::Steps { per_turn, .. } if steps < u64::from(per_turn) => {
                 turns.checked_mul(u64::from(per_turn))?.checked_add(steps)?
             }

@@ -73,7 +73,7 @@ impl FindingCounts {
     }
 
     /// Returns the findings since the last [`reset`](Self::reset), ordered by their first frame.
-    pub fn noted(&self) -> &[CountedFinding] {
+    pub fn finding_counts(&self) -> &[CountedFinding] {
         &self.noted
     }
 
@@ -122,7 +122,7 @@ mod tests {
         let row = |noted: &CountedFinding| {
             (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
         };
-        tally.noted().iter().map(row).collect()
+        tally.finding_counts().iter().map(row).collect()
     }
 
     /// Frames of an AFS60 from reference section 8, with 18 bits of position followed by ERRDIG, ERRSI and ERRSYNC.
@@ -140,7 +140,7 @@ mod tests {
         let [sync, light] = ["ERRSYNC", "ERRSI"].map(str::to_owned);
         assert_eq!(rows(&tally), [(sync, 3, 10, 30, false), (light.clone(), 2, 30, 60, true)]);
         tally.reset();
-        assert_eq!(tally.noted(), []);
+        assert_eq!(tally.finding_counts(), []);
         assert_eq!(tally.note(&layout, layout.decode(good | 2), at(70)).len(), 1, "it stands still");
         assert_eq!(rows(&tally), [(light, 1, 70, 70, true)]);
     }

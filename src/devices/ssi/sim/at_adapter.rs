@@ -34,7 +34,7 @@ impl AtAdapter {
     pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
 
     /// Creates an adapter that uses the given encoder unless the settings name another.
-    pub const fn sending(encoder: Encoder) -> Self {
+    pub const fn with_default_encoder(encoder: Encoder) -> Self {
         AtAdapter { encoder: Some(encoder) }
     }
 }

@@ -114,7 +114,7 @@ mod tests {
     }
 
     fn at(milliseconds: u64) -> Moment {
-        Moment::after_start(Duration::from_millis(milliseconds))
+        Moment::from_elapsed(Duration::from_millis(milliseconds))
     }
 
     #[test]

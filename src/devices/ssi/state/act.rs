@@ -23,12 +23,12 @@ impl Encoder {
         let services = &mut *context.services;
         match action {
             SsiAction::SendLayout => {
-                let Some(url) = self.link_to_send() else { return };
+                let Some(url) = self.link_for_layout() else { return };
                 // The draft belongs to the encoder of the previous link.
-                self.leave_draft(services);
+                self.release_draft(services);
                 self.switch_link(&url);
                 self.session.source = Source::Link(url);
-                context.then(DeviceCommand::Reconnect);
+                context.queue_command(DeviceCommand::Reconnect);
             }
             SsiAction::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
             SsiAction::Edit(edit) => self.edit(*edit),
@@ -56,18 +56,18 @@ impl Encoder {
                     .map(|clocks| clocks.clamp(1, 64))
                     .filter(|clocks| *clocks != self.designer.layout().clocks());
             }
-            SsiAction::Find => self.find_live(services),
+            SsiAction::Find => self.find_in_record(services),
             SsiAction::AskFrames => {
                 let words = (TEXTS.text("file.open_frames_title"), TEXTS.text("file.frames"));
                 let file = DeviceFile::to_read(self.session.id, words, &["txt", "csv"], SsiAction::FindIn);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            SsiAction::FindIn(path) => self.find_in(path, services),
+            SsiAction::FindIn(path) => self.find_in_file(path, services),
             SsiAction::ForgetSearch => self.hunt = SearchState::Nothing,
             SsiAction::Take(class, member) => self.apply_search_result(class, member),
-            SsiAction::ForgetErrors => self.record.forget_tally(),
+            SsiAction::ForgetErrors => self.record.reset_tally(),
             SsiAction::AskExport(format, language) => {
-                let suggested = self.suggested(format.file_extensions().first().copied().unwrap_or("txt"));
+                let suggested = self.suggested_path(format.file_extensions().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
                 let export = move |path, _| SsiAction::Export(format, language, path);
                 let file =
@@ -79,7 +79,7 @@ impl Encoder {
                 Err(why) => self.session.refuse(why, services),
             },
             SsiAction::AskSaveFrames => {
-                let suggested = self.suggested("txt");
+                let suggested = self.suggested_path("txt");
                 let words = (TEXTS.text("file.frames_title"), TEXTS.text("file.frames"));
                 let save = |path, _| SsiAction::SaveFrames(path);
                 let file = DeviceFile::write_question(self.session.id, words, &["txt"], suggested, save);
@@ -105,7 +105,7 @@ impl Encoder {
     fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
         // The trial starts from the word that was read, if one is shown.
-        if self.is_following()
+        if self.is_showing_live()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {
             self.trial.set(word);
@@ -121,7 +121,7 @@ impl Encoder {
     }
 
     /// Returns a suggested file name with the given extension.
-    pub(super) fn suggested(&self, ending: &str) -> PathBuf {
+    pub(super) fn suggested_path(&self, ending: &str) -> PathBuf {
         match &self.session.source {
             Source::File { path, .. } if ending == "ron" => path.clone(),
             Source::File { path, .. } => path.with_extension(ending),
@@ -133,7 +133,7 @@ impl Encoder {
         }
     }
 
-    fn find_live(&mut self, services: &mut Services) {
+    fn find_in_record(&mut self, services: &mut Services) {
         let clocks = self.clocks();
         let frames = self.record.words(clocks);
         if frames.is_empty() {
@@ -145,7 +145,7 @@ impl Encoder {
         });
     }
 
-    fn find_in(&mut self, path: PathBuf, services: &mut Services) {
+    fn find_in_file(&mut self, path: PathBuf, services: &mut Services) {
         let clocks = self.clocks();
         self.find(services, move || read_frames(&path, clocks));
     }

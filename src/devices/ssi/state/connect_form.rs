@@ -9,7 +9,7 @@ use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::sim::Settings;
-use crate::kinds::at_adapter;
+use crate::kinds::attachable_kinds;
 use crate::link::{LinkScheme, LinkUrl};
 use crate::parameter::{Entry, Parameters as _};
 
@@ -126,7 +126,7 @@ impl SsiForm {
         if self.leave_supply {
             parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
         }
-        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
+        parameters.add_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(attachable_kinds())));
         parameters
     }
 }

@@ -104,7 +104,7 @@ impl LayoutDesigner {
     }
 
     /// Creates the design for a link. The layout is known only if the link leads to a virtual encoder.
-    pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
+    pub(super) fn for_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == LinkScheme::Sim);
         let mut profile = parse_profile(sent.unwrap_or(DELIVERED), &families);
         profile.reading = reading_for_link(profile.reading, url, |_| true);
@@ -164,7 +164,7 @@ impl LayoutDesigner {
         &self.saved
     }
 
-    pub(super) fn take_families(&mut self, families: Arc<Families>) {
+    pub(super) fn update_families(&mut self, families: Arc<Families>) {
         self.families = families;
         if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
             self.now = design;
@@ -209,12 +209,12 @@ impl LayoutDesigner {
                 };
                 // A preset of the previous layout means another place.
                 profile.preset = 0;
-                return resolved(profile, family, Settings::default());
+                return resolved_profile(profile, family, Settings::default());
             }
             Edit::Free => profile.family = None,
             Edit::Settings(settings) => {
                 let Some(family) = self.family() else { return Err(TEXTS.text("ssi.no_family").with("key", "–")) };
-                return resolved(profile, family, *settings);
+                return resolved_profile(profile, family, *settings);
             }
             Edit::Frame(descriptor) => profile.descriptor = *descriptor,
             Edit::Position(range, code) => {
@@ -313,7 +313,7 @@ fn parse_profile(text: &str, families: &Families) -> SsiProfile {
 }
 
 /// Returns the profile with the frame that a family sends with the given settings. Direction and preset are kept.
-fn resolved(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
+fn resolved_profile(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
     let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;
     profile.descriptor = resolved.layout.descriptor().clone();

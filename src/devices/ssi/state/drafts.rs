@@ -92,7 +92,7 @@ impl HasDraft for Encoder {
             self.designer.open(profile.clone());
             self.take_edits(edits);
         }
-        self.follow_layout(&before);
+        self.handle_layout_change(&before);
         self.session.apply_document(file, document);
     }
 

@@ -64,11 +64,11 @@ impl Encoder {
     /// trial frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
-        self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
+        self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
     }
 
     /// Returns whether the last word read is displayed.
-    pub fn is_following(&self) -> bool {
+    pub fn is_showing_live(&self) -> bool {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
 
@@ -104,18 +104,18 @@ impl Encoder {
         self.design().profile.clone()
     }
 
-    pub(crate) fn take_families(&mut self, families: Arc<Families>) {
-        self.designer.take_families(families);
+    pub(crate) fn update_families(&mut self, families: Arc<Families>) {
+        self.designer.update_families(families);
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
         let before = self.designer.layout().clone();
         if self.designer.edit(edit) {
-            self.follow_layout(&before);
+            self.handle_layout_change(&before);
         }
     }
 
-    pub(super) fn follow_layout(&mut self, before: &Layout) {
+    pub(super) fn handle_layout_change(&mut self, before: &Layout) {
         if self.identity.is_some() {
             self.name_after_family();
         }
@@ -134,7 +134,7 @@ impl Encoder {
 
     /// Returns the link to a virtual encoder that would send this layout, if the connected virtual encoder sends
     /// another. A link can only describe frames of a family.
-    pub fn link_to_send(&self) -> Option<LinkUrl> {
+    pub fn link_for_layout(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
         let differs =

@@ -90,7 +90,7 @@ impl Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<Words>, dropped: u64) {
+    fn handle_samples(&mut self, samples: Vec<Words>, dropped: u64) {
         self.record.add(samples, dropped);
     }
 

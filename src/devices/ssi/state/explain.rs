@@ -189,7 +189,7 @@ pub fn evidence_for(evidence: &Evidence) -> Text {
 }
 
 /// Returns how often and when a finding occurred.
-pub fn noted(noted: &CountedFinding) -> Text {
+pub fn finding_counts(noted: &CountedFinding) -> Text {
     let seconds = |time: crate::analysis::SampleTime| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
     TEXTS.text(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(

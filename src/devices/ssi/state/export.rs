@@ -3,8 +3,8 @@
 use super::design::LayoutDesigner;
 use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
-    ExportText, Picture, bit_table, c99, frame_picture, scl, settings_sheet, structured_text, structured_text_32,
-    timing_picture, to_linuxcnc,
+    ExportText, Picture, bit_table, c99, frame_picture, scl_source, settings_sheet, structured_text,
+    structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::explain as words;
 
@@ -93,7 +93,7 @@ impl LayoutDesigner {
             ExportFormat::C => c99(layout, &title),
             ExportFormat::StructuredText => structured_text(layout, &title),
             ExportFormat::StructuredText32 => structured_text_32(layout, &title).map_err(words::wide)?,
-            ExportFormat::Scl => scl(layout, &title).map_err(words::wide)?,
+            ExportFormat::Scl => scl_source(layout, &title).map_err(words::wide)?,
             ExportFormat::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format(&error))? + "\n",
             ExportFormat::Sheet => settings_sheet(layout, self.times(), &title, &say),
             ExportFormat::Table | ExportFormat::Frame | ExportFormat::Timing => bit_table(layout, &say),

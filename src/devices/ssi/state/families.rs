@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::Families;
 /// Returns the known families: the built-in ones, plus the user's own once those are loaded. The first call starts
 /// loading them in a task.
 pub(super) fn families(services: &mut Services) -> Arc<Families> {
-    if let Some(families) = services.shared::<Arc<Families>>() {
+    if let Some(families) = services.shared_data::<Arc<Families>>() {
         return families.clone();
     }
     let built_in = Arc::new(Families::built_in());
@@ -25,15 +25,15 @@ pub(super) fn families(services: &mut Services) -> Arc<Families> {
             for error in &broken {
                 services.notify(Severity::Warning, vec![words::store(error)], None);
             }
-            take_families(&Arc::new(families), services, devices);
+            update_families(&Arc::new(families), services, devices);
         })))
     });
     built_in
 }
 
-fn take_families(families: &Arc<Families>, services: &mut Services, devices: &mut [Box<AnyDevice>]) {
+fn update_families(families: &Arc<Families>, services: &mut Services, devices: &mut [Box<AnyDevice>]) {
     for encoder in devices.iter_mut().filter_map(|device| device.get_mut::<Encoder>()) {
-        encoder.take_families(families.clone());
+        encoder.update_families(families.clone());
     }
     services.share(families.clone());
 }

@@ -39,7 +39,7 @@ impl DeviceType for Encoder {
     fn begin(session: Session<Ssi>, profile: Option<(&SsiProfile, ())>, services: &mut Services) -> Self {
         let families = families(services);
         let mut designer = match &session.source {
-            Source::Link(url) => LayoutDesigner::at_link(url, families),
+            Source::Link(url) => LayoutDesigner::for_link(url, families),
             Source::File { .. } | Source::New { .. } => LayoutDesigner::factory_default(families),
         };
         if let Some((profile, ())) = profile {
@@ -58,7 +58,7 @@ impl DeviceType for Encoder {
         Some(encoder)
     }
 
-    fn secrets() -> Vec<&'static str> {
+    fn secret_parameters() -> Vec<&'static str> {
         [LinkParameters::SECRETS, Settings::SECRETS].concat()
     }
 }

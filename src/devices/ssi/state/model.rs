@@ -30,7 +30,7 @@ impl DeviceModel for Encoder {
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.requested = None;
-        self.session.adopt_line(opened, services);
+        self.session.attach_connection(opened, services);
         if !self.session.drafting.is_loaded() {
             self.load_draft(services);
         }
@@ -61,7 +61,7 @@ impl DeviceModel for Encoder {
         Some(Body::new(self.wanted_profile()))
     }
 
-    fn adopt_body(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
+    fn apply_profile(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
         self.edit(Edit::Whole(Box::new(body.into_profile()?)));
         Ok(())
     }
@@ -112,16 +112,16 @@ impl DeviceModel for Encoder {
     fn step(&mut self, step: EditStep) {
         let before = self.designer.layout().clone();
         if step(&mut self.designer) {
-            self.follow_layout(&before);
+            self.handle_layout_change(&before);
         }
     }
 
     fn ask_where_to_save(&mut self, services: &mut Services) {
-        let suggested = self.suggested("ron");
+        let suggested = self.suggested_path("ron");
         services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
     }
 
-    fn streams(&self) -> bool {
+    fn can_stream(&self) -> bool {
         // There is always an adapter.
         true
     }

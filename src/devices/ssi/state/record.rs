@@ -94,7 +94,7 @@ impl Record {
         }
         for run in runs {
             self.follow(&run);
-            self.see(&run);
+            self.observe(&run);
             self.buffer_run(run);
         }
     }
@@ -112,10 +112,10 @@ impl Record {
             run.is_streamed().then_some(Streamed { next, period_ns: run.period_ns, is_limited: run.is_limited });
     }
 
-    fn see(&mut self, run: &Words) {
+    fn observe(&mut self, run: &Words) {
         let fits = run.clocks == self.layout.clocks();
         let mut sightings = Vec::with_capacity(run.words.len());
-        for (at, word) in run.timed() {
+        for (at, word) in run.with_times() {
             if !fits {
                 sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
@@ -132,7 +132,7 @@ impl Record {
             sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
         self.track.add(&sightings, &self.meaning);
-        if let Some((at, word)) = run.timed().last() {
+        if let Some((at, word)) = run.with_times().last() {
             self.last = Some(ReceivedWord {
                 at,
                 clocks: run.clocks,
@@ -170,7 +170,7 @@ impl Record {
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {
             self.follow(run);
-            self.see(run);
+            self.observe(run);
         }
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
@@ -205,7 +205,7 @@ impl Record {
     }
 
     /// Hides the findings so far, even if the words are decoded again.
-    pub(super) fn forget_tally(&mut self) {
+    pub(super) fn reset_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);
     }

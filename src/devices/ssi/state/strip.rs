@@ -93,7 +93,7 @@ pub struct CellState {
 impl Strip {
     pub fn of(layout: &Layout) -> Self {
         let descriptor = layout.descriptor();
-        let roles = layout.roles();
+        let roles = layout.clock_roles();
         let is_position = |role: &Role| matches!(role, Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_));
         let is_turns = |role: &Role| matches!(role, Role::Multiturn(_));
         let is_steps = |role: &Role| matches!(role, Role::Singleturn(_));
@@ -228,7 +228,7 @@ impl Handle {
 
 /// Returns whether any error or parity bits directly follow the position, and therefore move with it.
 pub fn follows(layout: &Layout) -> bool {
-    !moving::bit_chain(layout).is_empty()
+    !moving::adjacent_bits(layout).is_empty()
 }
 
 /// Returns whether the frame has patterns given as bits, which would change with the length of the frame.

@@ -10,7 +10,9 @@ use crate::parameter::Entry;
 use crate::ui::Theme;
 use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{expandable_ui, leave_supply, network, recording, segments, serial, typed};
+use crate::ui::dialogs::connect::entries::{
+    expandable_ui, leave_supply, network, recording, segmented_control, serial, typed,
+};
 
 pub(crate) struct SsiConnectForm;
 
@@ -31,7 +33,7 @@ impl TypedConnectForm for SsiConnectForm {
             (SsiLinkKind::Adapter, "connect.adapter"),
             (SsiLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.kind, ways);
+        segmented_control(ui, theme, &mut form.kind, ways);
         if form.kind == SsiLinkKind::Adapter {
             paragraph(ui, theme.caption(say(theme, "connect.ssi_words")));
         }
@@ -39,7 +41,7 @@ impl TypedConnectForm for SsiConnectForm {
         match form.kind {
             SsiLinkKind::Virtual => typed(ui, theme, say, SsiForm::of_the_virtual(), &mut form.typed),
             SsiLinkKind::Adapter => {
-                segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {

@@ -52,8 +52,8 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
         let hello = &identity.hello;
         ui.label(theme.value(&hello.name));
         ui.add_space(theme.space.inside);
-        row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(&hello.firmware));
-        row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(&hello.serial));
+        row(ui, theme, &theme.say("encoder_card.firmware"), theme.monospace(&hello.firmware));
+        row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(&hello.serial));
         let asking = &identity.asking;
         let text = TEXTS
             .text("ssi_adapter.asks")
@@ -79,7 +79,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
 
 /// Draws the findings such as error bits and patterns, including those from frames that were not displayed.
 fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let noted = encoder.record.tally().noted();
+    let noted = encoder.record.tally().finding_counts();
     let id = encoder.session.id;
     let forget = |ui: &mut Ui| {
         if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_tally.forget"))
@@ -102,7 +102,7 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
                 ui.label(RichText::new(icon).color(colour));
                 ui.vertical(|ui| {
                     paragraph(ui, theme.words(&words::finding_text(&own.finding)));
-                    paragraph(ui, theme.caption(theme.words(&words::noted(own))));
+                    paragraph(ui, theme.caption(theme.words(&words::finding_counts(own))));
                 });
             });
         }

@@ -54,7 +54,7 @@ pub(super) fn page_ui(
         (None, Ok(text)) => {
             let height = (ui.ctx().content_rect().height() - 330.0).max(160.0);
             ScrollArea::both().id_salt(own.word()).max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-                ui.add(egui::Label::new(theme.mono(text)).selectable(true).extend());
+                ui.add(egui::Label::new(theme.monospace(text)).selectable(true).extend());
             });
         }
         (None, Err(why)) => problem(ui, theme, Some(why)),

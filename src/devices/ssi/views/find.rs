@@ -10,8 +10,8 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary, row, show_error_below,
-    spinner,
+    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary_button, row,
+    show_error_below, spinner,
 };
 use crate::ui::{Theme, icons};
 
@@ -83,7 +83,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
         });
         show_error_below(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
-        row(ui, theme, &say(theme, "ssi_find.read"), theme.mono(words.to_string()));
+        row(ui, theme, &say(theme, "ssi_find.read"), theme.monospace(words.to_string()));
         if !encoder.is_profile() && words == 0 {
             paragraph(ui, theme.caption(say(theme, "ssi_find.poll")));
         }
@@ -96,7 +96,8 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
                 ask(Ssi::AskSaveFrames);
             }
             let running = matches!(encoder.hunt, SearchState::Running(_));
-            let find = primary(ui, theme, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(theme, "ssi_find.find"));
+            let find =
+                primary_button(ui, theme, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(theme, "ssi_find.find"));
             if find.on_disabled_hover_text(say(theme, "ssi_find.poll")).clicked() {
                 ask(Ssi::Find);
             }
@@ -199,7 +200,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) 
     let fewest = family.and_then(|family| family.settings_for_frame(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(name).font(theme.strong(theme.sizes.body)));
-        ui.label(theme.mono(fewest.as_ref().unwrap_or(settings).emit(key)));
+        ui.label(RichText::new(name).font(theme.bold_font(theme.sizes.body)));
+        ui.label(theme.monospace(fewest.as_ref().unwrap_or(settings).emit(key)));
     });
 }

@@ -13,8 +13,8 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph, primary,
-    show_error_below, two_columns,
+    button, card_with, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph,
+    primary_button, show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -83,7 +83,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         family(ui, theme, encoder, view, &mut asked);
         ui.add_space(theme.space.between);
         strip_ui(ui, theme, encoder, view, &mut asked);
-        if encoder.link_to_send().is_some() {
+        if encoder.link_for_layout().is_some() {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
                 ui.label(say(theme, "ssi_layout.sends_other"));
@@ -253,7 +253,7 @@ fn buttons_ui(
             actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if primary(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
+            if primary_button(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
             adopt_for_device_ui(ui, theme, studio, device, actions);

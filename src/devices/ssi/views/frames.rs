@@ -31,7 +31,7 @@ pub(super) fn card_ui(
         let names = ["ssi_frames.number", "ssi_frames.frame", "ssi_trial.position", "live.turns", "live.step"];
         let [number, frame, position, turns, steps] = names.map(|id| say(theme, id));
         let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
-        ui.label(theme.mono(heading).color(theme.palette.muted));
+        ui.label(theme.monospace(heading).color(theme.palette.muted));
         let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
         // Rows of a table: no room around their buttons.
         let spacing = ui.spacing_mut();

@@ -49,9 +49,9 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
         if let Some((position, Location::Shaft { turns, steps, .. })) = place {
-            row(ui, theme, &theme.say("live.turns"), theme.mono(turns.to_string()));
-            row(ui, theme, &theme.say("live.step"), theme.mono(steps.to_string()));
-            row(ui, theme, &say(theme, "ssi_trial.position"), theme.mono(position.to_string()));
+            row(ui, theme, &theme.say("live.turns"), theme.monospace(turns.to_string()));
+            row(ui, theme, &theme.say("live.step"), theme.monospace(steps.to_string()));
+            row(ui, theme, &say(theme, "ssi_trial.position"), theme.monospace(position.to_string()));
         }
         raw_row(ui, theme, raw);
     }

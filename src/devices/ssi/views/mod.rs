@@ -83,7 +83,7 @@ impl TypedDeviceView for SsiView {
         (page, view): (Page, &mut SsiUiState),
         actions: &mut Vec<Action>,
     ) {
-        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+        page::scrollable_page(ui, theme, (encoder.session.id, page.place()), |ui| match page {
             Page::Frame => frame::page_ui(ui, theme, (studio, device), encoder, view, actions),
             Page::Timing => timing::page_ui(ui, theme, encoder, &mut view.form, actions),
             Page::Find => find::page_ui(ui, theme, encoder, &mut view.find, actions),

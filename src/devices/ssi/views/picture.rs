@@ -88,7 +88,7 @@ impl DiagramCanvas<'_> {
 
     fn text(&self, label: &PictureLabel) {
         let size = label.size as f32 * self.scale;
-        let font = if label.is_bold { self.theme.strong(size) } else { FontId::proportional(size) };
+        let font = if label.is_bold { self.theme.bold_font(size) } else { FontId::proportional(size) };
         let align = if label.is_centred { Align2::CENTER_BOTTOM } else { Align2::LEFT_BOTTOM };
         // Letters go below their baseline by about a fifth of their size.
         let at = self.at(label.x.units(), label.y) + Vec2::new(0.0, 0.22 * size);

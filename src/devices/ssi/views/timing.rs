@@ -51,7 +51,7 @@ pub(super) fn page_ui(
 fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
     let hertz = |hertz: f64| theme.words(&frequency(hertz));
-    let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));
+    let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.monospace(words));
     value_row("ssi_timing.period", format!("{} µs", micros(timing.period)));
     value_row("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
     let rate = hertz(1.0 / timing.cycle.as_secs_f64().max(1e-9));

@@ -25,7 +25,7 @@ pub(super) struct TrialUiState {
 
 impl TrialUiState {
     /// Returns whether the user is typing, as opposed to a refused entry being shown.
-    fn is_typed_in(&self) -> bool {
+    fn is_being_edited(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
     }
@@ -40,8 +40,8 @@ pub(super) fn card_ui(
     view: &mut TrialUiState,
     actions: &mut Vec<Action>,
 ) {
-    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.displayed_frame());
-    let is_live = encoder.is_following();
+    let shown = view.held.take().filter(|_| view.is_being_edited()).unwrap_or_else(|| encoder.displayed_frame());
+    let is_live = encoder.is_showing_live();
     let id = encoder.session.id;
     let mut action = None;
     let live = |ui: &mut Ui| {
@@ -61,7 +61,7 @@ pub(super) fn card_ui(
         findings_ui(ui, theme, &shown);
     });
     actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
-    view.held = view.is_typed_in().then_some(shown);
+    view.held = view.is_being_edited().then_some(shown);
 }
 
 fn numbers(
@@ -100,10 +100,15 @@ fn numbers(
                 });
                 refused_ui(ui, theme, view.steps.as_ref());
             });
-            row(ui, theme, &say(theme, "ssi_trial.angle"), theme.mono(format!("{} °", theme.number(degrees, 4))));
+            row(ui, theme, &say(theme, "ssi_trial.angle"), theme.monospace(format!("{} °", theme.number(degrees, 4))));
         }
         Some((_, Location::Length { millimetres })) => {
-            row(ui, theme, &say(theme, "ssi_trial.length"), theme.mono(format!("{} mm", theme.number(millimetres, 4))));
+            row(
+                ui,
+                theme,
+                &say(theme, "ssi_trial.length"),
+                theme.monospace(format!("{} mm", theme.number(millimetres, 4))),
+            );
         }
         None => {}
     }
@@ -131,7 +136,7 @@ fn bits_ui(
                 ui.copy_text(own.clone());
             }
             let hex = format!("0x{:0width$X}", shown.frame, width = usize::from(clocks).div_ceil(4));
-            ui.add(egui::Label::new(theme.mono(hex)).selectable(true));
+            ui.add(egui::Label::new(theme.monospace(hex)).selectable(true));
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());

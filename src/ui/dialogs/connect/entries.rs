@@ -31,7 +31,7 @@ pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut Str
             for offer in offers {
                 ui.horizontal(|ui| {
                     ui.add_space(label_width(ui));
-                    let button = egui::Button::selectable(*port == offer.path, theme.mono(&offer.path));
+                    let button = egui::Button::selectable(*port == offer.path, theme.monospace(&offer.path));
                     if ui.add(button).clicked() {
                         port.clone_from(&offer.path);
                     }
@@ -144,7 +144,7 @@ pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
 }
 
 /// Draws a choice between a few options, side by side.
-pub(crate) fn segments<T: PartialEq + Copy, const N: usize>(
+pub(crate) fn segmented_control<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
     theme: &Theme,
     own: &mut T,

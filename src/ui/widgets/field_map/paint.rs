@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, Ui, Vec2};
 
 use super::MapField;
-use super::strip::{Strip, widest};
+use super::strip::{Strip, widest_run};
 use crate::ui::widgets::{draw_hatching, focus_ring, series};
 use crate::ui::{Theme, icons};
 
@@ -16,7 +16,7 @@ pub(super) struct State {
 
 /// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field and square where the
 /// field continues on another line.
-fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
+fn run_outline(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
     let (mut rect, radius) = (*run, theme.radius.nw);
@@ -34,7 +34,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     let colour = series(theme, field.colour);
     let painter = ui.painter();
     for number in 0..runs.len() {
-        let (rect, corners) = shape(theme, runs, number);
+        let (rect, corners) = run_outline(theme, runs, number);
         painter.rect_filled(rect, corners, theme.palette.sunken);
         let strength = if state.hovered { 0.34 } else { 0.22 };
         painter.rect_filled(rect, corners, colour.gamma_multiply(strength));
@@ -57,7 +57,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
             focus_ring(painter, theme, rect, corners);
         }
     }
-    if let Some(run) = runs.get(widest(runs)) {
+    if let Some(run) = runs.get(widest_run(runs)) {
         draw_inscription(ui, theme, *run, field);
     }
 }
@@ -76,7 +76,7 @@ fn draw_inscription(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let shown: Vec<_> = flags.into_iter().filter(|(shown, ..)| *shown).collect();
     let size = theme.sizes.body;
     let pitch = size + 1.0;
-    let font = theme.strong(size);
+    let font = theme.bold_font(size);
     let number = painter.layout_no_wrap(field.number.to_string(), font, palette.text.into());
     let beside = number.size().x + theme.space.inside + shown.len() as f32 * pitch <= inside.width();
     let caption = fitting(ui, theme, &field.caption, inside.width()).filter(|_| beside);
@@ -124,7 +124,7 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
         false => Color32::from(theme.palette.muted).gamma_multiply(0.5),
     };
     for number in 0..runs.len() {
-        let (rect, corners) = shape(theme, runs, number);
+        let (rect, corners) = run_outline(theme, runs, number);
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left();
         while x < run.right() - 1.0 {
@@ -151,7 +151,7 @@ pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words:
     let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();
     for number in 0..runs.len() {
-        let (rect, corners) = shape(theme, runs, number);
+        let (rect, corners) = run_outline(theme, runs, number);
         painter.rect_filled(rect, corners, accent.gamma_multiply(0.16));
         let rect = rect.shrink(0.5);
         let path = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];

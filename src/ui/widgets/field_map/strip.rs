@@ -69,7 +69,7 @@ impl Strip {
 }
 
 /// Returns the index of a field's widest run, or of the first one if several are equally wide.
-pub(super) fn widest(runs: &[Rect]) -> usize {
+pub(super) fn widest_run(runs: &[Rect]) -> usize {
     let widths = runs.iter().enumerate().rev();
     widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)
 }

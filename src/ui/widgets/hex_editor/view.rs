@@ -61,7 +61,7 @@ impl HexView {
     }
 
     /// Moves the cursor to the first byte changed by an undo or redo step.
-    pub(super) fn follow_to(&mut self, wanted: &[u8]) {
+    pub(super) fn move_cursor_to_change(&mut self, wanted: &[u8]) {
         let Some(before) = self.before.take().filter(|before| before.len() == wanted.len()) else { return };
         if let Some(at) = before.iter().zip(wanted).position(|(before, now)| before != now) {
             self.go(at, false);

@@ -13,7 +13,7 @@ pub(super) fn hold(ui: &Ui, id: Id) {
 }
 
 /// Inserts the events held back in the previous frame before the current events while the table has the keyboard focus.
-pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
+pub(super) fn restore_deferred_keys(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
     if !late.is_empty() && (focused == Some(id) || focused == Some(entry_id(id))) {
@@ -33,7 +33,7 @@ pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
         let mut kept = Vec::with_capacity(input.events.len());
         for event in input.events.drain(..) {
             let is_arrow = is_vertical(&event);
-            if is_typed(&event) && (ended || is_arrow) {
+            if is_typing_event(&event) && (ended || is_arrow) {
                 if !ended {
                     kept.push(ENTER);
                 }
@@ -64,7 +64,7 @@ pub(super) fn is_vertical(event: &Event) -> bool {
 
 /// Returns whether the event counts as typing for the table and its editor. Keys that stop a drive or belong to the
 /// window do not count and are never held back.
-fn is_typed(event: &Event) -> bool {
+fn is_typing_event(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {
         Event::Text(_) => true,
@@ -87,7 +87,7 @@ pub(super) fn listen(
     ui.input_mut(|input| {
         input.events.retain(|own| match own {
             // The editor has the keyboard from the next frame on.
-            _ if is_typed(own) && view.edit.as_ref().is_some_and(|edit| edit.begins) => {
+            _ if is_typing_event(own) && view.edit.as_ref().is_some_and(|edit| edit.begins) => {
                 view.late.push(own.clone());
                 false
             }

@@ -72,7 +72,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     let middle = rect.center().y;
     let font = FontId::proportional(theme.sizes.caption);
     painter.text(pos2(rect.left() + 4.0, middle), Align2::LEFT_CENTER, caret, font.clone(), palette.muted.into());
-    let title = painter.layout_no_wrap(group.title.clone(), theme.strong(theme.sizes.body), palette.text.into());
+    let title = painter.layout_no_wrap(group.title.clone(), theme.bold_font(theme.sizes.body), palette.text.into());
     let right = rect.left() + CARET + title.size().x;
     painter.galley(pos2(rect.left() + CARET, middle - title.size().y / 2.0), title, palette.text.into());
     let room = Rangef::new(right - rect.left() + theme.space.groups, rect.width());
@@ -102,22 +102,22 @@ pub(super) fn row(
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
             Column::Marks => continue,
-            Column::Address => (theme.mono(&row.address), palette.muted),
+            Column::Address => (theme.monospace(&row.address), palette.muted),
             Column::Name => (egui::RichText::new(&row.name), palette.text),
             Column::Value if typing => continue,
-            Column::Value if row.value.is_empty() => (theme.mono("–"), palette.muted),
-            Column::Value => (theme.mono(&row.value), value),
-            Column::Decimal => (theme.mono(&row.decimal), value),
+            Column::Value if row.value.is_empty() => (theme.monospace("–"), palette.muted),
+            Column::Value => (theme.monospace(&row.value), value),
+            Column::Decimal => (theme.monospace(&row.decimal), value),
             // The number replaces the meaning if its own column is hidden.
             Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
-                (theme.mono(&row.decimal), value)
+                (theme.monospace(&row.decimal), value)
             }
             Column::Meaning if kind == RegisterKind::Numbers => (egui::RichText::new(&row.meaning), palette.muted),
             Column::Meaning => (egui::RichText::new(&row.meaning), value),
-            Column::Access => (theme.mono(&row.access), palette.muted),
+            Column::Access => (theme.monospace(&row.access), palette.muted),
             Column::Range => (theme.caption(&row.range), palette.muted),
-            Column::Default if row.differs => (theme.mono(format!("≠ {}", row.default)), palette.text),
-            Column::Default => (theme.mono(&row.default), palette.muted),
+            Column::Default if row.differs => (theme.monospace(format!("≠ {}", row.default)), palette.text),
+            Column::Default => (theme.monospace(&row.default), palette.muted),
         };
         // A name or meaning that is too long is smaller, and cut only if it still does not fit.
         let words = match column {
@@ -175,9 +175,9 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
     let ink = if bits.lit { palette.warn } else { palette.muted };
     for (column, range) in columns.iter() {
         let (words, inset) = match column {
-            Column::Address => (theme.mono(&bits.bits), theme.space.between),
+            Column::Address => (theme.monospace(&bits.bits), theme.space.between),
             Column::Name => (egui::RichText::new(&bits.name), theme.space.between),
-            Column::Value => (theme.mono(&bits.value), 0.0),
+            Column::Value => (theme.monospace(&bits.value), 0.0),
             Column::Meaning => (egui::RichText::new(&bits.meaning), 0.0),
             Column::Marks | Column::Decimal | Column::Access | Column::Range | Column::Default => continue,
         };
@@ -216,7 +216,7 @@ fn draw_inscription(
     width
 }
 
-pub(super) fn tip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
+pub(super) fn show_tooltip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     ui.label(egui::RichText::new(row.label()).color(theme.palette.text));
     if !row.meaning.is_empty() {
@@ -232,7 +232,7 @@ pub(super) fn tip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &C
         if columns.range(column).is_none() && !value.is_empty() {
             ui.horizontal(|ui| {
                 ui.label(theme.caption(theme.say(title(kind, column))));
-                ui.label(theme.mono(value));
+                ui.label(theme.monospace(value));
             });
         }
     }

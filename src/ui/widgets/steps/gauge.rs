@@ -44,7 +44,7 @@ fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below:
     ui.horizontal(|ui| {
         column_ui(ui, ICON, RichText::new(icon).color(ink));
         column_ui(ui, NAME, theme.label(&gauge.name));
-        column_ui(ui, VALUE, theme.mono(&gauge.shown).color(ink));
+        column_ui(ui, VALUE, theme.monospace(&gauge.shown).color(ink));
         scale_ui(ui, theme, gauge, width, ink.into());
         if !limits_below {
             ui.label(theme.caption(&gauge.limits));

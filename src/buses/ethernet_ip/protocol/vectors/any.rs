@@ -12,8 +12,8 @@ fn read_all(bytes: &[u8]) {
     let _ = Request::parse(bytes).map(|request| request.emit());
     let _ = Reply::parse(bytes).map(|reply| reply.emit());
     let _ = EPath::parse(bytes).map(|path| path.emit());
-    let _ = (ForwardOpen::parse(bytes), ForwardOpened::parse(bytes), ForwardErrorReply::parse(bytes));
-    let _ = (ForwardClose::parse(bytes), ForwardClosed::parse(bytes), Identity::parse_all(bytes));
+    let _ = (ForwardOpen::parse(bytes), ForwardOpenSuccess::parse(bytes), ForwardErrorReply::parse(bytes));
+    let _ = (ForwardClose::parse(bytes), ForwardCloseSuccess::parse(bytes), Identity::parse_all(bytes));
     let _ = (ConfigurationControl::parse(bytes), InterfaceConfiguration::parse(bytes));
     for format in [RealTimeFormat::Header, RealTimeFormat::Modeless] {
         let _ = IoPacket::parse(bytes, format).map(|packet| packet.emit());

@@ -43,7 +43,7 @@ impl<'a> Master<'a> {
 
     /// Identifies the adapter, switches the encoder's supply on if requested, and configures the bus.
     pub(super) fn ensure_bus_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
-        self.end_frames()?;
+        self.stop_frame_stream()?;
         self.adapter().hello()?;
         let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
         if !hello.capabilities.has(Capabilities::BISS) {
@@ -123,7 +123,7 @@ impl<'a> Master<'a> {
     /// Writes a register without retries and returns the value that it reads back.
     fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
-        let answered = self.adapter().ask_once(&request);
+        let answered = self.adapter().request_once(&request);
         let reads = match self.register_answer(answered)? {
             Ok(Reply::BissRegisterWrite { value }) => value,
             Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
@@ -151,7 +151,7 @@ impl<'a> Master<'a> {
                 ExchangeError::Damage(Damage::ControlFrame)
             }
             Err(failure) => {
-                self.may_be_reset(&failure);
+                self.handle_possible_reset(&failure);
                 return Err(failure.into());
             }
         };
@@ -160,7 +160,7 @@ impl<'a> Master<'a> {
     }
 
     /// Notes that the adapter may have been reset and must be configured again, unless the failure is a cancellation.
-    fn may_be_reset(&mut self, failure: &Failure) {
+    fn handle_possible_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
         } else {
@@ -179,7 +179,7 @@ impl<'a> Master<'a> {
                 self.station.good_frames = true;
                 let crc_errors = self.station.take_crc_errors();
                 let is_split_known = self.station.is_split_known();
-                Ok(PositionReading { crc_errors, is_split_known, ..PositionReading::in_frame(at, &reading, &layout) })
+                Ok(PositionReading { crc_errors, is_split_known, ..PositionReading::from_frame(at, &reading, &layout) })
             }
             Err(FrameError::StuckLow) => Err(ExchangeError::NoFrame(NoFrame::StuckLow)),
             Err(FrameError::StuckHigh) => Err(ExchangeError::NoFrame(NoFrame::StuckHigh)),
@@ -192,13 +192,13 @@ impl<'a> Master<'a> {
 
     pub(super) fn read_frame_once(&mut self) -> Attempt<(u64, Moment)> {
         let answered = self.adapter().ask(&Request::BissRead);
-        let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
+        let answered = answered.inspect_err(|failure| self.handle_possible_reset(failure))?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
             return Err(AdapterError::other(Request::BissRead.operation(), &answered.reply).into());
         };
         let no_frame = match status {
             BissStatus::OK => {
-                let at = self.station.adapter.moment_of(t_us, &answered);
+                let at = self.station.adapter.local_time_of(t_us, &answered);
                 return Ok(Ok((raw, at)));
             }
             BissStatus::NO_ACKNOWLEDGE => NoFrame::NoAcknowledge,

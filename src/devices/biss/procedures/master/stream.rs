@@ -58,10 +58,10 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Errors of the adapter; the stream is then ended before the next request.
-    pub fn end_frames(&mut self) -> Result<(), Error> {
+    pub fn stop_frame_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        match SampleStream::ended(self.shielded(|master| flow.end(&mut master.adapter()))) {
+        match SampleStream::ended(self.run_uncancellable(|master| flow.end(&mut master.adapter()))) {
             Ok(true) => Ok(()),
             Ok(false) => {
                 self.station.forget_settings();
@@ -76,7 +76,7 @@ impl Master<'_> {
 
     /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
-        if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
+        if !matches!(error, Error::Cancelled) && self.stop_frame_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }

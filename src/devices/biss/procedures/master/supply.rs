@@ -41,8 +41,8 @@ impl Master<'_> {
         if self.station.transport != Transport::Adapter || !self.station.adapter.switches_supply_off() {
             return Ok(());
         }
-        self.shielded(|master| {
-            master.end_frames()?;
+        self.run_uncancellable(|master| {
+            master.stop_frame_stream()?;
             if master.is_unfinished()? {
                 tracing::warn!("the encoder's supply stays on: it may be storing, calibrating or restarting");
                 return Ok(());

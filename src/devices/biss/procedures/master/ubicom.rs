@@ -133,7 +133,7 @@ impl Master<'_> {
             received.bytes += portion.len();
             received.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(received.raw.len())));
             received.receiver.push(&portion);
-            let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
+            let next = if portion.is_empty() { Receiver::handle_silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut received.receiver) {
                 if let Some(reply) = self.judge(request, &frame, &mut received) {
                     let at = last_at - self.characters(frame.len());

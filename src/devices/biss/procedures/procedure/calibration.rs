@@ -27,8 +27,9 @@ impl Guide<'_, '_> {
     pub(super) fn calibrate(&mut self) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::Calibration)?;
         self.step(ProcedureStep::Conditions);
-        if let Some(filter) =
-            self.role(Role::Filter).filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
+        if let Some(filter) = self
+            .role_address(Role::Filter)
+            .filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
         {
             let code = self.master.read(filter)?;
             // An old firmware has one filter and reports 0.
@@ -36,7 +37,7 @@ impl Guide<'_, '_> {
                 return Err(Failure::NotBalanced { code });
             }
         }
-        let celsius = match self.role(Role::Temperature) {
+        let celsius = match self.role_address(Role::Temperature) {
             Some(temperature) => Some(Temperature::new(self.master.read(temperature)?).celsius()),
             None => None,
         };
@@ -81,7 +82,7 @@ impl Guide<'_, '_> {
         if !run.is_clockwise() {
             return self.run(&course, procedure, explain);
         }
-        let ended = self.shielded(|guide| guide.run(&course, procedure, explain));
+        let ended = self.run_uncancellable(|guide| guide.run(&course, procedure, explain));
         // Success saves the table by itself, and failure loses it; only a run that was never started changes nothing.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
             self.count_write_cycle();

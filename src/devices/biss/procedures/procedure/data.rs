@@ -30,7 +30,7 @@ impl Guide<'_, '_> {
         self.step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
         // From here on the result of the store must be reported, even after cancellation.
-        self.shielded(|guide| guide.finish_data(&procedure, registers))
+        self.run_uncancellable(|guide| guide.finish_data(&procedure, registers))
     }
 
     fn finish_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {

@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{FilterCommand, FilterStatus, PositionFilter
 impl Guide<'_, '_> {
     pub(super) fn select_filter(&mut self, to: PositionFilter) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::FilterSelection)?;
-        let in_force = self.role(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
+        let in_force = self.role_address(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         self.enter(&procedure)?;
         self.step(ProcedureStep::Open);
         self.await_status(&procedure, FilterStatus::Closed.byte())?;
@@ -19,7 +19,7 @@ impl Guide<'_, '_> {
         self.await_status(&procedure, FilterStatus::WaitForSave.byte())?;
         self.step(ProcedureStep::Save);
         self.save(&procedure, FilterCommand::Save.byte())?;
-        self.shielded(|guide| {
+        self.run_uncancellable(|guide| {
             guide.restart()?;
             guide.step(ProcedureStep::ReadBack);
             guide.read_back(in_force, to.byte())?;

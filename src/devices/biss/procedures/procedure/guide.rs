@@ -119,7 +119,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.description.procedure(kind).copied().ok_or(Failure::NotDescribed { kind })
     }
 
-    pub(super) fn role(&self, role: Role) -> Option<RegisterAddress> {
+    pub(super) fn role_address(&self, role: Role) -> Option<RegisterAddress> {
         self.description.with_role(role).map(|register| register.address)
     }
 
@@ -138,7 +138,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step(ProcedureStep::LeadBack);
         let description = self.description.clone();
         let (master, standing) = (&mut *self.master, &mut self.standing);
-        let ended = master.shielded(|master| {
+        let ended = master.run_uncancellable(|master| {
             if matches!(standing.activity, Activity::Running(run) if run.is_calibration()) {
                 return master.with_reply_timeout(SILENCE, |master| lead_back(master, &description, lock, standing));
             }
@@ -213,10 +213,10 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     /// Runs `work` with cancellation ignored.
-    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.master.shield(true);
+    pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.master.ignore_cancellation(true);
         let result = work(self);
-        self.master.shield(before);
+        self.master.ignore_cancellation(before);
         result
     }
 
@@ -273,7 +273,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         // After a restart another bank is selected.
         self.master.station().bank = None;
         // The written value is read back, even after cancellation.
-        self.master.shielded(|master| {
+        self.master.run_uncancellable(|master| {
             master.wait(RESTART)?;
             master.with_reply_timeout(RESTART_PATIENCE, |master| look(master, lock, standing))
         })?;
@@ -329,7 +329,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             }
             self.master.wait(SAMPLING)?;
         }
-        if let (Task::Turn(run), Some(temperature)) = (task, self.role(Role::Temperature))
+        if let (Task::Turn(run), Some(temperature)) = (task, self.role_address(Role::Temperature))
             && run.is_calibration()
         {
             measured.celsius = Some(Temperature::new(self.master.read(temperature)?).celsius());

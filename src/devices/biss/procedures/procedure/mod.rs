@@ -83,7 +83,7 @@ impl Guide<'_, '_> {
                 ended?;
                 if old.is_some() {
                     self.step(ProcedureStep::ReadBack);
-                    self.shielded(|guide| guide.read_back(*address, *new))?;
+                    self.run_uncancellable(|guide| guide.read_back(*address, *new))?;
                 }
                 Ok(Outcome::Stored { registers: 1 })
             }
@@ -105,5 +105,5 @@ pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<Device
     let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
     let mut standing = LeftState::in_operation(false);
     let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
-    master.shielded(|master| master.with_reply_timeout(guide::SILENCE, back))
+    master.run_uncancellable(|master| master.with_reply_timeout(guide::SILENCE, back))
 }

@@ -27,7 +27,7 @@ impl Guide<'_, '_> {
         }
         self.step(ProcedureStep::Save);
         self.save(&procedure, PresetCommand::Save.byte())?;
-        self.shielded(|guide| {
+        self.run_uncancellable(|guide| {
             guide.restart()?;
             guide.step(ProcedureStep::ReadBack);
             for (address, byte) in &registers {
@@ -47,7 +47,7 @@ impl Guide<'_, '_> {
         self.enter(&procedure)?;
         self.step(ProcedureStep::Fire);
         self.save(&procedure, parts.command().byte())?;
-        self.shielded(|guide| {
+        self.run_uncancellable(|guide| {
             guide.restart()?;
             guide.step(ProcedureStep::ReadBack);
             let to = guide.master.position()?;

@@ -116,7 +116,7 @@ mod tests {
         let range = f64::powi(2.0, multiturn_bits.into());
         let steps = (turns.rem_euclid(range) * REVOLUTION) as u64;
         PositionReading {
-            at: Moment::after_start(Duration::from_millis(milliseconds)),
+            at: Moment::from_elapsed(Duration::from_millis(milliseconds)),
             turns: (steps >> 17) as u32,
             steps: (steps & 0x1_FFFF) as u32,
             error: None,

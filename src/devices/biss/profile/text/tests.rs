@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::devices::biss::protocol::{Access, Area, DeviceMode, RegisterAddress};
-use crate::profile::testing::changed_in_place;
+use crate::profile::testing::assert_edit_in_place;
 use crate::profile::{Body, ProfileDocument};
 
 const SHORT: &str = r#"(
@@ -55,8 +55,8 @@ fn full() -> BissProfile {
         device_mode: Some(DeviceMode::DATA_WRITE),
         unknown: Default::default(),
     };
-    profile.mark_mounting();
-    profile.mark_mounting();
+    profile.mark_mounting_values();
+    profile.mark_mounting_values();
     profile
 }
 
@@ -203,11 +203,11 @@ fn a_mark_covers_its_registers() {
     let item = MountingItem::Registers("0x25:0x08+4".parse().unwrap());
     profile.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });
     let marked: Vec<u8> =
-        (0..64).filter(|at| profile.is_mounting(RegisterAddress::banked(0x25, *at).unwrap())).collect();
+        (0..64).filter(|at| profile.is_mounting_value(RegisterAddress::banked(0x25, *at).unwrap())).collect();
     assert_eq!(marked, [8, 9, 10, 11]);
-    assert!(!profile.is_mounting(RegisterAddress::banked(0x26, 8).unwrap()));
+    assert!(!profile.is_mounting_value(RegisterAddress::banked(0x26, 8).unwrap()));
     let count = profile.mounting.len();
-    profile.mark_mounting();
+    profile.mark_mounting_values();
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 
@@ -216,5 +216,5 @@ fn a_mark_covers_its_registers() {
 fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));
     let edit = |own: &mut BissProfile| own.filter = Some(PositionFilter::from_byte(0));
-    changed_in_place(text, edit, "filter: 4", "filter: 0x00");
+    assert_edit_in_place(text, edit, "filter: 4", "filter: 0x00");
 }

@@ -14,7 +14,7 @@ use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::codes::CodeTable;
-use super::flaw::{self, Claim, Flaw};
+use super::flaw::{self, Claim, DescriptionErrorKind};
 use super::german::GermanTexts;
 use super::name::Name;
 use super::register::{Access, Area, Register, Role, ValueDecoding};
@@ -25,11 +25,11 @@ use crate::bits::ByteOrder;
 ///
 /// # Errors
 /// Returns the flaw and its position.
-pub(super) fn parse(text: &str) -> Result<Description, (Position, Flaw)> {
+pub(super) fn parse(text: &str) -> Result<Description, (Position, DescriptionErrorKind)> {
     flaw::take();
     let read: Result<File, SpannedError> = ron::from_str(text);
     let mut file = read.map_err(|SpannedError { code, span }| {
-        (span.start, flaw::take().unwrap_or_else(|| Flaw::Form(code.to_string())))
+        (span.start, flaw::take().unwrap_or_else(|| DescriptionErrorKind::Form(code.to_string())))
     })?;
     std::mem::take(&mut file.german).translate(file.names(), text)?;
     Ok(Description {
@@ -186,13 +186,15 @@ fn one() -> u8 {
 }
 
 impl TryFrom<RegisterLocation> for RegisterAddress {
-    type Error = Flaw;
+    type Error = DescriptionErrorKind;
 
-    fn try_from(place: RegisterLocation) -> Result<Self, Flaw> {
+    fn try_from(place: RegisterLocation) -> Result<Self, DescriptionErrorKind> {
         match place {
-            RegisterLocation::Direct(address) => RegisterAddress::direct(address).ok_or(Flaw::Direct(address)),
+            RegisterLocation::Direct(address) => {
+                RegisterAddress::direct(address).ok_or(DescriptionErrorKind::Direct(address))
+            }
             RegisterLocation::Bank(bank, offset) => {
-                RegisterAddress::banked(bank, offset).ok_or(Flaw::Banked { bank, offset })
+                RegisterAddress::banked(bank, offset).ok_or(DescriptionErrorKind::Banked { bank, offset })
             }
         }
     }
@@ -219,7 +221,7 @@ checked! {
 }
 
 impl IdentityRow {
-    fn check(self) -> Result<Identity, Flaw> {
+    fn check(self) -> Result<Identity, DescriptionErrorKind> {
         let IdentityRow { profile, manufacturer, device_id } = self;
         Ok(Identity { profile: ProfileId::new(profile), manufacturer, device_id })
     }
@@ -233,24 +235,24 @@ impl LayoutRow {
 }
 
 impl LockRow {
-    fn check(self) -> Result<Lock, Flaw> {
+    fn check(self) -> Result<Lock, DescriptionErrorKind> {
         let (password_at, mode_at) = (self.password_at.try_into()?, self.mode_at.try_into()?);
         Ok(Lock { password_at, password: self.password, mode_at })
     }
 }
 
 impl RegisterRow {
-    fn check(self) -> Result<Register, Flaw> {
+    fn check(self) -> Result<Register, DescriptionErrorKind> {
         let address: RegisterAddress = self.at.try_into()?;
         let (name, width) = (self.name, self.width);
         if !(1..=Register::MAX_WIDTH).contains(&width) {
-            return Err(Flaw::Width { name: name.to_string(), width });
+            return Err(DescriptionErrorKind::Width { name: name.to_string(), width });
         }
         if address.plus(width - 1).is_none() {
-            return Err(Flaw::BeyondBank { name: name.to_string(), width, address });
+            return Err(DescriptionErrorKind::BeyondBank { name: name.to_string(), width, address });
         }
         if !self.default.is_empty() && self.default.len() != usize::from(width) {
-            return Err(Flaw::Default { name: name.to_string(), bytes: self.default.len(), width });
+            return Err(DescriptionErrorKind::Default { name: name.to_string(), bytes: self.default.len(), width });
         }
         let decoding = match self.codes {
             Some(table) => ValueDecoding::Choice(
@@ -261,15 +263,15 @@ impl RegisterRow {
         if let ValueDecoding::Bits(bits) = &decoding
             && let Some((bit, _)) = bits.iter().find(|(bit, _)| *bit >= width * 8)
         {
-            return Err(Flaw::Bit { name: name.to_string(), bit: *bit, width });
+            return Err(DescriptionErrorKind::Bit { name: name.to_string(), bit: *bit, width });
         }
         if let ValueDecoding::Scaled { factor, offset } = decoding
             && !(factor.is_finite() && offset.is_finite())
         {
-            return Err(Flaw::Endless(name.to_string()));
+            return Err(DescriptionErrorKind::Endless(name.to_string()));
         }
         if !self.access.writes() && !self.saves.is_empty() {
-            return Err(Flaw::SavesNothing(name.to_string()));
+            return Err(DescriptionErrorKind::SavesNothing(name.to_string()));
         }
         Ok(Register {
             address,
@@ -288,17 +290,17 @@ impl RegisterRow {
 }
 
 impl AreaRow {
-    fn check(self) -> Result<Area, Flaw> {
+    fn check(self) -> Result<Area, DescriptionErrorKind> {
         let (first, last) = self.banks;
         if first > last {
-            return Err(Flaw::Banks { name: self.name.to_string(), first, last });
+            return Err(DescriptionErrorKind::Banks { name: self.name.to_string(), first, last });
         }
         Ok(Area { name: self.name, first, last, access: self.access, open: self.open })
     }
 }
 
 impl ProcedureRow {
-    fn check(self) -> Result<Procedure, Flaw> {
+    fn check(self) -> Result<Procedure, DescriptionErrorKind> {
         Ok(Procedure {
             kind: self.kind,
             mode: self.mode,
@@ -376,7 +378,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         while let Some(row) = list.next_element::<T>()? {
             for claim in row.claimed_items() {
                 if claimed.contains(&claim) {
-                    return Err(flaw::found(Flaw::Twice(claim)));
+                    return Err(flaw::found(DescriptionErrorKind::Twice(claim)));
                 }
                 claimed.insert(claim);
             }

@@ -12,7 +12,7 @@ use super::register::{Register, Role};
 
 /// A mistake in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Flaw {
+pub enum DescriptionErrorKind {
     /// The file does not have the form of a description. Contains the message of the RON parser.
     #[error("{0}")]
     Form(String),
@@ -116,11 +116,11 @@ pub enum Claim {
 }
 
 thread_local! {
-    static FOUND: Cell<Option<Flaw>> = const { Cell::new(None) };
+    static FOUND: Cell<Option<DescriptionErrorKind>> = const { Cell::new(None) };
 }
 
 /// Records a flaw and returns an error for the RON parser, which adds the position.
-pub(super) fn found<E: Error>(flaw: impl Into<Flaw>) -> E {
+pub(super) fn found<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);
     FOUND.set(Some(flaw));
@@ -128,6 +128,6 @@ pub(super) fn found<E: Error>(flaw: impl Into<Flaw>) -> E {
 }
 
 /// Takes the last flaw found on the current thread.
-pub(super) fn take() -> Option<Flaw> {
+pub(super) fn take() -> Option<DescriptionErrorKind> {
     FOUND.take()
 }

@@ -9,7 +9,7 @@ use ron::error::Position;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::flaw::{self, Claim, Flaw};
+use super::flaw::{self, Claim, DescriptionErrorKind};
 use super::name::Name;
 
 /// A map from English names to German ones.
@@ -22,7 +22,7 @@ impl GermanTexts {
         mut self,
         names: impl Iterator<Item = &'a mut Name>,
         text: &str,
-    ) -> Result<(), (Position, Flaw)> {
+    ) -> Result<(), (Position, DescriptionErrorKind)> {
         let mut used = BTreeMap::new();
         for name in names {
             if let Some((english, german)) = self.0.remove_entry(name.english()) {
@@ -34,7 +34,7 @@ impl GermanTexts {
         }
         match self.0.into_keys().next() {
             None => Ok(()),
-            Some(english) => Err((location_of(&english, text), Flaw::GermanNeedless(english))),
+            Some(english) => Err((location_of(&english, text), DescriptionErrorKind::GermanNeedless(english))),
         }
     }
 }
@@ -42,7 +42,7 @@ impl GermanTexts {
 /// Returns the position of an entry, counted from 1; the start of the file if the entry is written in an unusual form.
 fn location_of(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
-    let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(is_behind_key));
+    let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(starts_with_colon));
     let found = text.lines().enumerate().find_map(|(line, words)| Some((line + 1, words, is_entry(words)?)));
     found.map_or(Position { line: 1, col: 1 }, |(line, words, at)| Position {
         line,
@@ -50,7 +50,7 @@ fn location_of(english: &str, text: &str) -> Position {
     })
 }
 
-fn is_behind_key(rest: &str) -> bool {
+fn starts_with_colon(rest: &str) -> bool {
     rest.trim_start().starts_with(':')
 }
 
@@ -73,10 +73,10 @@ impl<'de> Visitor<'de> for Entries {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
-                return Err(flaw::found(Flaw::GermanEmpty(english)));
+                return Err(flaw::found(DescriptionErrorKind::GermanEmpty(english)));
             }
             if entries.contains_key(&english) {
-                return Err(flaw::found(Flaw::Twice(Claim::Name(english))));
+                return Err(flaw::found(DescriptionErrorKind::Twice(Claim::Name(english))));
             }
             entries.insert(english, german);
         }

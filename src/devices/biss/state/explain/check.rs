@@ -33,8 +33,8 @@ fn finding_text(finding: &CheckFinding) -> Text {
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
         CheckFinding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
         CheckFinding::Mismatch(found) => mismatch(found),
-        CheckFinding::Error(bit, name) => bit_words("check.error", *bit, name.as_ref()),
-        CheckFinding::Warning(bit, name) => bit_words("check.warning", *bit, name.as_ref()),
+        CheckFinding::Error(bit, name) => bit_text("check.error", *bit, name.as_ref()),
+        CheckFinding::Warning(bit, name) => bit_text("check.warning", *bit, name.as_ref()),
         CheckFinding::NotTold => TEXTS.text("check.not_told"),
         CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
         CheckFinding::Open => TEXTS.text("check.open"),
@@ -77,7 +77,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
     }
 }
 
-fn bit_words(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
+fn bit_text(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
     let name = own.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name);
     TEXTS.text(id).with("bit", bit).with_text("name", name)
 }

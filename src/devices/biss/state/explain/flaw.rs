@@ -2,38 +2,38 @@
 
 use super::layout;
 use crate::app::{Text, explain as general};
-use crate::devices::biss::protocol::{Claim, Flaw, Register};
+use crate::devices::biss::protocol::{Claim, DescriptionErrorKind, Register};
 use crate::devices::biss::state::TEXTS;
 
-pub(super) fn description_problem_text(flaw: &Flaw) -> Text {
+pub(super) fn description_problem_text(flaw: &DescriptionErrorKind) -> Text {
     match flaw {
-        Flaw::Form(words) => general::plain(words),
-        Flaw::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
-        Flaw::Banked { bank, offset } => {
+        DescriptionErrorKind::Form(words) => general::plain(words),
+        DescriptionErrorKind::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
+        DescriptionErrorKind::Banked { bank, offset } => {
             TEXTS.text("biss_flaw.banked").with("bank", byte(*bank)).with("offset", byte(*offset))
         }
-        Flaw::Width { name, width } => {
+        DescriptionErrorKind::Width { name, width } => {
             let text = TEXTS.text("biss_flaw.width").with("name", name).with("width", width);
             text.with("most", Register::MAX_WIDTH)
         }
-        Flaw::BeyondBank { name, width, address } => {
+        DescriptionErrorKind::BeyondBank { name, width, address } => {
             TEXTS.text("biss_flaw.beyond_bank").with("name", name).with("width", width).with("address", address)
         }
-        Flaw::Default { name, bytes, width } => {
+        DescriptionErrorKind::Default { name, bytes, width } => {
             TEXTS.text("biss_flaw.default").with("name", name).with("bytes", bytes).with("width", width)
         }
-        Flaw::Bit { name, bit, width } => {
+        DescriptionErrorKind::Bit { name, bit, width } => {
             TEXTS.text("biss_flaw.bit").with("name", name).with("bit", bit).with("width", width)
         }
-        Flaw::Endless(name) => TEXTS.text("biss_flaw.endless").with("name", name),
-        Flaw::SavesNothing(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
-        Flaw::Banks { name, first, last } => {
+        DescriptionErrorKind::Endless(name) => TEXTS.text("biss_flaw.endless").with("name", name),
+        DescriptionErrorKind::SavesNothing(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
+        DescriptionErrorKind::Banks { name, first, last } => {
             TEXTS.text("biss_flaw.banks").with("name", name).with("first", byte(*first)).with("last", byte(*last))
         }
-        Flaw::Layout(error) => layout(error),
-        Flaw::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::claim(claim)),
-        Flaw::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
-        Flaw::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
+        DescriptionErrorKind::Layout(error) => layout(error),
+        DescriptionErrorKind::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::claim(claim)),
+        DescriptionErrorKind::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
+        DescriptionErrorKind::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
     }
 }
 
@@ -61,23 +61,23 @@ mod tests {
     fn flaws_are_explained_in_both_languages() {
         let (name, address) = ("y".to_owned(), "0x7F".parse().unwrap());
         let flaws = [
-            Flaw::Direct(0x3F),
-            Flaw::Banked { bank: 1, offset: 0x40 },
-            Flaw::Width { name: name.clone(), width: 9 },
-            Flaw::BeyondBank { name: name.clone(), width: 2, address },
-            Flaw::Default { name: name.clone(), bytes: 2, width: 1 },
-            Flaw::Bit { name: name.clone(), bit: 8, width: 1 },
-            Flaw::Endless(name.clone()),
-            Flaw::SavesNothing(name.clone()),
-            Flaw::Banks { name: name.clone(), first: 5, last: 4 },
-            Flaw::Layout(LayoutError::Empty),
-            Flaw::Twice(Claim::Register(address)),
-            Flaw::Twice(Claim::Role(Role::Mode)),
-            Flaw::Twice(Claim::Bank(5)),
-            Flaw::Twice(Claim::Procedure(ProcedureKind::Preset)),
-            Flaw::Twice(Claim::Name(name.clone())),
-            Flaw::GermanEmpty(name.clone()),
-            Flaw::GermanNeedless(name),
+            DescriptionErrorKind::Direct(0x3F),
+            DescriptionErrorKind::Banked { bank: 1, offset: 0x40 },
+            DescriptionErrorKind::Width { name: name.clone(), width: 9 },
+            DescriptionErrorKind::BeyondBank { name: name.clone(), width: 2, address },
+            DescriptionErrorKind::Default { name: name.clone(), bytes: 2, width: 1 },
+            DescriptionErrorKind::Bit { name: name.clone(), bit: 8, width: 1 },
+            DescriptionErrorKind::Endless(name.clone()),
+            DescriptionErrorKind::SavesNothing(name.clone()),
+            DescriptionErrorKind::Banks { name: name.clone(), first: 5, last: 4 },
+            DescriptionErrorKind::Layout(LayoutError::Empty),
+            DescriptionErrorKind::Twice(Claim::Register(address)),
+            DescriptionErrorKind::Twice(Claim::Role(Role::Mode)),
+            DescriptionErrorKind::Twice(Claim::Bank(5)),
+            DescriptionErrorKind::Twice(Claim::Procedure(ProcedureKind::Preset)),
+            DescriptionErrorKind::Twice(Claim::Name(name.clone())),
+            DescriptionErrorKind::GermanEmpty(name.clone()),
+            DescriptionErrorKind::GermanNeedless(name),
         ];
         for own in flaws {
             in_both_languages(&description_problem_text(&own), &own);

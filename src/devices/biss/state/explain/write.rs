@@ -125,7 +125,7 @@ pub(super) fn interruption_text(
         None => vec![TEXTS.text("biss_left.operation")],
         Some(standing) => left(standing),
     });
-    let what_next = match (interrupted.unclear(), kind) {
+    let what_next = match (interrupted.uncertain_write(), kind) {
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
         // The table may be lost even without a write, and no backup contains it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
@@ -269,8 +269,8 @@ mod tests {
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
             let text = interruption_text(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
-            assert!(text.terminal().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
-            text.terminal()
+            assert!(text.terminal_text().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
+            text.terminal_text()
         };
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
@@ -318,7 +318,10 @@ mod tests {
             };
             let found = last(None);
             let unknown = last(left_state(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
-            assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
+            assert_eq!(
+                unknown.terminal_text(),
+                format!("First return the encoder to operation. {}", found.terminal_text())
+            );
             assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
             assert_eq!(weight(&unknown), weight(&found));
         }

@@ -74,14 +74,14 @@ impl Connection {
 
     /// Returns whether no packet has arrived for three intervals, for whatever reason, so that the positions of the
     /// drives are unknown.
-    pub fn is_quiet(&self, now: Moment) -> bool {
+    pub fn has_timed_out(&self, now: Moment) -> bool {
         self.began && now.since(self.last_received) > self.come_interval * LOST
     }
 
     /// Returns the time without packets if it is too long. During motion, the limit is three intervals of listening,
     /// because a busy computer that could not listen may still have packets queued. At rest, and as an absolute limit,
     /// it is the time that the target itself waits for a packet.
-    pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
+    pub fn excessive_silence(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
         }

@@ -85,7 +85,7 @@ impl Drives {
     }
 
     /// Returns whether there is nothing more to send, so that the connection can be closed.
-    pub fn is_over(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
         off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))
     }
@@ -100,7 +100,7 @@ impl Drives {
 
     /// Records that the connection was lost. The drives are still told to stop, since they may receive packets.
     pub fn connection_lost(&mut self, now: Moment, why: ConnectionLoss) {
-        if self.lost.is_none() && !self.is_over() {
+        if self.lost.is_none() && !self.is_finished() {
             self.lost = Some(why);
         }
         self.close(now);
@@ -129,14 +129,14 @@ impl Drives {
         intent: &MotionIntent,
         permit: impl Fn(DriveNumber) -> Permit,
     ) -> Option<Vec<u8>> {
-        if now < self.poll_at() || self.is_over() {
+        if now < self.poll_at() || self.is_finished() {
             return None;
         }
         let moves = self.dead_man_switches().any(|man| !man.is_idle());
-        if let Some(after) = self.connection.silent(now, moves) {
+        if let Some(after) = self.connection.excessive_silence(now, moves) {
             self.connection_lost(now, ConnectionLoss::Silent { after });
         }
-        if self.connection.is_quiet(now) {
+        if self.connection.has_timed_out(now) {
             self.controlled.iter_mut().for_each(|man| man.dead_man.contact_lost(now));
         }
         let rest = MotionIntent::rest(intent.drive, intent.number, now);

@@ -143,7 +143,7 @@ impl Bench {
         if self.answers {
             self.sequence += 1;
             let report = report(self.sequence, self.status, 0);
-            assert!(self.drives.on_packet(at(self.ms), &report) || self.drives.is_over());
+            assert!(self.drives.on_packet(at(self.ms), &report) || self.drives.is_finished());
         }
         self.intent.refreshed = at(self.ms);
         let packet = self.drives.poll(at(self.ms), &self.intent, permit);
@@ -187,7 +187,7 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, Ended::Lost)));
     bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
-    assert!(bench.drives.is_over());
+    assert!(bench.drives.is_finished());
     bench.answers = true;
     bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
     assert_eq!(bench.cycles(100), Vec::<String>::new());
@@ -253,7 +253,7 @@ fn ending_the_connection_stops_and_switches_off() {
     let words: Vec<u16> = std::iter::from_fn(|| bench.cycle()).collect();
     assert_eq!(words.first(), Some(&0x1419));
     assert_eq!(words.iter().filter(|word| **word == 0).count(), 3);
-    assert!(bench.drives.is_over() && bench.drives.lost().is_none());
+    assert!(bench.drives.is_finished() && bench.drives.lost().is_none());
     assert!(bench.ms - begun <= 250, "{} ms", bench.ms - begun);
 }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::{Master, ONCE, RetryPolicy};
 use crate::buses::ethernet_ip::protocol::{
-    ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpened, GeneralStatus, IoPacket, Item,
+    ConnectionTimeout, EPath, ForwardClose, ForwardOpen, ForwardOpenSuccess, GeneralStatus, IoPacket, Item,
     NetworkParameters, NetworkPriority, NetworkType, Owner, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
 use crate::devices::hiperdrive::procedures::Error;
@@ -91,7 +91,9 @@ impl Master<'_> {
     /// [`Error::Refused`]; errors of the exchange.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
-        match self.shielded(|master| master.request(RequestedItem::Close, &close.request(), RetryPolicy::Always)) {
+        match self
+            .run_uncancellable(|master| master.request(RequestedItem::Close, &close.request(), RetryPolicy::Always))
+        {
             Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
             ended => ended.map(|_| ()),
         }
@@ -99,7 +101,7 @@ impl Master<'_> {
 
     /// Closes an unusable connection that may be open. Errors are ignored, because the original error is reported.
     fn close_without_reply(&mut self, close: &ForwardClose) {
-        if let Err(why) = self.shielded(|master| master.forward_close(close)) {
+        if let Err(why) = self.run_uncancellable(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
         }
     }
@@ -137,7 +139,7 @@ impl Master<'_> {
         // A second open would be refused as in use, so it is sent once. If its reply is not understood, the connection may
         // be open.
         let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], ONCE);
-        let opened = requested.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
+        let opened = requested.and_then(|(reply, items)| match ForwardOpenSuccess::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
             Err(cause) => Err(Error::Damaged { requested: RequestedItem::Open, tries: 1, cause: cause.into() }),
         });

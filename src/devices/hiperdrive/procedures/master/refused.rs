@@ -90,7 +90,7 @@ impl Master<'_> {
             Some(number) => match self.read_number(number) {
                 Ok(value) => Ok(Some(value)),
                 // The cause of the original refusal is what counts.
-                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) if error.is_unavailable() => Ok(None),
                 Err(error) => Err(error),
             },
             None => Ok(None),
@@ -110,7 +110,7 @@ impl Master<'_> {
             let Some(number) = ParameterNumber::for_drive(base, drive) else { return Ok(None) };
             match self.read_number(number) {
                 Ok(value) => Ok(u16::try_from(value).ok()),
-                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) if error.is_unavailable() => Ok(None),
                 Err(error) => Err(error),
             }
         };

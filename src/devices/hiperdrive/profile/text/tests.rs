@@ -2,7 +2,7 @@
 
 use super::super::test_profiles::{drive, identity, image_of, number, profile};
 use super::*;
-use crate::profile::testing::{changed_in_place, edited};
+use crate::profile::testing::{assert_edit_in_place, edited};
 use crate::profile::{Body, ProfileDocument};
 
 fn document(profile: HiperdriveProfile) -> ProfileDocument {
@@ -83,7 +83,7 @@ fn unknown_fields_are_kept() {
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
     let document = ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap();
     let profile = document.body.get::<HiperdriveProfile>().unwrap();
-    assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
+    assert!(profile.is_mounting_value(Item(number(258))) && profile.is_mounting_value(Item(number(398))));
     let written = document.emit();
     for kept in [
         "\"owner\": (name: \"CK\"),",
@@ -150,7 +150,7 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(number(166), 40), Some(50));
-    changed_in_place(COMMENTED, edit, "166: 50", "166: 40");
+    assert_edit_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
 /// Issue 22.26: an added or removed entry changes its own line only.

@@ -208,7 +208,7 @@ fn nominal_data_may_be_tenths() {
         ("B25", None),
         ("A-5", None),
     ] {
-        assert_eq!(nominal(text), number, "{text}");
+        assert_eq!(nominal_value(text), number, "{text}");
     }
 }
 

@@ -11,9 +11,9 @@ use super::cyclic::Cyclic;
 use super::objects::{object, wrong};
 use super::plant::{Originator, Plant};
 use crate::buses::ethernet_ip::protocol::{
-    EPath, ElectronicKey, ForwardClose, ForwardClosed, ForwardErrorReply, ForwardOpen, ForwardOpened, GeneralStatus,
-    IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType, Owner, RealTimeFormat, Reply, Request, Segment,
-    Service, SocketAddress, Trigger,
+    EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen, ForwardOpenSuccess,
+    GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType, Owner, RealTimeFormat, Reply,
+    Request, Segment, Service, SocketAddress, Trigger,
 };
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
 use crate::units::Moment;
@@ -79,7 +79,7 @@ impl Connections {
         self.explicit.retain(|explicit| explicit.session != session);
     }
 
-    pub(super) fn forget_silent(&mut self, now: Moment) {
+    pub(super) fn remove_timed_out(&mut self, now: Moment) {
         self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
     }
 
@@ -143,7 +143,7 @@ impl Plant {
         };
         match opened {
             Ok((to_target_id, sockets)) => {
-                let opened = ForwardOpened {
+                let opened = ForwardOpenSuccess {
                     to_target_id,
                     to_originator_id: open.to_originator_id,
                     owner: open.owner,
@@ -275,7 +275,7 @@ impl Plant {
             let refused = ForwardErrorReply { owner: close.owner, remaining_path_words: 0 };
             return refused.reply(request, NOT_FOUND);
         }
-        request.done(ForwardClosed { owner: close.owner, application: Vec::new() }.emit())
+        request.done(ForwardCloseSuccess { owner: close.owner, application: Vec::new() }.emit())
     }
 }
 

@@ -52,7 +52,7 @@ impl Cyclic {
 impl Plant {
     /// Sends the packets that are due, each with the state of the drives at its time, and closes the connection of a
     /// lost master.
-    pub(super) fn produce(&mut self) {
+    pub(super) fn send_due_packets(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);
             if !self.station.is_open(at) {
@@ -81,7 +81,7 @@ impl Plant {
 
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
-        if !self.can_receive() || !self.is_delivered() {
+        if !self.count_arrival() || !self.is_delivered() {
             return;
         }
         match IoPacket::parse(packet, RealTimeFormat::Header) {

@@ -71,7 +71,7 @@ impl Target {
     }
 
     fn to(shared: Arc<Mutex<Plant>>, peer: Ipv4Addr) -> Self {
-        let originator = lock(&shared).originator(peer);
+        let originator = lock(&shared).add_originator(peer);
         Target { shared, originator, receiver: Receiver::default(), to_host: TransitQueue::default(), ended: false }
     }
 

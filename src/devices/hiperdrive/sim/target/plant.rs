@@ -66,7 +66,7 @@ impl Plant {
         }
     }
 
-    pub(super) const fn originator(&mut self, address: Ipv4Addr) -> Originator {
+    pub(super) const fn add_originator(&mut self, address: Ipv4Addr) -> Originator {
         self.originators += 1;
         Originator { number: self.originators, address }
     }
@@ -78,8 +78,8 @@ impl Plant {
 
     pub(super) fn advance(&mut self, now: Moment) {
         self.now = self.now.max(now);
-        self.produce();
-        self.connections.forget_silent(self.now);
+        self.send_due_packets();
+        self.connections.remove_timed_out(self.now);
         if self.station.is_dead(self.now) {
             self.disconnect();
         }
@@ -90,11 +90,11 @@ impl Plant {
     pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance(now);
         self.figures.frames += 1;
-        if !self.can_receive() {
+        if !self.count_arrival() {
             return None;
         }
         let reply = self.answer(from, frame)?;
-        let leaves = self.station.answers_at().map_or(self.now, |at| at.max(self.now));
+        let leaves = self.station.delayed_reply_time().map_or(self.now, |at| at.max(self.now));
         let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
         Some((leaves + REPLY + self.faults.reply_delay(), bytes))
     }
@@ -135,7 +135,7 @@ impl Plant {
     }
 
     /// Counts an arrival and returns whether the target receives it.
-    pub(super) fn can_receive(&mut self) -> bool {
+    pub(super) fn count_arrival(&mut self) -> bool {
         let speaks = self.can_send();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)
@@ -146,13 +146,13 @@ impl Plant {
     }
 
     pub(super) fn is_delivered(&mut self) -> bool {
-        self.faults.passage(&mut self.rng, 0).carried.is_some()
+        self.faults.transmit_byte(&mut self.rng, 0).carried.is_some()
     }
 
     /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all, so a fault that affects one
     /// byte on a serial line affects all bytes here.
     pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
-        let passage = self.faults.passage(&mut self.rng, 0);
+        let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
         if passage.inserted.is_some() {
             bytes.iter_mut().for_each(|byte| *byte = self.rng.u8(..));

@@ -46,9 +46,9 @@ impl Entries {
     /// would yield wrong measurements.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
-        let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
+        let pitch = known.map(|(pitch, _)| trimmed_number(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
         let step = known.filter(|(_, own)| own.scale != PositionScale::FACTORY);
-        let resolution = step.and_then(|(_, own)| own.of(1, PositionUnit::Millimetres)).map(trimmed);
+        let resolution = step.and_then(|(_, own)| own.of(1, PositionUnit::Millimetres)).map(trimmed_number);
         let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
     }
@@ -125,7 +125,7 @@ impl Entries {
 }
 
 /// Formats a number without trailing zeros.
-fn trimmed(value: f64) -> String {
+fn trimmed_number(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -186,7 +186,7 @@ impl Axis {
     ///
     /// # Errors
     /// Returns the remaining time.
-    pub fn may_leave(looked_at: Duration) -> Result<(), Duration> {
+    pub fn check_step_settled(looked_at: Duration) -> Result<(), Duration> {
         match SETTLES.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
             left => Err(left),

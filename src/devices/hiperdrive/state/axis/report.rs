@@ -31,17 +31,17 @@ pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language
         let pitch = TEXTS.text("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
         page.line("", &pitch);
     }
-    page.space();
+    page.push_blank_line();
     AxisStep::ALL.into_iter().for_each(|step| report_step(&mut page, axis, step, seen));
-    page.space();
+    page.push_blank_line();
     end_lines(axis, now).iter().for_each(|line| page.line("", line));
     Some(page.text)
 }
 
 fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
-    let reached = axis.reached(step);
+    let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
-    page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
+    page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::step_status(reached)));
     if matches!(reached, Reached::Done | Reached::Failed)
         && let Some(found) = words::found(axis, step, seen)
     {
@@ -84,7 +84,7 @@ struct Page {
 }
 
 impl Page {
-    fn space(&mut self) {
+    fn push_blank_line(&mut self) {
         self.text.push('\n');
     }
 

@@ -122,7 +122,7 @@ impl Power {
     }
 
     /// Returns whether the saved values are present, the axis has not moved, and the supply was off.
-    pub(super) fn is_survived(self) -> bool {
+    pub(super) fn has_survived_power_cycle(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
             if moved.abs() <= allowed && matches!(restart, RestartEvidence::Read | RestartEvidence::Switched | RestartEvidence::Said))
     }
@@ -130,15 +130,15 @@ impl Power {
 
 /// Returns whether [`MARK`] differs from its factory setting, or `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
-    Some(*seen.values.get(&MARK)? != from_the_factory()?)
+    Some(*seen.values.get(&MARK)? != factory_mark()?)
 }
 
 /// Returns a value that marks a drive, which is next to the factory setting.
 pub(super) fn mark() -> Option<i64> {
-    from_the_factory().map(|value| value + 1)
+    factory_mark().map(|value| value + 1)
 }
 
-fn from_the_factory() -> Option<i64> {
+fn factory_mark() -> Option<i64> {
     let row = PARAMETERS.iter().find(|row| row.number == MARK)?;
     match row.factory {
         FactoryValue::Number(value) => Some(value),

@@ -113,7 +113,7 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
 #[test]
 fn a_step_is_shown_for_a_minimum_time() {
     let ms = Duration::from_millis;
-    assert_eq!([0, 599, 600].map(|age| Axis::may_leave(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
+    assert_eq!([0, 599, 600].map(|age| Axis::check_step_settled(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
     let (mut axis, mut seen) = until_jog();
     assert!(axis.can_go_back(&seen));
     seen.moves = true;
@@ -244,7 +244,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, RestartEvidence::Read));
     go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
-    assert!(AxisStep::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis.step_status(step) == Reached::Done));
     // Worked out by hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     let mut changes: Vec<AxisChange> = numbers.map(|(number, value)| AxisChange::Parameter(number, value)).to_vec();
@@ -263,7 +263,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
         seen.values.insert(182, 1000);
         change(&mut seen);
         axis.surveyed(&seen, false);
-        assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
+        assert!(!axis.survived() && axis.step_status(AxisStep::PowerCycle) == Reached::Failed);
         assert!(axis.check_can_continue(&seen).is_err());
         words::found(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
@@ -357,7 +357,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     let (mut axis, mut seen) = until_test();
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
-    assert!(axis.changes().len() == 8 && axis.reached(AxisStep::Test) == Reached::Ahead);
+    assert!(axis.changes().len() == 8 && axis.step_status(AxisStep::Test) == Reached::Ahead);
     assert_eq!(axis.ask(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
@@ -389,9 +389,9 @@ fn a_correct_position_is_not_written() {
     assert_eq!(axis.travel().clockwise_is_up, Some(false));
     next(&mut axis, &seen, AxisStep::Reference);
     axis.skip(&seen, "");
-    assert_eq!((axis.step(), axis.reached(AxisStep::Reference)), (AxisStep::Lower, Reached::Skipped));
+    assert_eq!((axis.step(), axis.step_status(AxisStep::Reference)), (AxisStep::Lower, Reached::Skipped));
     axis.back(&seen);
-    assert_eq!(axis.reached(AxisStep::Reference), Reached::Now);
+    assert_eq!(axis.step_status(AxisStep::Reference), Reached::Now);
 }
 
 #[test]

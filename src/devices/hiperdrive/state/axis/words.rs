@@ -40,7 +40,7 @@ pub fn step_instructions(step: AxisStep, seen: &DriveFacts) -> Text {
     })
 }
 
-pub fn reached(own: Reached) -> Text {
+pub fn step_status(own: Reached) -> Text {
     TEXTS.text(match own {
         Reached::Done => "guide.done",
         Reached::Now => "guide.waits",

@@ -5,7 +5,7 @@ use super::status;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
-use crate::devices::hiperdrive::procedures::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
+use crate::devices::hiperdrive::procedures::{Damage, Error, LateReplyError, Refusal, RequestedItem, WrongLength};
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -17,7 +17,7 @@ pub fn device(error: &Error) -> Text {
         Error::NoReply { requested: what, tries, late: None } => {
             TEXTS.text("hd_said.no_reply").with_text("asked", item_text(*what)).with("tries", tries)
         }
-        Error::NoReply { requested: what, tries, late: Some(Late { took, waited }) } => TEXTS
+        Error::NoReply { requested: what, tries, late: Some(LateReplyError { took, waited }) } => TEXTS
             .text("hd_said.late_reply")
             .with_text("asked", item_text(*what))
             .with("tries", tries)

@@ -7,7 +7,9 @@ use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Refusal};
-use crate::devices::hiperdrive::procedures::{Damage, Error, Late, Refusal as Refused, RequestedItem, WrongLength};
+use crate::devices::hiperdrive::procedures::{
+    Damage, Error, LateReplyError, Refusal as Refused, RequestedItem, WrongLength,
+};
 use crate::devices::hiperdrive::profile::{Item, OtherType, PlanError, Warning};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
@@ -22,7 +24,7 @@ fn number(number: u16) -> ParameterNumber {
 /// Sentences, with nothing left open in them.
 #[track_caller]
 fn assert_complete(text: &Text, sentences: usize) {
-    for words in [text.words(Language::English), text.words(Language::German), text.terminal()] {
+    for words in [text.words(Language::English), text.words(Language::German), text.terminal_text()] {
         assert!(!words.contains(['{', '}']), "{words}");
         assert!(words.ends_with('.') && words.matches(['.', ':', ';', '?']).count() >= sentences, "{words}");
     }
@@ -59,7 +61,7 @@ fn errors_name_cause_and_remedy() {
     let requested = RequestedItem::Set(number(158));
     let refusal =
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
-    let late = Late { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
+    let late = LateReplyError { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
     let ranged = |range| OutOfRange { number: number(186), name: "RS-485 time-out", value: 0, range };
     let length = WrongLength { number: number(107), name: "actual position", expected: 4, got: 2 };
     let errors = [
@@ -107,7 +109,7 @@ fn errors_name_cause_and_remedy() {
     // If more time may help, the command line tells how to set it, and the window does not mention a link.
     for late in [None, Some(late)] {
         let text = device(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
-        assert!(text.terminal().contains("timeout=2000 in the link"), "{}", text.terminal());
+        assert!(text.terminal_text().contains("timeout=2000 in the link"), "{}", text.terminal_text());
         assert!(!text.words(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {

@@ -164,7 +164,7 @@ pub(super) fn interruption_text(
     planned: usize,
     kind: ChangeKind,
 ) -> Vec<Text> {
-    let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
+    let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.uncertain_write());
     let mut texts = vec![if cause.is_cancelled() {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {

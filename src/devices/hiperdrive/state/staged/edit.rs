@@ -88,7 +88,8 @@ pub(super) fn edited(
             put(&mut after, drive, parts, ground, families)?;
             if let (LimitsPolicy::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
                 let ruler = Ruler { scale: before, pitch: None };
-                let moved = [(LOWER, ruler.rescaled(lower, scale)), (UPPER, ruler.rescaled(upper, scale))];
+                let moved =
+                    [(LOWER, ruler.rescale_position(lower, scale)), (UPPER, ruler.rescale_position(upper, scale))];
                 put(&mut after, drive, moved, ground, families)?;
             }
         }

@@ -63,7 +63,7 @@ fn mark_drive(base: &Image, wanted: &Image, drive: DriveNumber, position: Option
     let now = base.scale(drive).unwrap_or(PositionScale::FACTORY);
     let scale = wanted.scale(drive).unwrap_or(now);
     if let Some((lower, upper)) = wanted.limits(drive) {
-        let position = position.map(|own| Ruler { scale: now, pitch: None }.rescaled(own, scale));
+        let position = position.map(|own| Ruler { scale: now, pitch: None }.rescale_position(own, scale));
         if lower >= upper {
             marks.push(Mark::Crossed { drive, lower, upper });
         } else if let Some(position) = position.filter(|own| !(lower..=upper).contains(own)) {

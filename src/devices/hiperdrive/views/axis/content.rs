@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton, Axi
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::pad_ui;
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
+use crate::ui::controls::{button_with_reason, entry, paragraph, problem, row, text_entry};
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Theme, icons};
 
@@ -58,7 +58,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
         let allowed = shown.axis.check_can_adopt_place(shown.seen);
-        if allowed_button(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
+        if button_with_reason(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     }
@@ -166,11 +166,11 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
     let mm = |steps: i32| words::millimetres(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
-    row(ui, theme, &say(theme, "hd_axis.preview_scale"), theme.mono(scale));
-    row(ui, theme, &say(theme, "hd_axis.preview_steps"), theme.mono(theme.plain(preview.scale.steps_per_turn())));
-    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.mono(theme.words(&mm(64))));
+    row(ui, theme, &say(theme, "hd_axis.preview_scale"), theme.monospace(scale));
+    row(ui, theme, &say(theme, "hd_axis.preview_steps"), theme.monospace(theme.plain(preview.scale.steps_per_turn())));
+    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.monospace(theme.words(&mm(64))));
     let whole = theme.words(&range(mm(preview.lower), mm(preview.upper)));
-    row(ui, theme, &say(theme, "hd_axis.preview_range"), theme.mono(whole));
+    row(ui, theme, &say(theme, "hd_axis.preview_range"), theme.monospace(whole));
     if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
         let value = |own: f64| TEXTS.text("hd_axis.millimetres").with_number("value", own, 0);
         let text = TEXTS.text("hd_axis.preview_unchanged_value");

@@ -54,10 +54,10 @@ impl Master<'_> {
             let (answered, ended) = match attempt? {
                 Ok(answered) => {
                     // After a repetition, the replies to earlier attempts may still arrive.
-                    let ended = if tries > 1 { self.hear_late(tries) } else { Ok(()) };
+                    let ended = if tries > 1 { self.receive_late_bytes(tries) } else { Ok(()) };
                     (Some(codes(answered.answer)), ended)
                 }
-                Err(trouble) => (None, self.may_try_again(&Request::ReadStatus, tries, trouble)),
+                Err(trouble) => (None, self.prepare_retry(&Request::ReadStatus, tries, trouble)),
             };
             let passed = self.line.take_late_bytes();
             let late = self.find_replies(&passed);
@@ -69,7 +69,7 @@ impl Master<'_> {
             }
             match pending {
                 Some(pending) => {
-                    self.station.line.recovered();
+                    self.station.line.clear_error();
                     return Ok(pending);
                 }
                 None => ended?,
@@ -88,9 +88,9 @@ impl Master<'_> {
         seen.push(codes);
     }
 
-    fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
+    fn receive_late_bytes(&mut self, tries: u32) -> Result<(), Error> {
         let quiet = self.silence_duration();
-        Ok(self.line.hear_late(&mut self.station.line, tries, quiet)?)
+        Ok(self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?)
     }
 
     /// Returns the replies to 50h among bytes that were skipped.

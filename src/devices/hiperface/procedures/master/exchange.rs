@@ -65,7 +65,7 @@ impl Master<'_> {
         self.line.show(first_at, shown);
         // Damaged bytes may contain a whole reply. A reply that was too late or too long is skipped; an echo is none.
         if let Err(ExchangeFailure::Damage(Damage::Reply(_))) = judgement {
-            self.line.pass(&reply);
+            self.line.skip_bytes(&reply);
         }
         Ok(judgement.map_err(|trouble| match trouble {
             ExchangeFailure::Damage(Damage::Reply(_)) if secret => ExchangeFailure::Damage(Damage::Unreadable),
@@ -149,7 +149,7 @@ impl Master<'_> {
         let trailing = line.len() > before;
         if trailing {
             let (quiet, echo) = (self.silence_duration(), self.station.line.echo);
-            self.line.pass(echo.strip(line, frame.bytes()).unwrap_or_default());
+            self.line.skip_bytes(echo.strip(line, frame.bytes()).unwrap_or_default());
             self.line.wait_for_silence(&mut self.station.line, quiet)?;
         }
         Ok(trailing)

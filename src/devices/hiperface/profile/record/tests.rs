@@ -1,7 +1,7 @@
 //! The user's text is parsed, the written text is parsed again, and errors are named.
 
 use super::*;
-use crate::profile::testing::{changed_in_place, edited};
+use crate::profile::testing::{assert_edit_in_place, edited};
 use crate::profile::{ProfileDocument, ProfileError};
 
 /// Profile as a user may write it.
@@ -61,7 +61,7 @@ fn emitted_profiles_parse_back() {
     profile.fields.push(FieldImage { number: 1, status, bytes: Some(offset) });
     let status = DataFieldStatus::from_byte(0xE8);
     profile.fields.push(FieldImage { number: 2, status, bytes: None });
-    profile.mark_mounting();
+    profile.mark_mounting_values();
     assert_eq!(profile.mounting[0].item, FieldRange::new(1, 0, 16));
     document.note = Some("two\nlines".to_owned());
     assert_eq!(parse(&document.emit()), Ok(document));
@@ -147,7 +147,7 @@ fn a_newer_schema_is_read_only() {
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
-    changed_in_place(&commented(), edit, "address: 64", "address: 0x41");
+    assert_edit_in_place(&commented(), edit, "address: 64", "address: 0x41");
 }
 
 /// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.

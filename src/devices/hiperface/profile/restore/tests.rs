@@ -273,7 +273,7 @@ fn restoring_a_backup_deletes_fields_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);
     let before = device(100, vec![field(0, 0xC8, &[])]);
     let restore = plan_restore(&wanted, &before, RestoreOptions::default()).unwrap().common;
-    let created = created_by(&restore.plan);
+    let created = created_fields(&restore.plan);
     assert_eq!(created, wanted.fields[1..], "with the protection that it got");
     let mut image = profile("A", restore.plan.base.fields.clone());
     image.created = created;

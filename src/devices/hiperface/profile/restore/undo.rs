@@ -37,7 +37,7 @@ pub(super) fn delete(field: &FieldImage) -> Op {
 }
 
 /// Returns the fields that a plan creates and fills completely.
-pub fn created_by(plan: &HiperfacePlan) -> Vec<FieldImage> {
+pub fn created_fields(plan: &HiperfacePlan) -> Vec<FieldImage> {
     let mut created: Vec<(FieldImage, usize)> = Vec::new();
     let had = |number: u8| plan.base.fields.iter().any(|field| field.number == number);
     for op in &plan.ops {

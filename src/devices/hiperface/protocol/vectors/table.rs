@@ -31,7 +31,7 @@ impl Vector {
     }
 
     /// Adds a reply with the error bit.
-    fn warns(mut self, bytes: &'static str, reply: Reply) -> Self {
+    fn with_warning_reply(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: true, reply }));
         self
     }
@@ -118,7 +118,7 @@ pub(super) fn vectors() -> Vec<Vector> {
         ask(Request::ReadPosition, "40 42 02")
             .says("40 42 00 0E 05 31 38", Reply::Position(918_833))
             .says("40 42 00 00 A5 A5 02", Reply::Position(42_405))
-            .warns("40 C2 00 01 23 45 E5", Reply::Position(74_565))
+            .with_warning_reply("40 C2 00 01 23 45 E5", Reply::Position(74_565))
             .says("40 42 07 FF FF FF FA", Reply::Position(134_217_727)),
         to(BROADCAST, Request::ReadPosition, "FF 42 BD"),
         to(0x41, Request::ReadPosition, "41 42 03"),

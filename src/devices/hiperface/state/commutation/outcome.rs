@@ -92,7 +92,7 @@ impl Commutation {
     ///
     /// # Errors
     /// States what is missing.
-    pub fn second(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
+    pub fn second_vector_result(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
         let reading = self.reading(Slot::Second)?;
         Some(self.evaluate_second_reading(reading.fine_periods, geometry))
     }
@@ -127,7 +127,7 @@ impl Commutation {
 
     /// Returns whether the second vector was read and fits the offset.
     pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
-        matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
+        matches!(self.second_vector_result(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
     /// Returns whether both sides gave the same signals and the same position, as if the shaft had not been turned.
@@ -148,7 +148,7 @@ impl Commutation {
     }
 
     fn ensure_not_refuted(&self, geometry: Option<Geometry>) -> Result<(), Text> {
-        match self.second(geometry) {
+        match self.second_vector_result(geometry) {
             Some(Ok((Verdict::Fault, _))) => Err(TEXTS.text("commutation.second_refuses")),
             _ => Ok(()),
         }

@@ -38,7 +38,7 @@ impl Commutation {
         for slot in Slot::ALL {
             if let Some(reading) = self.reading(slot) {
                 let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.word()));
-                lines.push(text.with_number("fine", reading.fine_periods, 5).with_text("kind", kind_words(reading)));
+                lines.push(text.with_number("fine", reading.fine_periods, 5).with_text("kind", kind_text(reading)));
             }
         }
         if let Ok(offset) = self.offset(geometry) {
@@ -48,12 +48,12 @@ impl Commutation {
             let text = TEXTS.text("commutation.report_offset").with_number("degrees", offset.angle.degrees(), 4);
             lines.push(text.with("hex", format!("{:08X}", offset.angle.bits())));
         }
-        lines.extend(self.second(geometry).and_then(Result::ok).map(|(_, text)| text));
+        lines.extend(self.second_vector_result(geometry).and_then(Result::ok).map(|(_, text)| text));
         lines
     }
 }
 
-pub fn kind_words(reading: &RestReading) -> Text {
+pub fn kind_text(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
             let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MOST_STEPS);

@@ -50,7 +50,7 @@ fn the_entries_match_the_link() {
     let tcp = form("tcp:[::1]:4001");
     assert_eq!((tcp.host.as_str(), tcp.tcp_port.as_str()), ("[::1]", "4001"));
     assert_eq!(form("sim:"), LinkForm::default());
-    assert_eq!(LinkForm::models().next(), Some(form("sim:").model.as_str()));
+    assert_eq!(LinkForm::model_names().next(), Some(form("sim:").model.as_str()));
 }
 
 #[test]

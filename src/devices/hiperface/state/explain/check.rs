@@ -28,7 +28,7 @@ fn step(step: CheckStep) -> Text {
 pub fn line_quality(quality: &LineQuality) -> Text {
     let [retries, damaged, silent, late] = quality.troubles();
     TEXTS
-        .text(if quality.is_troubled() { "line.troubled" } else { "line.good" })
+        .text(if quality.has_errors() { "line.troubled" } else { "line.good" })
         .with("requests", quality.requests)
         .with("retries", retries)
         .with("damaged", damaged)
@@ -97,7 +97,7 @@ mod tests {
             (CheckFinding::Name("SKM36".to_owned()), "SKM36", "SKM36"),
         ];
         for (found, terminal, german) in cases {
-            assert_eq!(finding_text(&found).terminal(), terminal);
+            assert_eq!(finding_text(&found).terminal_text(), terminal);
             assert_eq!(finding_text(&found).words(Language::German), german);
         }
     }

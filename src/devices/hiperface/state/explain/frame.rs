@@ -173,7 +173,7 @@ mod tests {
             ("40 41 01", "address 40h: unknown command (41h)|not a valid request: 41h is not a command"),
         ];
         for (bytes, expected) in cases {
-            let words: Vec<String> = texts(bytes).iter().map(Text::terminal).collect();
+            let words: Vec<String> = texts(bytes).iter().map(Text::terminal_text).collect();
             assert_eq!(words.join("|"), expected);
         }
     }

@@ -59,7 +59,7 @@ mod tests {
         let cause = EncoderTypes::parse(zero).unwrap_err();
         let why = type_table(&cause);
         assert_eq!(why.words(English), cause.to_string());
-        assert_eq!(why.terminal(), cause.to_string());
+        assert_eq!(why.terminal_text(), cause.to_string());
         assert_eq!(why.words(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");
         let broken = TypeTableFileError { path: "own.ron".into(), cause };
         let error = StoreError::Refused(Cause::new(broken)).into();

@@ -100,7 +100,7 @@ pub fn raw_position(raw: u32) -> Text {
 pub fn line_settings(settings: LineSettings) -> Text {
     let text = TEXTS
         .text("line.settings")
-        .with("bits", if settings.long_timeout() { 44 } else { 11 })
+        .with("bits", if settings.has_long_timeout() { 44 } else { 11 })
         .with_text("wiring", TEXTS.text(if settings.is_bus() { "line.bus" } else { "line.standard" }));
     match settings.format() {
         Some(format) => text.with("format", format),
@@ -120,7 +120,7 @@ mod tests {
         for byte in 0..=0xFF {
             let code = StatusCode::new(byte);
             assert_eq!(status(code).words(Language::English), code.text());
-            assert_eq!(status_with_number(code).terminal(), code.to_string());
+            assert_eq!(status_with_number(code).terminal_text(), code.to_string());
         }
         let code = status_with_number(StatusCode::TEMPERATURE);
         assert_eq!(code.words(Language::German), "1Eh kritische Gebertemperatur");

@@ -11,7 +11,7 @@ const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
 const RANGE: i64 = 4096 * 4096;
 
 fn moment(microseconds: u64) -> Moment {
-    Moment::after_start(Duration::from_micros(microseconds))
+    Moment::from_elapsed(Duration::from_micros(microseconds))
 }
 
 fn position(microseconds: u64, steps: i64) -> Sample {

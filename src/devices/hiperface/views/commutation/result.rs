@@ -9,7 +9,7 @@ use crate::devices::hiperface::state::commutation::{CommutationAction as Assista
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    allowed_button, card, choice, enabled_button, entry, folding_card, paragraph, primary, row, verdict_ui,
+    button_with_reason, card, choice, enabled_button, entry, folding_card, paragraph, primary_button, row, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -28,7 +28,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
             resolution.map(|own| degrees("commutation.resolution", own, 2)),
         ];
         let parts = parts.into_iter().flatten().collect::<Vec<_>>().join("  ·  ");
-        ui.add(egui::Label::new(theme.mono(&parts)).truncate().selectable(true)).on_hover_text(parts);
+        ui.add(egui::Label::new(theme.monospace(&parts)).truncate().selectable(true)).on_hover_text(parts);
         let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
         let message = match &offset {
             Err(why) => theme.label(theme.words(why)),
@@ -73,7 +73,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         if let Ok((_, _, bytes)) = &bytes {
             // Eight per line: sixteen do not fit beside the other column.
             let lines: Vec<String> = bytes.chunks(8).map(crate::bits::hex).collect();
-            theme.sunken().show(ui, |ui| ui.label(theme.mono(lines.join("\n"))));
+            theme.sunken_frame().show(ui, |ui| ui.label(theme.monospace(lines.join("\n"))));
         }
         for found in stored(&encoder.staged) {
             stored_offset_ui(ui, theme, &found);
@@ -84,11 +84,11 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         ui.horizontal_wrapped(|ui| {
             let verified = encoder.commutation.ensure_verified(encoder.geometry());
             let allowed = bytes.as_ref().map_err(Clone::clone).and(verified);
-            if allowed_button(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
+            if button_with_reason(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
             }
             let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
-            if primary(ui, theme, ready, icons::LIST_CHECKS, &say(theme, "commutation.review")).clicked() {
+            if primary_button(ui, theme, ready, icons::LIST_CHECKS, &say(theme, "commutation.review")).clicked() {
                 actions.push(Action::Command(encoder.session.id, DeviceCommand::Review));
             }
         });
@@ -129,16 +129,16 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
                 .text("commutation.step_value")
                 .with_number("mechanical", inputs.motor.mechanical_step_deg(), 4)
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
-            row(ui, theme, &say(theme, "commutation.step"), theme.mono(theme.words(&text)));
+            row(ui, theme, &say(theme, "commutation.step"), theme.monospace(theme.words(&text)));
         }
         number_ui(ui, theme, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
         match &setting {
             Ok(setting) => {
                 let value = format!("{} = {:X}h", setting.value, setting.value);
-                row(ui, theme, &say(theme, "commutation.position"), theme.mono(value));
+                row(ui, theme, &say(theme, "commutation.position"), theme.monospace(value));
                 let left = TEXTS.text("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
-                row(ui, theme, &say(theme, "commutation.remaining"), theme.mono(theme.words(&left)));
+                row(ui, theme, &say(theme, "commutation.remaining"), theme.monospace(theme.words(&left)));
                 if setting.verdict == Verdict::Warn {
                     verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.weak"));
                 }
@@ -150,7 +150,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
         }
         let allowed = setting.and(encoder.commutation.ensure_verified(encoder.geometry()));
         let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
-        if allowed_button(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
+        if button_with_reason(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));
         }
     });

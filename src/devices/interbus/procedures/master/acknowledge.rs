@@ -52,7 +52,7 @@ impl Master<'_> {
 
     fn resend_setting(&mut self, command: Command, tried: u32) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        self.leave_value()?;
+        self.await_no_value()?;
         self.parameterising = true;
         self.mark_program_set();
         self.wait_for_acknowledgement(command, tried, false)
@@ -61,7 +61,7 @@ impl Master<'_> {
     /// Sends a word like [`set`](Self::set), but also accepts a missing echo while the encoder keeps running (`U`).
     pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        self.leave_value()?;
+        self.await_no_value()?;
         self.wait_for_acknowledgement(command, 0, true)
     }
 

@@ -34,10 +34,10 @@ impl Master<'_> {
         let led = match &ended {
             // Nothing more can be sent.
             Err(error @ Error::Link(_)) => Err(error.clone()),
-            _ => self.shielded(Self::lead_back),
+            _ => self.run_uncancellable(Self::lead_back),
         };
         let is_back = led.is_ok() || self.is_in_initial_state();
-        self.conclude_notes(is_back);
+        self.record_step_end(is_back);
         let Err(why) = led else {
             self.rested = self.is_in_initial_state().then(|| self.data.now());
             return ended;
@@ -56,7 +56,7 @@ impl Master<'_> {
     /// # Errors
     /// Errors of the handshake and the exchange.
     pub fn end_leftover_operation(&mut self) -> Result<StartupMode, Error> {
-        let ended = self.shielded(|master| {
+        let ended = self.run_uncancellable(|master| {
             master.release_run()?;
             let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
             match master.run() {
@@ -66,7 +66,7 @@ impl Master<'_> {
                 ended => ended?,
             }
             master.return_to_operation()?;
-            let mode = master.ask_mode()?;
+            let mode = master.read_startup_mode()?;
             master.found = Some(mode);
             if was_set {
                 master.record_store()?;
@@ -75,7 +75,7 @@ impl Master<'_> {
             master.lead_back()?;
             Ok(master.is.unwrap_or(mode))
         });
-        self.conclude_notes(ended.is_ok());
+        self.record_step_end(ended.is_ok());
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
@@ -105,7 +105,7 @@ impl Master<'_> {
     }
 
     /// Keeps the current mode, so that the encoder is not returned to another one after the job.
-    pub(in crate::devices::interbus::procedures) fn stay(&mut self) {
+    pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
         self.found = self.is;
     }
 
@@ -137,7 +137,7 @@ impl Master<'_> {
         if runs && self.rested.take().is_some_and(|rested| self.data.now().since(rested) < STILL) {
             return Ok(());
         }
-        let mode = self.ask_mode()?;
+        let mode = self.read_startup_mode()?;
         self.found = Some(mode);
         self.resume(mode)?;
         let keeps = match mode {
@@ -150,7 +150,7 @@ impl Master<'_> {
         }
         // Checks whether this read-out has ended the mode. Words for cams have other effects in another one.
         self.rest()?;
-        if is_equivalent_mode(self.ask_mode()?, mode) {
+        if is_equivalent_mode(self.read_startup_mode()?, mode) {
             self.known.kept = Some(mode);
             return Ok(());
         }
@@ -164,7 +164,7 @@ impl Master<'_> {
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
     }
 
-    fn ask_mode(&mut self) -> Result<StartupMode, Error> {
+    fn read_startup_mode(&mut self) -> Result<StartupMode, Error> {
         let mode = StartupMode::parse(self.read_out(ReadOutNumber::STARTUP_MODE)?);
         (self.is, self.known.mode, self.unsure) = (Some(mode), Some(mode), false);
         Ok(mode)
@@ -188,7 +188,7 @@ impl Master<'_> {
             if !held {
                 self.return_to_operation()?;
             }
-            is = self.ask_mode()?;
+            is = self.read_startup_mode()?;
             if is_equivalent_mode(is, wanted) {
                 if !held {
                     self.known.kept = Some(wanted);
@@ -221,12 +221,12 @@ impl Master<'_> {
             self.return_to_operation()?;
         }
         if self.unsure {
-            self.ask_mode()?;
+            self.read_startup_mode()?;
         }
         // A read-out may end a mode as well.
         if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
             self.rest()?;
-            self.ask_mode()?;
+            self.read_startup_mode()?;
         }
         if !matches!(found, StartupMode::Unknown(_)) {
             self.go(found)?;
@@ -244,7 +244,7 @@ impl Master<'_> {
 
     /// Sends the idle word, which requests nothing from the encoder.
     fn rest(&mut self) -> Result<(), Error> {
-        self.leave_value()?;
+        self.await_no_value()?;
         let word = self.idle_command();
         if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
     }
@@ -255,7 +255,7 @@ impl Master<'_> {
     }
 
     /// Waits until the IN word contains no value, since the next value would look the same.
-    pub(super) fn leave_value(&mut self) -> Result<(), Error> {
+    pub(super) fn await_no_value(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_question);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
         if !asks && !stands {

@@ -61,7 +61,7 @@ impl Master<'_> {
         let Some(excursion) = journal.recorded_excursion(&serial_number) else { return Ok(()) };
         if is_equivalent_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
             // It was returned, or another mode was selected since.
-            journal.is_back(&serial_number);
+            journal.record_return(&serial_number);
             return Ok(());
         }
         tracing::warn!(
@@ -106,15 +106,16 @@ impl Master<'_> {
     }
 
     /// Notes the end of a step of the job, and whether the encoder is back in its previous state.
-    pub(super) fn conclude_notes(&mut self, is_back: bool) {
+    pub(super) fn record_step_end(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {
             return;
         };
         // It still has to leave the program in which it was left.
-        journal.may_have_stored(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
+        journal
+            .record_possible_stores(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
         if is_back && excursion.take().is_some() {
-            journal.is_back(serial_number);
+            journal.record_return(serial_number);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::super::test_profiles::{cam, edges, profile, program};
 use super::*;
-use crate::profile::testing::{changed_in_place, edited};
+use crate::profile::testing::{assert_edit_in_place, edited};
 use crate::profile::{Body, Carried, Change, ChangedSide, ProfileDocument, diverging_changes};
 
 fn document(profile: InterbusProfile) -> ProfileDocument {
@@ -124,7 +124,7 @@ fn a_change_edits_only_its_value() {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), Some(edges(15, 20)));
     };
-    changed_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
+    assert_edit_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
 }
 
 /// Issue 22.26: an added or removed entry changes its own line only.

@@ -23,7 +23,7 @@ impl DragTarget {
 
 /// Returns the cam with one edge moved by `by` steps, backwards if negative. A cam always keeps at least one position
 /// and covers at most all of them; edges beyond the range are brought within it.
-pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
+pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
     if start >= whole || stop >= whole {

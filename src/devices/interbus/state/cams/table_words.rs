@@ -66,7 +66,7 @@ pub fn note(note: &TableNote) -> Text {
     }
 }
 
-pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
+pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
     let text = TEXTS.text("camtable.rounded").with("line", row.line).with("program", row.program.get());
     let text = text.with("cam", row.cam.get());
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
@@ -130,8 +130,8 @@ mod tests {
         // 228 steps are 10.01953°.
         let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 \
                        (0.0195° higher)";
-        assert_eq!(says(rounding(&table.rows[0], &scale)), rounded);
-        let german = rounding(&table.rows[0], &scale).words(Language::German);
+        assert_eq!(says(rounding_text(&table.rows[0], &scale)), rounded);
+        let german = rounding_text(&table.rows[0], &scale).words(Language::German);
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
     }
 
@@ -141,7 +141,7 @@ mod tests {
         let scale = Scale::default();
         let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
         let table = options.read("name;start;stop\nglue;10,05;20\n");
-        let says = rounding(&table.rows[0], &scale).words(Language::English);
+        let says = rounding_text(&table.rows[0], &scale).words(Language::English);
         assert!(says.contains("start 10.05 → step 10 (0.05 lower)"), "{says}");
     }
 

@@ -3,8 +3,8 @@
 mod session;
 
 use super::{
-    Chart, DragTarget, OutputState, SnapSettings, Stretch, VisibleRange, drawn, moved, next_grid_line, pulled, rounded,
-    snap, stretches, ticks, words,
+    Chart, DragTarget, OutputState, SnapSettings, Stretch, VisibleRange, apply_drag, drawn, moved, next_grid_line,
+    rounded, snap, stretches, ticks, words,
 };
 use crate::app::Language;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, Parameters, Scale};
@@ -88,7 +88,7 @@ fn edges_can_be_dragged_across_the_end() {
         ((1200, 49), Edge::Start, 5, (999, 49)),
         ((10, 1500), Edge::Stop, -1, (10, 999)),
     ] {
-        assert_eq!(pair(pulled(edges(cam.0, cam.1), edge, by, 1000)), expected, "{cam:?} {edge:?} {by}");
+        assert_eq!(pair(apply_drag(edges(cam.0, cam.1), edge, by, 1000)), expected, "{cam:?} {edge:?} {by}");
     }
 }
 

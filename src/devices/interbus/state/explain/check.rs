@@ -1,6 +1,6 @@
 //! Texts for the device check.
 
-use super::{encoder, implausible, refusal, startup, word};
+use super::{encoder, implausible, refusal, startup_mode_text, word};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult};
@@ -47,7 +47,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
             TEXTS.text("ib_check.preset_beyond").with("preset", preset).with("last", last)
         }
         CheckFinding::StepsMinusOne => TEXTS.text("ib_check.steps_minus_one"),
-        CheckFinding::Mode(mode) => TEXTS.text("ib_check.mode").with_text("mode", startup(*mode)),
+        CheckFinding::Mode(mode) => TEXTS.text("ib_check.mode").with_text("mode", startup_mode_text(*mode)),
         CheckFinding::ReadOuts { requested, each_ms } => {
             TEXTS.text("ib_check.read_outs").with("asked", requested).with("each", each_ms)
         }

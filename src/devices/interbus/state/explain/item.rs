@@ -47,7 +47,7 @@ pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
         .with("cam", cam.get())
 }
 
-pub fn startup(mode: StartupMode) -> Text {
+pub fn startup_mode_text(mode: StartupMode) -> Text {
     match mode {
         StartupMode::K2 => TEXTS.text("ib_startup.k2"),
         StartupMode::K3 => TEXTS.text("ib_startup.k3"),

@@ -145,12 +145,12 @@ fn plan_refusals_name_both_limits() {
     for (error, facts, option) in cases {
         let text = plan(&error);
         assert_explains(&text, &facts);
-        assert!(option.is_none_or(|option| text.terminal().contains(option)), "{}", text.terminal());
+        assert!(option.is_none_or(|option| text.terminal_text().contains(option)), "{}", text.terminal_text());
         assert!(option.is_none_or(|option| !text.words(English).contains(option)), "no options in the window");
     }
     let worn = job(&JobError::NotBegun(NotBegun::Worn { seen: 448, cost: 2, limit: 449 }));
     assert_explains(&worn[0], &["448", "2"]);
-    assert!(worn[0].terminal().contains("450") && worn[0].terminal().contains("--force-wear"), "{worn:?}");
+    assert!(worn[0].terminal_text().contains("450") && worn[0].terminal_text().contains("--force-wear"), "{worn:?}");
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
         let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, end_state: left };
         let texts = write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind);
         assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
-        texts.iter().map(Text::terminal).collect()
+        texts.iter().map(Text::terminal_text).collect()
     };
     for (kind, what) in [
         (ChangeKind::Restore, "restore the profile again"),
@@ -192,7 +192,10 @@ fn completing_a_write_is_advised_after_leading_back() {
             write::interruption_text(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(EndState::AsFound), last(EndState::Unknown(standing)));
-        assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
+        assert_eq!(
+            unknown.terminal_text(),
+            format!("First return the encoder to operation. {}", found.terminal_text())
+        );
         assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
         assert_eq!(write::weight(&unknown), write::weight(&found));
     }
@@ -203,7 +206,7 @@ fn completing_a_write_is_advised_after_leading_back() {
 fn a_write_with_unknown_wear_names_the_override() {
     let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));
     assert_explains(&refused[0], &["2"]);
-    assert!(refused[0].terminal().contains("--force-wear"), "{refused:?}");
+    assert!(refused[0].terminal_text().contains("--force-wear"), "{refused:?}");
 }
 
 #[test]

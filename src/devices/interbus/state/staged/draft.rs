@@ -34,9 +34,9 @@ impl Staged {
     pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
-            keep_parameters(base, wanted, &mut kept);
+            collect_parameter_edits(base, wanted, &mut kept);
             for program in ProgramNumber::all() {
-                keep_program(base, wanted, program, &mut kept);
+                collect_program_edits(base, wanted, program, &mut kept);
             }
         }
         kept.extend(self.waiting.iter().cloned());
@@ -61,13 +61,13 @@ impl Staged {
     }
 
     /// Returns the programs for which earlier edits are waiting.
-    pub fn waiting(&self) -> Vec<ProgramNumber> {
+    pub fn pending_programs(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()
     }
 }
 
-fn keep_parameters(base: &EditedValues, wanted: &EditedValues, kept: &mut Vec<SavedEdit>) {
+fn collect_parameter_edits(base: &EditedValues, wanted: &EditedValues, kept: &mut Vec<SavedEdit>) {
     let (was, is) = (&base.image.parameters, &wanted.image.parameters);
     if (was.steps, was.revolutions) != (is.steps, is.revolutions) {
         kept.push(SavedEdit::Gear(is.steps, is.revolutions));
@@ -80,7 +80,12 @@ fn keep_parameters(base: &EditedValues, wanted: &EditedValues, kept: &mut Vec<Sa
     kept.extend(shift.map(|shift| SavedEdit::Shift(shift.get())));
 }
 
-fn keep_program(base: &EditedValues, wanted: &EditedValues, program: ProgramNumber, kept: &mut Vec<SavedEdit>) {
+fn collect_program_edits(
+    base: &EditedValues,
+    wanted: &EditedValues,
+    program: ProgramNumber,
+    kept: &mut Vec<SavedEdit>,
+) {
     let number = program.get();
     let name = |names: &EditedValues| names.names.program(program).to_owned();
     if name(base) != name(wanted) {

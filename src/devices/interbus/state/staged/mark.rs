@@ -72,7 +72,7 @@ impl EditedValues {
             }
             let Some(track) = self.name(program, number) else { continue };
             for other in CamNumber::all().filter(on).filter(|other| *other > number) {
-                let is_same = self.name(program, other).is_some_and(|name| is_one_track(name, track));
+                let is_same = self.name(program, other).is_some_and(|name| is_same_track(name, track));
                 let both = self.cam(program, other).filter(|_| is_same).and_then(|other| first_common(cam, other));
                 if let Some(at) = both {
                     marks.push(Mark::Clash { program, first: number, second: other, at });
@@ -83,7 +83,7 @@ impl EditedValues {
 }
 
 /// Returns whether two names denote the same track, ignoring case.
-pub(super) fn is_one_track(one: &str, other: &str) -> bool {
+pub(super) fn is_same_track(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 

@@ -251,10 +251,10 @@ fn a_draft_is_restored_and_waits_for_unread_values() {
     assert_eq!(other.edits().len(), 10, "nothing is lost before anything was read");
     other.refresh_parameters(parameters(1000, 1));
     assert_eq!(other.wanted().unwrap().range(), 360);
-    assert_eq!(other.waiting(), [number(1)]);
+    assert_eq!(other.pending_programs(), [number(1)]);
     other.refresh_programs(&[(number(1), program())], WindowShift::new(8));
     assert_eq!(other.wanted(), staged.wanted(), "the cam beyond the range too");
-    assert_eq!((other.edits(), other.waiting()), (kept, Vec::new()));
+    assert_eq!((other.edits(), other.pending_programs()), (kept, Vec::new()));
     let mask = other.wanted().unwrap().image.program(number(1)).unwrap().mask;
     assert_eq!(mask, 0b1000);
 }

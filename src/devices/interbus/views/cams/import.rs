@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::{table_words, words};
 use crate::devices::interbus::state::{Encoder, Import, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, card, paragraph, primary};
+use crate::ui::controls::{button, card, paragraph, primary_button};
 use crate::ui::{Theme, icons};
 
 /// Height of the list of problems and roundings.
@@ -46,7 +46,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
                 line_ui(ui, icons::INFO, theme.palette.accent, theme.words(&table_words::note(note)));
             }
             for row in table.rounded() {
-                let words = theme.words(&table_words::rounding(row, &encoder.scale));
+                let words = theme.words(&table_words::rounding_text(row, &encoder.scale));
                 line_ui(ui, icons::RULER, theme.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded().next().is_none() {
@@ -66,7 +66,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
         }
         ui.add_space(theme.space.inside);
         ui.horizontal(|ui| {
-            if primary(ui, theme, is_whole && !table.rows.is_empty(), icons::CHECK, &say(theme, "ib_table.take"))
+            if primary_button(ui, theme, is_whole && !table.rows.is_empty(), icons::CHECK, &say(theme, "ib_table.take"))
                 .clicked()
             {
                 actions.push(Action::device(id, Interbus::TakeTable(true)));

@@ -60,12 +60,12 @@ pub(super) fn display_colour(theme: &Theme, cam: CamNumber) -> Color32 {
 
 impl CamChart<'_> {
     /// Returns the cam after a drag from one position to another.
-    pub(super) fn pulled(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
+    pub(super) fn apply_drag(&self, hold: DragTarget, from: f64, at: f64, snap: &SnapSettings) -> Option<Cam> {
         let range = self.chart.range;
         let own = self.chart.lane(hold.cam())?.edges;
         let by = |hold, cam| cams::snap(self.chart, self.scale, hold, cam, at - from, snap);
         match hold {
-            DragTarget::Edge(_, edge) => own.map(|cam| cams::pulled(cam, edge, by(hold, cam), range)),
+            DragTarget::Edge(_, edge) => own.map(|cam| cams::apply_drag(cam, edge, by(hold, cam), range)),
             DragTarget::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
             DragTarget::New(number) => {
                 let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
@@ -93,7 +93,7 @@ impl CamChart<'_> {
     ) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_drag_cancelled(ui, base);
         let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { SnapSettings::OFF };
-        let to = self.pulled(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
+        let to = self.apply_drag(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
         let cam = drag.hold.cam();
         if response.drag_stopped() {
             ui.data_mut(|data| data.remove::<Drag>(base));
@@ -153,7 +153,7 @@ impl CamChart<'_> {
         let cam = hold.cam();
         let own = self.chart.lane(cam)?.edges?;
         let to = match hold {
-            DragTarget::Edge(_, edge) => cams::pulled(own, edge, by, self.chart.range),
+            DragTarget::Edge(_, edge) => cams::apply_drag(own, edge, by, self.chart.range),
             DragTarget::Whole(_) | DragTarget::New(_) => cams::moved(own, by, self.chart.range),
         };
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
@@ -210,7 +210,7 @@ impl CamChart<'_> {
         if more == less { None } else { self.by(hold, more - less) }
     }
 
-    pub(super) fn tip(&self, theme: &Theme, response: Response, hold: DragTarget) {
+    pub(super) fn show_tooltip(&self, theme: &Theme, response: Response, hold: DragTarget) {
         let Some(lane) = self.chart.lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);

@@ -139,10 +139,10 @@ impl Ring<'_> {
         if self.model.movable && (response.dragged() || hovered.and_then(under).is_some()) {
             self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
         }
-        let event = hold.and_then(|hold| self.pulled(&response, hold, drag));
+        let event = hold.and_then(|hold| self.apply_drag(&response, hold, drag));
         let clicked = response.clicked().then(|| response.interact_pointer_pos().and_then(|at| self.dial.cam(at)));
         if let Some(hold) = hovered.and_then(under).filter(|_| drag.is_none()) {
-            self.model.tip(self.theme, response, hold);
+            self.model.show_tooltip(self.theme, response, hold);
         }
         event.or(clicked.flatten().map(CamEvent::Selected))
     }
@@ -172,14 +172,14 @@ impl Ring<'_> {
         if response.clicked() || response.gained_focus() {
             event = event.or(Some(CamEvent::Selected(lane.cam)));
         }
-        event = self.pulled(&response, hold, drag).or(event);
+        event = self.apply_drag(&response, hold, drag).or(event);
         let is_active = self.model.movable && (response.dragged() || response.hovered());
         if is_active {
             self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
         }
         self.paint_grip(lane.cam, edge, is_active, response.has_focus());
         if drag.is_none() {
-            self.model.tip(self.theme, response, hold);
+            self.model.show_tooltip(self.theme, response, hold);
         }
         event
     }
@@ -192,7 +192,7 @@ impl Ring<'_> {
 
     /// Handles a drag around the ring, following the pointer in every frame along the shorter way from its previous
     /// position.
-    fn pulled(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
+    fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
         }

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::devices::ssi::protocol::{Families, Meaning, Settings, any_layouts};
-use crate::profile::testing::changed_in_place;
+use crate::profile::testing::assert_edit_in_place;
 use crate::profile::{Body, ProfileDocument};
 
 const SHORT: &str = r#"(
@@ -322,5 +322,5 @@ fn a_change_edits_only_its_value() {
         own.reading.clock_hz = 250_000;
     };
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/ssi.ron"));
-    changed_in_place(text, edit, "preset: 7", "preset: 9, reading: (\n    clock_hz: 250000,\n)");
+    assert_edit_in_place(text, edit, "preset: 7", "preset: 9, reading: (\n    clock_hz: 250000,\n)");
 }

@@ -59,7 +59,7 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
     }
     text.push_str("*)\nFUNCTION_BLOCK SSI_DECODE\n");
     let lines = statements(layout, &halves);
-    halves.variables(&mut text, &lines, ["    ", "DWORD", "UDINT", "BOOL", "VAR"]);
+    halves.write_variables(&mut text, &lines, ["    ", "DWORD", "UDINT", "BOOL", "VAR"]);
     for line in lines {
         let _ = writeln!(text, "{line}");
     }
@@ -71,11 +71,11 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
 ///
 /// # Errors
 /// [`TooWideError`]: 32 bits do not suffice.
-pub fn scl(layout: &Layout, title: &str) -> Result<String, TooWideError> {
+pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = SplitWordDialect::of(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
     let lines = statements(layout, &halves);
-    halves.variables(&mut text, &lines, ["    ", "DWord", "UDInt", "Bool", "VAR_TEMP"]);
+    halves.write_variables(&mut text, &lines, ["    ", "DWord", "UDInt", "Bool", "VAR_TEMP"]);
     text.push_str("BEGIN\n");
     let mut comment = |words: &str| {
         let _ = writeln!(text, "    {}", halves.comment(words));
@@ -117,7 +117,12 @@ impl SplitWordDialect {
 
     /// Writes the variable declarations of the function block. Auxiliary variables are declared only if a statement
     /// uses them.
-    fn variables(&self, text: &mut String, lines: &[String], [indent, word, number, truth, auxiliary]: [&str; 5]) {
+    fn write_variables(
+        &self,
+        text: &mut String,
+        lines: &[String],
+        [indent, word, number, truth, auxiliary]: [&str; 5],
+    ) {
         let mut section = |kind: &str, rows: &[(String, &str)]| {
             let _ = writeln!(text, "{kind}");
             for (name, own) in rows {

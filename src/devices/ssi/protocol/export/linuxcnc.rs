@@ -75,7 +75,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
         return Err(FormatError::Cannot(UnsupportedProperty::Inverted));
     }
     let mut fields: Vec<(Field, u8)> = Vec::new();
-    for role in layout.roles().into_iter().rev() {
+    for role in layout.clock_roles().into_iter().rev() {
         let field = match role {
             Role::Zero | Role::Again(_) => Field::Padding,
             Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_) => Field::Position,

@@ -90,7 +90,7 @@ pub(super) const FAINT: &str = "#555";
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";
 
 impl Picture {
-    pub(super) fn titled(width: u32, height: u32, title: &str) -> Self {
+    pub(super) fn with_title(width: u32, height: u32, title: &str) -> Self {
         let heading = PictureLabel { is_bold: true, ..PictureLabel::new(PictureLength::Whole(MARGIN), 20, 12, title) };
         Picture { title: title.to_owned(), width, height, shapes: vec![PictureShape::Text(heading)] }
     }

@@ -1,7 +1,7 @@
 //! The decoder as a list of statements that is the same in every language: the steps of [`Layout::decode`] for one
 //! layout.
 
-use crate::devices::ssi::protocol::code::{Code, ones};
+use crate::devices::ssi::protocol::code::{Code, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
@@ -78,7 +78,7 @@ impl<D: Dialect> Writer<'_, D> {
 
     fn frame(&mut self, layout: &Layout) {
         let d = self.dialect;
-        let all = ones(layout.clocks());
+        let all = low_bits_mask(layout.clocks());
         self.comment("the frame as it was sent");
         self.set_word("word", &d.and(&d.name("frame"), &d.hex(all)));
         self.set_word("flags", &d.hex(0));
@@ -95,7 +95,7 @@ impl<D: Dialect> Writer<'_, D> {
             let behind = layout.clocks() - repeat.word;
             let first = d.left(&d.right(&d.name("word"), behind), behind);
             self.set_word("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), &d.name("word")));
-            let again = ones(repeat.word) << behind >> (repeat.word + repeat.gap);
+            let again = low_bits_mask(repeat.word) << behind >> (repeat.word + repeat.gap);
             self.flag(&self.any_bit_set("fold", again), Flags::REPEAT);
             self.flag(&self.any_bit_set("fold", all & !again), Flags::PADDING);
             self.set_word("word", &d.right(&d.name("word"), behind));
@@ -125,11 +125,11 @@ impl<D: Dialect> Writer<'_, D> {
         }
         if descriptor.shift_right {
             self.comment("back by the clock by which it comes later");
-            let top = ones(1) << (descriptor.area - 1) << layout.behind_area;
+            let top = low_bits_mask(1) << (descriptor.area - 1) << layout.behind_area;
             self.flag(&self.any_bit_set("word", top), Flags::PADDING);
-            let area = ones(descriptor.area) << layout.behind_area;
+            let area = low_bits_mask(descriptor.area) << layout.behind_area;
             let moved = d.and(&d.left(&d.and(&d.name("word"), &d.hex(area)), 1), &d.hex(area));
-            self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(ones(layout.behind_area)))));
+            self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(low_bits_mask(layout.behind_area)))));
         }
         if descriptor.coded == GrayCoverage::Area {
             self.decode_inner_gray(layout);
@@ -148,9 +148,9 @@ impl<D: Dialect> Writer<'_, D> {
         let d = self.dialect;
         let (bits, behind) = layout.gray;
         self.comment("Gray, zeros included");
-        self.set_word("fold", &d.and(&d.right(&d.name("word"), behind), &d.hex(ones(bits))));
+        self.set_word("fold", &d.and(&d.right(&d.name("word"), behind), &d.hex(low_bits_mask(bits))));
         self.gray_to_binary("fold", bits);
-        let rest = d.and(&d.name("word"), &d.hex(!(ones(bits) << behind)));
+        let rest = d.and(&d.name("word"), &d.hex(!(low_bits_mask(bits) << behind)));
         self.set_word("word", &d.or(&d.left(&d.name("fold"), behind), &rest));
     }
 
@@ -193,7 +193,7 @@ impl<D: Dialect> Writer<'_, D> {
                 }
             }
         }
-        if coding.last() < ones(coding.bits()) || coding.code() == Code::Bcd {
+        if coding.last() < low_bits_mask(coding.bits()) || coding.code() == Code::Bcd {
             self.flag(&format!("position > {}", coding.last()), Flags::CODE);
             let none = d.assign("position", "0");
             self.lines.push(d.when(&self.any_bit_set("flags", Flags::CODE.0.into()), &none));

@@ -26,7 +26,7 @@ struct BitLocations {
 impl BitLocations {
     fn new(layout: &Layout, say: Say<'_>) -> Self {
         let frame = layout.clocks();
-        let bits = (0..frame).rev().zip(layout.roles());
+        let bits = (0..frame).rev().zip(layout.clock_roles());
         let (mut position, mut turns, mut steps, mut others) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (bit, role) in bits {
             match role {
@@ -75,7 +75,7 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
         line(&say(&ExportText::HighestClock), &ExportText::ClockLimit { kilohertz: times.most_hz / 1000 });
     }
     let _ = writeln!(text, "{}", say(&ExportText::Counting { first: places.frame - 1 }));
-    if let Some(why) = obstacle(layout) {
+    if let Some(why) = unsupported_feature(layout) {
         let _ = writeln!(text, "\n{} {}", say(&ExportText::Obstacle(why)), say(&ExportText::ReadAsBinary));
     }
     let mut module = |name: &str, settings: Vec<(SheetLabel, Setting)>| {
@@ -92,10 +92,10 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
             let _ = writeln!(text, "  {label:32}{value}");
         }
     };
-    module("SIMATIC TM PosInput, SSI_Absolute_Encoder", siemens(layout, &places));
+    module("SIMATIC TM PosInput, SSI_Absolute_Encoder", siemens_settings(layout, &places));
     module("Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", beckhoff_settings(layout, &places));
     module("Delta AS02HC", delta_settings(layout, &places));
-    module("Synapticon SOMANET (object 2209h)", synapticon(layout, &places));
+    module("Synapticon SOMANET (object 2209h)", synapticon_settings(layout, &places));
     text
 }
 
@@ -112,7 +112,7 @@ enum Setting {
 }
 
 /// Returns the property of the frame that no module can decode, if any.
-fn obstacle(layout: &Layout) -> Option<ModuleObstacle> {
+fn unsupported_feature(layout: &Layout) -> Option<ModuleObstacle> {
     let descriptor = layout.descriptor();
     match descriptor.code {
         Code::GrayExcess => Some(ModuleObstacle::GrayExcess),
@@ -134,7 +134,7 @@ fn code_number(layout: &Layout) -> Setting {
     Setting::Said(ExportText::Setting(number, value))
 }
 
-fn siemens(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
+fn siemens_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     let width = places.highest - places.lowest + 1;
     let (bits, bit) = (places.frame, places.highest);
     let parity = layout.descriptor().parity;
@@ -202,7 +202,7 @@ fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Se
     ]
 }
 
-fn synapticon(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
+fn synapticon_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
     // Its bits are counted from the first one received.
     let first = |ends: Option<(u8, u8)>| {
         Setting::Plain(ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string()))

@@ -46,9 +46,9 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
 
 /// Draws the frame with one cell per clock, and the bits of `frame`, if given.
 pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<'_>) -> Picture {
-    let roles = layout.roles();
+    let roles = layout.clock_roles();
     let clocks = u32::from(layout.clocks());
-    let mut picture = Picture::titled(2 * MARGIN + clocks * CELL, 112, title);
+    let mut picture = Picture::with_title(2 * MARGIN + clocks * CELL, 112, title);
     let mut begins = 0_usize;
     for (index, role) in roles.iter().enumerate() {
         let x = MARGIN + index as u32 * CELL;
@@ -105,7 +105,7 @@ pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str
     let scale = f64::from(WIDTH - 2 * MARGIN) / (burst + pause).max(1e-9);
     let x = |seconds: f64| PictureLength::Scaled(f64::from(MARGIN) + seconds * scale);
     let period = timing.period.as_secs_f64();
-    let mut picture = Picture::titled(WIDTH, 170, title);
+    let mut picture = Picture::with_title(WIDTH, 170, title);
     // The clock rests high; the first falling edge latches, each rising edge shifts a bit.
     let mut clock = vec![PolylineSegment::Move(x(0.0), 50)];
     for index in 0..layout.clocks() {

@@ -27,7 +27,7 @@ impl Layout {
 pub fn bit_table(layout: &Layout, say: Say<'_>) -> String {
     let mut text = say(&ExportText::TableHeading) + "\n";
     let clocks = layout.clocks();
-    for (clock, role) in (1..=clocks).zip(layout.roles()) {
+    for (clock, role) in (1..=clocks).zip(layout.clock_roles()) {
         let name = role_name(layout, role, say);
         let quoted = if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };
         // Writing into a String cannot fail.

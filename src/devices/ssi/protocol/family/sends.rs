@@ -33,12 +33,12 @@ impl Family {
         let tried = aligns.into_iter().flat_map(|align| places.map(|place| (align, place)));
         tried
             .map(|(align, place)| Settings { align, errors: Some(place), ..asked.clone() })
-            .filter(|settings| self.sends(settings, frame))
+            .filter(|settings| self.can_send_frame(settings, frame))
             .map(|settings| self.shortest_settings(settings, frame))
             .min_by_key(count)
     }
 
-    fn sends(&self, settings: &Settings, frame: &Descriptor) -> bool {
+    fn can_send_frame(&self, settings: &Settings, frame: &Descriptor) -> bool {
         settings.resolve(self).is_ok_and(|resolved| resolved.layout.descriptor() == frame)
     }
 
@@ -47,7 +47,7 @@ impl Family {
         LEAVE.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
             leave(&mut fewer);
-            if self.sends(&fewer, frame) { fewer } else { settings }
+            if self.can_send_frame(&fewer, frame) { fewer } else { settings }
         })
     }
 

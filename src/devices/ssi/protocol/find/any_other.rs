@@ -4,7 +4,7 @@
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
 use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, crosses_zero, detect_parity, sum};
-use super::plausible::{bit_shares, widths};
+use super::plausible::{bit_shares, width_penalty};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
@@ -20,7 +20,7 @@ const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
 /// Tries frames that belong to no family and have the given number of clocks.
-pub(super) fn any_other(
+pub(super) fn try_custom_frames(
     take: &mut Take<'_>,
     read: &Read,
     words: &FrameSet,
@@ -34,7 +34,7 @@ pub(super) fn any_other(
     let Some(above) = (reading.first - 1).checked_sub(least - moved) else { return };
     let most = if read.closed || reading.code == Code::Bcd { least } else { least + above };
     let mut widths_of: Vec<u8> = (least..=most).collect();
-    let rank = |bits: &u8| bit_shares(*bits, 1).first().map_or(9.0, |(turns, steps)| widths(*turns, *steps));
+    let rank = |bits: &u8| bit_shares(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
     // The complete frame up to the lowest bit, the moved bits, and the most usual width in between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
@@ -99,11 +99,11 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
     if let Some((_, to)) = reading.gap {
         let singleturn = reading.last - to;
         let range = Range::Bits { multiturn: bits - singleturn, singleturn };
-        return vec![(range, widths(bits - singleturn, singleturn))];
+        return vec![(range, width_penalty(bits - singleturn, singleturn))];
     }
     let shares = bit_shares(bits, SHARES).into_iter();
     shares
-        .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, widths(multiturn, singleturn)))
+        .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, width_penalty(multiturn, singleturn)))
         .collect()
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::devices::ssi::protocol::code::ones;
+use crate::devices::ssi::protocol::code::low_bits_mask;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
 /// Maximum number of consecutive deviating frames for a bit to count as disturbed or as an error bit.
@@ -36,7 +36,7 @@ pub(super) struct Bit {
 impl FrameSet {
     pub(super) fn new(frames: &[u64], clocks: u8) -> Self {
         let clocks = clocks.clamp(1, 64);
-        let words: Vec<u64> = frames.iter().map(|frame| frame & ones(clocks)).collect();
+        let words: Vec<u64> = frames.iter().map(|frame| frame & low_bits_mask(clocks)).collect();
         let bits = (1..=clocks).map(|clock| Bit::new(&words, clocks - clock)).collect();
         FrameSet { words, clocks, bits }
     }
@@ -62,7 +62,7 @@ impl FrameSet {
     /// Returns the level of a line that never changes, or `None` if the frames contain both 0 and 1.
     pub(super) fn stuck(&self) -> Option<bool> {
         let same = |word: u64| self.words.iter().all(|own| *own == word);
-        if same(0) { Some(false) } else { same(ones(self.clocks)).then_some(true) }
+        if same(0) { Some(false) } else { same(low_bits_mask(self.clocks)).then_some(true) }
     }
 
     pub(super) fn distinct_count(&self) -> usize {
@@ -100,10 +100,10 @@ impl FrameSet {
     pub(super) fn is_repeated(&self, frame: u64, repeat: Repeat) -> bool {
         let first = frame >> (self.clocks - repeat.word);
         let second = frame >> (self.clocks - 2 * repeat.word - repeat.gap);
-        (first ^ second) & ones(repeat.word) == 0
+        (first ^ second) & low_bits_mask(repeat.word) == 0
     }
 
-    pub(super) fn is_right(&self, word: u64, parity: Parity) -> bool {
+    pub(super) fn is_parity_valid(&self, word: u64, parity: Parity) -> bool {
         (word >> (self.clocks - parity.clock)).count_ones().is_multiple_of(2) == parity.even
     }
 

@@ -1,6 +1,6 @@
 //! Layouts that read frames in a given way: possible settings of families, and other layouts of common widths.
 
-use super::any_other::any_other;
+use super::any_other::try_custom_frames;
 use super::frame_set::FrameSet;
 use super::of_family::of_family;
 use super::probe::{LayoutProbe, Trial};
@@ -37,7 +37,7 @@ pub(super) fn group_members(
 ) -> Vec<LayoutCandidate> {
     let mut found = Vec::new();
     let mut take = |family: Option<(String, Settings)>, layout: Layout, weight: f64| {
-        if let Some(trial) = probe.trial(&layout) {
+        if let Some(trial) = probe.try_layout(&layout) {
             let weight = weight + if trial.never_odd { NEVER_ODD } else { 0.0 };
             found.push(LayoutCandidate { family, layout, weight, trial });
         }
@@ -51,7 +51,7 @@ pub(super) fn group_members(
         }
     }
     for inverted in inverted {
-        any_other(&mut take, read, words, (probe.clocks(), repeat), *inverted);
+        try_custom_frames(&mut take, read, words, (probe.clocks(), repeat), *inverted);
     }
     found
 }
@@ -78,7 +78,7 @@ pub(super) fn crosses_zero(reading: &Reading, inverted: bool) -> Option<Parity> 
 }
 
 /// Returns whether nearly all steps are even, so that the lowest bit carries no information.
-pub(super) fn never_odd(read: &Read) -> bool {
+pub(super) fn has_only_even_steps(read: &Read) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);
     let (mut all, mut odd) = (0, 0);

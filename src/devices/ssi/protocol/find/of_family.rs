@@ -2,7 +2,7 @@
 
 use super::frame_set::FrameSet;
 use super::members::{EXCHANGED, PADDED, Take, crosses_zero, sum};
-use super::plausible::widths;
+use super::plausible::width_penalty;
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage};
@@ -72,7 +72,7 @@ pub(super) fn of_family(
                         ];
                         let changed = changed.iter().filter(|changed| **changed).count();
                         let unusual = match layout.descriptor().range {
-                            Range::Bits { multiturn, singleturn } => widths(multiturn, singleturn) / 2.0,
+                            Range::Bits { multiturn, singleturn } => width_penalty(multiturn, singleturn) / 2.0,
                             _ => 0.0,
                         };
                         let weights = [(inverted, EXCHANGED), (*coded != GrayCoverage::Position, PADDED)];

@@ -27,7 +27,7 @@ const TURNS: [(u8, f64); 9] =
 const FEW_STEPS: u8 = 8;
 
 /// Returns how unusual a combination of turn bits and step bits is.
-pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
+pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
     };
@@ -40,7 +40,7 @@ pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
 pub(super) fn bit_shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();
-    all.sort_by(|a, b| widths(a.0, a.1).total_cmp(&widths(b.0, b.1)));
+    all.sort_by(|a, b| width_penalty(a.0, a.1).total_cmp(&width_penalty(b.0, b.1)));
     all.truncate(most);
     all
 }
@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(bit_shares(13, 1), [(0, 13)]);
         assert_eq!(bit_shares(30, 1), [(12, 18)]);
         assert_eq!(bit_shares(1, 4), [(0, 1)]);
-        assert!(widths(12, 1) > widths(0, 13) + 6.0, "4096 turns of 2 steps");
+        assert!(width_penalty(12, 1) > width_penalty(0, 13) + 6.0, "4096 turns of 2 steps");
         assert!(bit_shares(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
     }
 }

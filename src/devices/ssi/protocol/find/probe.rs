@@ -35,7 +35,7 @@ impl<'a> LayoutProbe<'a> {
                 bit.moves || read.reading.has(clock) || (word >> (words.clocks - clock) & 1 == 1) == bit.usual
             })
         };
-        let right = |word: u64| read.reading.parity.is_none_or(|parity| words.is_right(word, parity));
+        let right = |word: u64| read.reading.parity.is_none_or(|parity| words.is_parity_valid(word, parity));
         let undisturbed: Vec<bool> = seen
             .words()
             .iter()
@@ -61,7 +61,7 @@ impl<'a> LayoutProbe<'a> {
     }
 
     /// Tests whether a layout's steps match those of the reading, forwards or backwards, at full or half scale.
-    pub(super) fn trial(&self, layout: &Layout) -> Option<Trial> {
+    pub(super) fn try_layout(&self, layout: &Layout) -> Option<Trial> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);
         let wrong = invalid.fold(form, |all, (at, _)| all.with(Flags::error(at)));

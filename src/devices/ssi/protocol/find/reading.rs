@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use super::code_ends::{ends, unusual_step_cost};
 use super::frame_set::{FrameSet, binary_entropy};
 use super::motion::Motion;
-use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, ones};
+use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
 /// Number of frames in the first trial of each reading, taken in runs of consecutive frames.
@@ -75,7 +75,7 @@ impl Reading {
     fn whole(&self) -> u64 {
         match self.code {
             Code::Bcd => 10_u64.saturating_pow(u32::from(self.width().div_ceil(4))),
-            _ => ones(self.width()).saturating_add(1),
+            _ => low_bits_mask(self.width()).saturating_add(1),
         }
     }
 
@@ -93,14 +93,14 @@ impl Reading {
     /// Returns the number in each word, or `None` where the bits are not valid digits.
     pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
         let digits = PositionCode::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
-        let all = ones(self.last + 1 - self.first);
+        let all = low_bits_mask(self.last + 1 - self.first);
         let allowed = self.allowed();
         let number = |word: &u64| {
             let word = if self.inverted { !word } else { *word };
             let mut bits = word >> (clocks - self.last) & all;
             if let Some((from, to)) = self.gap {
                 let behind = self.last - to;
-                bits = bits >> (behind + to + 1 - from) << behind | bits & ones(behind);
+                bits = bits >> (behind + to + 1 - from) << behind | bits & low_bits_mask(behind);
             }
             let number = match (&digits, self.code) {
                 (Some(digits), _) => digits.decode(bits),
@@ -117,7 +117,7 @@ impl Reading {
     }
 
     /// Returns whether all constant bits outside the position have their usual values in the given frame.
-    fn is_usual(&self, seen: &FrameSet, index: usize) -> bool {
+    fn has_usual_bits(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
         let constant = |clock: &u8| !self.has(*clock) && !seen.bit(*clock).moves;
@@ -177,7 +177,7 @@ impl Read {
         // Disturbed frames do not count as passing an end, and an end is only where a higher bit does not change, even
         // briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
-        let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.is_usual(seen, index));
+        let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.has_usual_bits(seen, index));
         read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after(index) && usual(index));
         read
     }
@@ -197,7 +197,7 @@ impl Read {
 
 /// Returns the number of frames in which the parity is correct.
 fn right(seen: &FrameSet, parity: Parity) -> usize {
-    seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
+    seen.words().iter().filter(|word| seen.is_parity_valid(**word, parity)).count()
 }
 
 /// Returns the readings that yield the most even motion, the best first.

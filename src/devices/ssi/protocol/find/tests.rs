@@ -31,8 +31,8 @@ fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
 
 /// Compares the frames that encoders send, not the names of their settings.
 fn same_frame(one: &Layout, other: &Layout) -> bool {
-    let shape = |layout: &Layout| (layout.roles().len(), layout.coding().code(), layout.descriptor().coded);
-    one.roles() == other.roles() && shape(one) == shape(other)
+    let shape = |layout: &Layout| (layout.clock_roles().len(), layout.coding().code(), layout.descriptor().coded);
+    one.clock_roles() == other.clock_roles() && shape(one) == shape(other)
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn every_proposal_round_trips_as_text() {
         let recording = recordings::Recording::of(seed);
         let search = find(&recording.frames, recording.clocks, &families);
         for proposal in search.classes.iter().flat_map(|class| &class.members) {
-            let text = proposal.spec(&families);
+            let text = proposal.spec_text(&families);
             let descriptor = Descriptor::parse(&text).unwrap_or_else(|| {
                 let (key, settings) = Settings::parse(&text).unwrap();
                 Ok(settings.resolve(families.named(&key).unwrap()).unwrap().layout.descriptor().clone())

@@ -1,7 +1,7 @@
 //! Verdict on the classes: the confidence, the quality of each class, and the motion that would decide.
 
 use super::frame_set::FrameSet;
-use super::members::{LayoutCandidate, never_odd};
+use super::members::{LayoutCandidate, has_only_even_steps};
 use super::probe::Trial;
 use super::reading::Read;
 use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
@@ -72,7 +72,7 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
         let small = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
         open.push(Open::PassTheEnd { least: small(least), most: small(most) });
     }
-    if never_odd(read) || !is_varied(read) {
+    if has_only_even_steps(read) || !has_varied_steps(read) {
         open.push(Open::OtherSpeed);
     }
     if let Some(clock) = read.unexplained.first() {
@@ -109,7 +109,7 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
 }
 
 /// Returns whether step sizes vary enough to reveal a missing lower bit.
-pub(super) fn is_varied(read: &Read) -> bool {
+pub(super) fn has_varied_steps(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
     for uneven in even {

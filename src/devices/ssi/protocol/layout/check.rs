@@ -1,7 +1,7 @@
 //! Validation of a frame, and computation of its shifts and masks.
 
 use super::{Flags, Layout, Part};
-use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, ones};
+use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
@@ -176,7 +176,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     }
 
     let mut taken = Clocks { clocks: word, taken: Vec::new() };
-    let position = placed(&parts, ones(coding.bits()));
+    let position = placed(&parts, low_bits_mask(coding.bits()));
     for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
         taken.take(clock, ClockUse::Position)?;
     }
@@ -219,14 +219,14 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     let low = descriptor.errors.iter().filter(|bit| bit.active_low).fold(0, |low, bit| low | in_word(bit.clock));
     let parity = descriptor.parity.map_or((0, 0), |parity| {
         let bit = in_word(parity.clock);
-        (bit, ones(word) & !(bit | (bit - 1)))
+        (bit, low_bits_mask(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
     check_count(RepeatedPart::ErrorBits, 8, descriptor.errors.len())?;
     check_count(RepeatedPart::Patterns, 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
-        Word::Ones => Ok(ones(clocks)),
-        Word::Bits(word) if word > ones(clocks) => Err(LayoutError::Pattern { word, clocks }),
+        Word::Ones => Ok(low_bits_mask(clocks)),
+        Word::Bits(word) if word > low_bits_mask(clocks) => Err(LayoutError::Pattern { word, clocks }),
         Word::Bits(word) => Ok(word),
     });
     Ok(Layout {
@@ -235,7 +235,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         lost,
         behind_area: word - descriptor.area,
         gray: (coded_clocks, word - coded_clocks),
-        zeros: ones(word) & !used,
+        zeros: low_bits_mask(word) & !used,
         errors,
         low,
         parity,
@@ -265,12 +265,12 @@ fn parts(descriptor: &Descriptor, coding: &PositionCode) -> Result<[Part; 2], La
         (_, None) => return Err(LayoutError::Between),
     };
     let behind = descriptor.word() - descriptor.lead - descriptor.between - bits;
-    let low = Part { in_word: behind, in_code: 0, mask: ones(lower) };
+    let low = Part { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
     // Shifts of a part without bits are 0, so that none is as wide as a number.
     let high = if lower == bits {
         Part::default()
     } else {
-        Part { in_word: behind + lower + descriptor.between, in_code: lower, mask: ones(bits - lower) }
+        Part { in_word: behind + lower + descriptor.between, in_code: lower, mask: low_bits_mask(bits - lower) }
     };
     Ok([high, low])
 }

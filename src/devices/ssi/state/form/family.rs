@@ -14,7 +14,7 @@ pub(super) fn groups(designer: &LayoutDesigner, family: &Family, settings: &Sett
     let resolved = settings.resolve(family).ok();
     if family.align.len() > 1 {
         let own = resolved.as_ref().map_or(Align::Left, |resolved| resolved.align);
-        let all: Vec<(Align, Text)> = family.align.iter().map(|align| (*align, align_words(*align))).collect();
+        let all: Vec<(Align, Text)> = family.align.iter().map(|align| (*align, alignment_text(*align))).collect();
         frame.push(Row::choice(Field::Align, "ssi_form.align", &all, &own).with_hint("ssi_form.align_hint"));
     }
     if family.shift {
@@ -119,7 +119,7 @@ fn places(designer: &LayoutDesigner, family: &Family) -> Vec<ErrorPlace> {
     frame.map(|frame| frame.place.clone()).unwrap_or_default()
 }
 
-fn align_words(align: Align) -> Text {
+fn alignment_text(align: Align) -> Text {
     TEXTS.text(match align {
         Align::Left => "ssi_form.left",
         Align::Right24 => "ssi_form.right24",

@@ -14,7 +14,7 @@ fn layout(text: &str) -> Layout {
 fn run(first: u64, words: &[u64]) -> Words {
     Words {
         first,
-        at: Moment::after_start(Duration::from_millis(10 + first)),
+        at: Moment::from_elapsed(Duration::from_millis(10 + first)),
         period_ns: 1_000_000,
         lost: 0,
         clocks: 21,
@@ -29,7 +29,7 @@ fn names(record: &Record) -> Vec<(String, u64)> {
         FrameFinding::Error { name, .. } => name.clone(),
         other => format!("{other:?}"),
     };
-    record.tally().noted().iter().map(|noted| (name(&noted.finding), noted.count)).collect()
+    record.tally().finding_counts().iter().map(|noted| (name(&noted.finding), noted.count)).collect()
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn renaming_an_error_bit_keeps_its_count() {
 fn a_cleared_count_stays_cleared_with_another_layout() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
-    record.forget_tally();
+    record.reset_tally();
     record.add(vec![run(3, &[GOOD | 2])], 0);
     record.reinterpret(&layout("afs60,code=gray"));
     assert_eq!((names(&record), record.positions()), (vec![("ERRSI".to_owned(), 1)], 4));

@@ -37,7 +37,7 @@ fn a_line_that_is_no_frame_is_reported() {
     let said = |text: &str| parse_frames(text, 8).unwrap_err();
     let line = said("1010\n10\n");
     assert_eq!(line.id(), "ssi_find.line");
-    assert!(line.terminal().contains('2'), "{}", line.terminal());
+    assert!(line.terminal_text().contains('2'), "{}", line.terminal_text());
     assert_eq!(said("0x1\nx\n").id(), "ssi_find.line");
     assert_eq!(said("0x1FF\n").id(), "ssi_find.line");
     for text in ["", "# nothing\n", "heading\n"] {
@@ -58,15 +58,15 @@ fn the_table_of_positions_has_frames() {
     let cut = said(&OWN[..OWN.len() - 7]);
     assert_eq!(cut.id(), "ssi_capture.cut_off");
     assert!(
-        cut.terminal().starts_with("The file is incomplete: line 3 has 5 columns instead of 7"),
+        cut.terminal_text().starts_with("The file is incomplete: line 3 has 5 columns instead of 7"),
         "{}",
-        cut.terminal()
+        cut.terminal_text()
     );
     assert_eq!(said(&OWN.replace("238.25", "238,25")).id(), "ssi_capture.columns");
     assert_eq!(said(&OWN.replace(",0,0,0", ",,0,0")).id(), "ssi_find.line");
     assert_eq!(said("t_s,raw,turns\n").id(), "ssi_find.no_frames");
     // 14237420 has 24 bits.
-    let few = of(OWN, 23).unwrap_err().terminal();
+    let few = of(OWN, 23).unwrap_err().terminal_text();
     assert!(few.starts_with("Line 3: 14237420 has 24 bits") && few.contains("23 clocks"), "{few}");
 }
 
@@ -159,7 +159,7 @@ fn what_is_no_recording_of_clock_and_data_says_why_and_what_to_do() {
             assert!(sentences > 0 && words.ends_with('.') && !words.contains('{'), "{words}");
         }
     }
-    let line = of(&good.replace("0.000041000", "0.000039000"), 27).unwrap_err().terminal();
+    let line = of(&good.replace("0.000041000", "0.000039000"), 27).unwrap_err().terminal_text();
     assert!(line.contains("line 4"), "{line}");
 }
 
@@ -170,5 +170,5 @@ fn a_huge_file_is_refused_with_a_way_out() {
     std::fs::File::create(&path).unwrap().set_len(crate::store::MAX_TEXT + 1).unwrap();
     let why = read_frames(&path, 27).unwrap_err();
     assert_eq!(why.id(), "ssi_capture.too_large");
-    assert!(why.terminal().contains("16 MB"), "{}", why.terminal());
+    assert!(why.terminal_text().contains("16 MB"), "{}", why.terminal_text());
 }

@@ -29,7 +29,7 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
         Parts::One(_) => handles.extend([Handle::LeadEnd, Handle::StepsEnd]),
         Parts::Whole(_) => {}
     }
-    if area_counts(descriptor) {
+    if is_area_relevant(descriptor) {
         handles.push(Handle::AreaEnd);
     }
     handles.extend((0..descriptor.errors.len()).map(Handle::Error));
@@ -53,7 +53,7 @@ pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
         (Handle::Split | Handle::TurnsEnd, Parts::Both(turns, _)) => Some(begins + turns),
         (Handle::BetweenEnd, Parts::Both(turns, _)) => Some(begins + turns + descriptor.between),
         (Handle::StepsEnd, parts) => is_bits.then_some(begins + descriptor.between + parts.bits()),
-        (Handle::AreaEnd, _) => area_counts(descriptor).then_some(descriptor.area),
+        (Handle::AreaEnd, _) => is_area_relevant(descriptor).then_some(descriptor.area),
         (Handle::WordEnd, _) => descriptor.repeat.map(|repeat| repeat.word),
         (Handle::GapEnd, _) => descriptor.repeat.map(|repeat| repeat.word + repeat.gap),
         (Handle::FrameEnd, _) => Some(descriptor.clocks),
@@ -71,7 +71,7 @@ pub(super) enum Single {
 }
 
 /// Returns the error and parity bits that directly follow the position, up to the first zero.
-pub(super) fn bit_chain(layout: &Layout) -> Vec<Single> {
+pub(super) fn adjacent_bits(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
     let mut chain = Vec::new();
@@ -95,7 +95,7 @@ pub(super) fn end(layout: &Layout) -> u8 {
 }
 
 /// Returns whether the end of the area affects the frame.
-const fn area_counts(descriptor: &Descriptor) -> bool {
+const fn is_area_relevant(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
@@ -147,7 +147,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
         Handle::Parity => put(&mut new, Single::Parity, at, to),
     }
-    if !area_counts(&new) {
+    if !is_area_relevant(&new) {
         // It has no content: it must only fit and exist.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
@@ -165,15 +165,15 @@ fn bits(new: &Descriptor, old: &Layout) -> u8 {
 
 /// Moves the parts that follow the end of the position.
 fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
-    let chain = bit_chain(old);
+    let chain = adjacent_bits(old);
     if !following || chain.is_empty() {
         return Some(());
     }
-    if area_counts(new) && end(old) == new.area {
+    if is_area_relevant(new) && end(old) == new.area {
         new.area = plus(new.area, by)?;
     }
     for single in chain {
-        let clock = clock_of(new, single)?;
+        let clock = bit_clock(new, single)?;
         set(new, single, plus(clock, by)?);
     }
     Some(())
@@ -188,7 +188,7 @@ fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
     }
 }
 
-fn clock_of(descriptor: &Descriptor, single: Single) -> Option<u8> {
+fn bit_clock(descriptor: &Descriptor, single: Single) -> Option<u8> {
     match single {
         Single::Error(index) => descriptor.errors.get(index).map(|bit| bit.clock),
         Single::Parity => descriptor.parity.map(|parity| parity.clock),

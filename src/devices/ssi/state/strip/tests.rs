@@ -94,7 +94,7 @@ proptest! {
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit moved directly after others follows them from now on.
-        prop_assume!(moving::bit_chain(there.layout()).len() == moving::bit_chain(&layout).len() || !following);
+        prop_assume!(moving::adjacent_bits(there.layout()).len() == moving::adjacent_bits(&layout).len() || !following);
         // So does the end of an area that the position now fills.
         let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);

@@ -79,7 +79,7 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     let room = ui.available_width();
     let rows = Rows::new(room, model.strip.layout().clocks());
     let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
-    let (tags, levels) = names::tags(ui, theme, shown, &rows, meaning_of);
+    let (tags, levels) = names::name_tags(ui, theme, shown, &rows, meaning_of);
     let clocks = shown.layout().clocks();
     let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
     let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());
@@ -146,13 +146,13 @@ impl StripContext<'_> {
     /// Returns the accessible label of a cell, including its bit.
     fn says(&self, clock: u8) -> String {
         let words = self.theme.words(&strip::cell(self.shown, clock));
-        match self.shown_at(clock) {
+        match self.cell_state_at(clock) {
             Some(cell) => format!("{words} = {}", u8::from(cell.bit)),
             None => words,
         }
     }
 
-    fn shown_at(&self, clock: u8) -> Option<CellState> {
+    fn cell_state_at(&self, clock: u8) -> Option<CellState> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
@@ -193,14 +193,14 @@ impl StripContext<'_> {
     fn fields(&self, tags: &[NameTag]) {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
-            let (run, _) = names::widest(self.rows, field);
+            let (run, _) = names::widest_run(self.rows, field);
             let rect = tag.rect(self.rows, Rows::lane(run)).union(Rows::lane(run));
             let response = self.ui.interact(rect, self.base.with("field").with(tag.field), Sense::hover());
             let name = self.theme.words(&strip::field(self.shown, field));
             let place = self.theme.words(&strip::clocks(field));
             response.widget_info(|| {
                 let mut info = WidgetInfo::labeled(Role::Group, true, format!("{name}, {place}"));
-                let bits = (field.first..=field.last).filter_map(|clock| self.shown_at(clock));
+                let bits = (field.first..=field.last).filter_map(|clock| self.cell_state_at(clock));
                 let bits: String = bits.map(|cell| if cell.bit { '1' } else { '0' }).collect();
                 info.current_text_value = Some(bits).filter(|bits| !bits.is_empty());
                 info

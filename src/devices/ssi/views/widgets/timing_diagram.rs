@@ -54,7 +54,7 @@ struct Rows {
 }
 
 pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
-    theme.sunken().show(ui, |ui| draw_ui(ui, theme, model));
+    theme.sunken_frame().show(ui, |ui| draw_ui(ui, theme, model));
 }
 
 fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {

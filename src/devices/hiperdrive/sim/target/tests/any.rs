@@ -13,7 +13,7 @@ fn answers(host: &mut Host) {
 }
 
 /// Returns the frames of the reference, of which parts are replaced.
-fn damage_frame() -> impl Strategy<Value = Vec<u8>> {
+fn corrupt_frame() -> impl Strategy<Value = Vec<u8>> {
     let messages = [OPEN, CLOSE, "0E 03 20 65 24 01 30 6B", "10 03 20 64 24 01 30 2F 01 00", "01 02 20 01 24 01"];
     let message = proptest::sample::select(messages.to_vec()).prop_map(|text| unconnected(&bytes(text)));
     let data = prop_oneof![message, any::<Vec<u8>>()];
@@ -43,7 +43,7 @@ proptest! {
     }
 
     #[test]
-    fn the_target_survives_any_frame(frames in proptest::collection::vec(damage_frame(), 1..20), topology in 0..3_u8) {
+    fn the_target_survives_any_frame(frames in proptest::collection::vec(corrupt_frame(), 1..20), topology in 0..3_u8) {
         let mut host = Host::new(["", "hub=4", "hub=8"][usize::from(topology)]);
         for mut frame in frames {
             frame[4..8].copy_from_slice(&host.session.to_le_bytes());

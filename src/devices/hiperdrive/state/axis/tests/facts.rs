@@ -9,7 +9,7 @@ fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
     axis.look(seen);
     assert_eq!((axis.step(), axis.invalidated_text()), (shown, Some(step)), "the page is left by a press alone");
-    assert_eq!(axis.reached(step), Reached::Failed);
+    assert_eq!(axis.step_status(step), Reached::Failed);
     assert_eq!(axis.check_can_continue(seen).unwrap_err().id(), "hd_axis.fallen");
     assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
     axis.back(seen);
@@ -42,7 +42,7 @@ fn setup_restarts_at_the_first_step_with_lost_values() {
     // Everything is discarded.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
     back_to(&mut axis, &seen, AxisStep::Request);
-    assert!(AxisStep::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
+    assert!(AxisStep::ALL[1..].iter().all(|step| axis.step_status(*step) == Reached::Ahead));
     // Nothing is concluded from a drive that does not answer.
     let (mut axis, mut seen) = until_test();
     seen.connected = false;
@@ -60,7 +60,7 @@ fn steps_after_a_changed_value_are_undone() {
         assert!(axis.outcome(TestTarget::Middle).is_some());
         (axis, seen)
     };
-    let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
+    let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.step_status(*step) == Reached::Done).count();
     // Changed on another page or by another master: the drive has it, and that counts.
     type Case<'c> = (&'c str, fn(&mut DriveFacts), AxisStep);
     let cases: [Case<'_>; 5] = [
@@ -154,7 +154,7 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let (mut axis, mut seen) = until_power();
     assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
-    assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
+    assert!(!axis.survived() && axis.step_status(AxisStep::PowerCycle) == Reached::Failed);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, AxisButton::Restarted);
     assert!(

@@ -7,7 +7,7 @@ use proptest::test_runner::{Config, TestRunner};
 use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
-use crate::devices::interbus::state::cams::{Chart, pulled};
+use crate::devices::interbus::state::cams::{Chart, apply_drag};
 use crate::devices::interbus::state::staged::{Edit, Staged};
 
 /// Steps of one session.
@@ -156,7 +156,7 @@ fn play_event(staged: &mut Staged, step: &Step, range: u32) {
         Step::Drag(program, own, is_stop, by) => {
             let chart = Chart::of(staged, number(program)).unwrap();
             let edge = if is_stop { Edge::Stop } else { Edge::Start };
-            let to = pulled(chart.lanes[own].edges.unwrap(), edge, by, range);
+            let to = apply_drag(chart.lanes[own].edges.unwrap(), edge, by, range);
             let (start, stop) = (to.start.get(), to.stop.get());
             Edit::Cam { program: number(program), cam: cam(own), start, stop, on: false }
         }

@@ -33,13 +33,13 @@ impl LanePainter<'_> {
         let sense = if draws { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(self.place.lane(lane.cam), id, sense);
         let hold = DragTarget::New(lane.cam);
-        let event = self.pulled(&response, hold, drag).filter(|_| draws);
+        let event = self.apply_drag(&response, hold, drag).filter(|_| draws);
         if draws && response.hovered() {
             self.ui.set_cursor_icon(CursorIcon::Crosshair);
         }
         let clicked = response.clicked().then_some(CamEvent::Selected(lane.cam));
         if draws && drag.is_none() {
-            self.model.tip(self.theme, response, hold);
+            self.model.show_tooltip(self.theme, response, hold);
         }
         event.or(clicked)
     }
@@ -52,7 +52,7 @@ impl LanePainter<'_> {
         let mut event = None;
         for stretch in &stretches {
             let is_widest = Some(*stretch) == widest;
-            let Some(rect) = self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.head_of(lane.cam)))
+            let Some(rect) = self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.head_rect(lane.cam)))
             else {
                 continue;
             };
@@ -64,7 +64,7 @@ impl LanePainter<'_> {
                 event = self.model.keys(self.ui, &response, hold, self.apart()).or(event);
                 event = self.follow(&response, *stretch).or(event);
             }
-            event = self.pulled(&response, hold, drag).or(event);
+            event = self.apply_drag(&response, hold, drag).or(event);
             if response.clicked() {
                 self.ui.memory_mut(|memory| memory.request_focus(self.base.with("whole").with((lane.cam, true))));
                 event = Some(CamEvent::Selected(lane.cam));
@@ -76,7 +76,7 @@ impl LanePainter<'_> {
                 self.paint_focus(lane.cam);
             }
             if drag.is_none() {
-                self.model.tip(self.theme, response, hold);
+                self.model.show_tooltip(self.theme, response, hold);
             }
         }
         event
@@ -111,7 +111,7 @@ impl LanePainter<'_> {
         }
         let at = self.model.chart.edge(lane.cam, edge)?;
         event = self.follow(&response, Stretch { first: at, last: at }).or(event);
-        event = self.pulled(&response, hold, drag).or(event);
+        event = self.apply_drag(&response, hold, drag).or(event);
         let is_held = response.dragged();
         if self.model.movable && (is_held || response.hovered()) {
             self.ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
@@ -119,7 +119,7 @@ impl LanePainter<'_> {
         let state = Grip { active: is_held || response.hovered() && self.model.movable, focused: response.has_focus() };
         self.paint_grip(lane.cam, edge, state);
         if drag.is_none() {
-            self.model.tip(self.theme, response, hold);
+            self.model.show_tooltip(self.theme, response, hold);
         }
         event
     }
@@ -171,7 +171,7 @@ impl LanePainter<'_> {
     }
 
     /// Handles the pointer, and returns the drag preview or its result.
-    fn pulled(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
+    fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
         }

@@ -21,7 +21,7 @@ impl LanePainter<'_> {
         let lamps = self.model.chart.lamps(self.model.position, self.model.own);
         let mut event = None;
         for (lane, lamp) in self.shown.lanes.iter().zip(lamps) {
-            let head = self.place.head_of(lane.cam);
+            let head = self.place.head_rect(lane.cam);
             event = self.name(lane, head).or(event);
             self.lamp(lane, lamp, head);
         }
@@ -29,7 +29,7 @@ impl LanePainter<'_> {
     }
 
     pub(super) fn switch(&self, lane: &Lane) -> Option<CamEvent> {
-        let (ui, head) = (self.ui, self.place.head_of(lane.cam));
+        let (ui, head) = (self.ui, self.place.head_rect(lane.cam));
         let can = self.model.movable && (lane.edges.is_some() || lane.on);
         let size = ui.spacing().icon_width;
         let square = Rect::from_center_size(pos2(head.left() + size / 2.0 + 1.0, head.center().y), Vec2::splat(size));

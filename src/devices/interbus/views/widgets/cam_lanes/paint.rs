@@ -30,10 +30,10 @@ impl LanePainter<'_> {
         let corners = CornerRadius::same(2);
         painter.rect_filled(place.plot, corners, theme.palette.sunken);
         if let Some(cam) = self.model.selected {
-            let lane = place.lane(cam).union(place.head_of(cam));
+            let lane = place.lane(cam).union(place.head_rect(cam));
             painter.rect_filled(lane, corners, Color32::from(theme.palette.accent).gamma_multiply(0.1));
         }
-        self.rulers();
+        self.draw_rulers();
         let within = painter.with_clip_rect(place.plot.intersect(self.ui.clip_rect()));
         for lane in &self.shown.lanes {
             let rect = place.lane(lane.cam);
@@ -47,7 +47,7 @@ impl LanePainter<'_> {
     }
 
     /// Draws grid lines and numbers: steps above, machine units below.
-    fn rulers(&self) {
+    fn draw_rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = APART * place.steps_per_point();
         let lines = |scale: &Scale| ticks(scale, &place.view, model.chart.range, apart);

@@ -40,7 +40,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
         if response.clicked() || response.drag_started() {
             response.request_focus();
         }
-        event = pulled(view, &response, *handle, at, drag).or(keys(view, &response, *handle, at)).or(event);
+        event = apply_drag(view, &response, *handle, at, drag).or(keys(view, &response, *handle, at)).or(event);
         let is_held = response.dragged();
         if is_held || response.hovered() {
             ui.set_cursor_icon(match (handle.is_cell(), is_held) {
@@ -52,7 +52,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
         let state = paint::Grip { active: is_held || response.hovered(), focused: response.has_focus() };
         paint::grip(view, *handle, state, drag.filter(|_| is_held));
         if !is_held {
-            tip(view, response, *handle);
+            show_tooltip(view, response, *handle);
         }
     }
     event
@@ -84,7 +84,7 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         return Some(lane.shrink2(Vec2::new(ends, 0.0)));
     }
     let edge = edge(rows, strip, handle)?;
-    let x = edge.center().x + side(handle) * if is_second(strip, handle) { WIDTH } else { BESIDE };
+    let x = edge.center().x + side(handle) * if is_second_tab(strip, handle) { WIDTH } else { BESIDE };
     let (top, bottom) = match handle {
         // Other boundaries may be on the same edge.
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
@@ -105,12 +105,12 @@ pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 
 /// Returns the offset of a boundary's tab from its edge.
 pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
-    side(handle) * if is_second(strip, handle) { SECOND_TAB } else { TAB }
+    side(handle) * if is_second_tab(strip, handle) { SECOND_TAB } else { TAB }
 }
 
 /// Returns whether a handle's tab is set off as the second one at an edge. The boundary between turns and steps lies on
 /// the edge, and the handle for zeros beside it.
-fn is_second(strip: &Strip, handle: Handle) -> bool {
+fn is_second_tab(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }
 
@@ -124,7 +124,7 @@ const fn side(handle: Handle) -> f32 {
 }
 
 /// Handles pointer input: drags the handle to a target and reports its release.
-fn pulled(
+fn apply_drag(
     view: &StripContext<'_>,
     response: &Response,
     handle: Handle,
@@ -188,7 +188,7 @@ fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) ->
     (reached != at).then_some(StripEvent::Moved(handle, reached))
 }
 
-fn tip(view: &StripContext<'_>, response: Response, handle: Handle) {
+fn show_tooltip(view: &StripContext<'_>, response: Response, handle: Handle) {
     response.on_hover_ui(|ui| {
         ui.set_max_width(280.0);
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);

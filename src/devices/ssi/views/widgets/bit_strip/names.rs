@@ -60,7 +60,7 @@ impl OverflowingName {
             };
             let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
             // If names cannot avoid the lines, they at least avoid each other.
-            let apart = || (0..).find(|level| self.is_apart(tags, left, *level));
+            let apart = || (0..).find(|level| self.has_no_overlap(tags, left, *level));
             (left, free.or_else(apart).unwrap_or(LEVELS))
         };
         let leader = Some(self.x).filter(|_| level > 0);
@@ -68,7 +68,7 @@ impl OverflowingName {
     }
 
     /// Returns whether the name would overlap no other name at the given offset and level.
-    fn is_apart(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
+    fn has_no_overlap(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
         own.map(NameTag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
@@ -87,7 +87,7 @@ impl OverflowingName {
                 Ordering::Less => from <= self.x && self.x <= to,
             }
         });
-        self.is_apart(tags, left, level) && !crossed
+        self.has_no_overlap(tags, left, level) && !crossed
     }
 }
 
@@ -113,7 +113,7 @@ impl NameTag {
 
 /// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has no position
 /// yet, because the line heights depend on the result.
-pub(super) fn tags(
+pub(super) fn name_tags(
     ui: &Ui,
     theme: &Theme,
     strip: &Strip,
@@ -123,7 +123,9 @@ pub(super) fn tags(
     let galley = |own: &Field, words: String| {
         let size = theme.sizes.caption;
         let (font, words) = match meaning_of(own) {
-            Some(meaning) => (theme.strong(size), format!("{} {words}", controls::verdict(theme, verdict(meaning)).0)),
+            Some(meaning) => {
+                (theme.bold_font(size), format!("{} {words}", controls::verdict(theme, verdict(meaning)).0))
+            }
             None => (FontId::proportional(size), words),
         };
         let mut job = LayoutJob::simple_singleline(words, font, theme.palette.muted.into());
@@ -133,7 +135,7 @@ pub(super) fn tags(
     let mut tags: Vec<NameTag> = Vec::new();
     let mut narrow = Vec::new();
     for (index, own) in strip.fields().iter().enumerate() {
-        let (run, line) = widest(rows, own);
+        let (run, line) = widest_run(rows, own);
         let words = [theme.words(&name(strip, own)), theme.words(&short(strip, own)), bare(strip, own)];
         let fits = words.into_iter().map(|words| galley(own, words)).find(|own| own.size().x <= run.width() + 2.0);
         match fits {
@@ -180,7 +182,7 @@ pub(super) const fn verdict(meaning: Meaning) -> Verdict {
 }
 
 /// Returns the widest run of a field and the line that contains it.
-pub(super) fn widest(rows: &Rows, field: &Field) -> (Rect, usize) {
+pub(super) fn widest_run(rows: &Rows, field: &Field) -> (Rect, usize) {
     let runs = rows.runs(field.first, field.last);
     let line = rows.line(field.first);
     let widest = runs.into_iter().enumerate().rev().max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width()));

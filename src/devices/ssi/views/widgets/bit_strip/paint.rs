@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 
 use super::grips::{edge, tab};
-use super::names::{NameTag, verdict, widest};
+use super::names::{NameTag, verdict, widest_run};
 use super::rows::Rows;
 use super::{Drag, StripContext, tells};
 use crate::devices::ssi::protocol::Meaning;
@@ -38,7 +38,7 @@ impl StripContext<'_> {
             for run in self.rows.runs(field.first, field.last) {
                 self.bracket(field, Rows::lane(run));
             }
-            let (run, _) = widest(self.rows, field);
+            let (run, _) = widest_run(self.rows, field);
             let worst = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
             let colour = worst.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
             tag.paint(painter, self.theme, (self.rows, Rows::lane(run)), colour);
@@ -58,7 +58,7 @@ impl StripContext<'_> {
     fn cell(&self, field: &Field, clock: u8) {
         let (theme, painter) = (self.theme, self.ui.painter());
         let cell = self.rows.cell(clock);
-        let shown = self.shown_at(clock);
+        let shown = self.cell_state_at(clock);
         let cell_meaning = shown.and_then(|cell| cell.tells);
         let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
         let ink = cell_meaning.map_or_else(|| display_colour(theme, field.kind), |meaning| colour(theme, meaning));

@@ -74,13 +74,13 @@ impl Rows {
         usize::from(clock.saturating_sub(1) / self.columns)
     }
 
-    fn top(&self, line: usize) -> f32 {
+    fn line_top(&self, line: usize) -> f32 {
         self.origin.y + self.tops.get(line).or(self.tops.last()).copied().unwrap_or(0.0)
     }
 
     pub(super) fn cell(&self, clock: u8) -> Rect {
         let column = f32::from(clock.saturating_sub(1) % self.columns);
-        let at = pos2(self.origin.x + column * self.cell, self.top(self.line(clock)) + NUMBERS);
+        let at = pos2(self.origin.x + column * self.cell, self.line_top(self.line(clock)) + NUMBERS);
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL))
     }
 
@@ -129,7 +129,7 @@ impl Rows {
 
     fn line_at(&self, pos: Pos2, clocks: u8) -> u8 {
         let lines = self.count(clocks);
-        (1..lines).rev().find(|line| pos.y >= self.top(*line) - GAP / 2.0).map_or(0, |line| line as u8)
+        (1..lines).rev().find(|line| pos.y >= self.line_top(*line) - GAP / 2.0).map_or(0, |line| line as u8)
     }
 }
 
