@@ -22,7 +22,7 @@ pub trait DriveStopHandle: Send {
 
     /// Returns whether the session has ended. Nothing else then holds a handle to its drives, so this program can no
     /// longer move them.
-    fn is_left_over(&self) -> bool;
+    fn is_orphaned(&self) -> bool;
 }
 
 /// All drives that this program can move. Clones share the same state.
@@ -49,7 +49,7 @@ impl DriveStopHandles {
 
     pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stopper: WorkerStopHandle) {
         let mut sessions = self.sessions();
-        sessions.retain(|(own, _)| !own.is_left_over());
+        sessions.retain(|(own, _)| !own.is_orphaned());
         // Under the lock that `begin` takes as well: one of the two releases the session.
         if self.has_begun() {
             brake.leave();

@@ -27,14 +27,14 @@ impl Studio {
                 self.settings.live_stopped = interval.is_none();
                 self.poll_device(id, interval);
             }
-            command => self.with_device(id, |device, services| device.obey(command, services)),
+            command => self.with_device(id, |device, services| device.apply_command(command, services)),
         }
     }
 
     fn poll_device(&mut self, id: SessionId, interval: Option<Duration>) {
         self.with_device(id, |device, services| {
             device.state_mut().live_due = false;
-            device.obey(DeviceCommand::Poll(interval), services);
+            device.apply_command(DeviceCommand::Poll(interval), services);
         });
     }
 

@@ -74,7 +74,7 @@ pub trait DriveMemory {
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
     /// Locks the drives whose limits were marked elsewhere, before the settings contain the mark.
-    fn lock_by(&mut self, found: &RememberedDrives);
+    fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings were read since control was taken.
     fn marks(&self) -> SettingsReadState;

@@ -145,7 +145,7 @@ impl HoldState {
     /// Ends the frame, given whether the pointer is pressed and whether it is on the button. Returns the state of the
     /// hold.
     pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
-        self.next_picture = self.keys.end_picture(now);
+        self.next_picture = self.keys.finish_ui_frame(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
             self.release_pointer();

@@ -29,19 +29,19 @@ impl Studio {
     }
 
     /// Returns whether a motion requested in this window has not ended yet.
-    pub fn is_under_way(&self) -> bool {
-        self.motion_controls().any(MotionControl::is_under_way)
+    pub fn is_motion_active(&self) -> bool {
+        self.motion_controls().any(MotionControl::is_motion_active)
     }
 
     /// Returns whether drives are under control, in which case their values arrive without being requested.
-    pub fn is_in_control(&self) -> bool {
-        self.motion_controls().any(MotionControl::is_in_control)
+    pub fn has_control(&self) -> bool {
+        self.motion_controls().any(MotionControl::has_control)
     }
 
     /// Returns whether STOP has an effect on drives: this window controls some, or a motion requested here has not
     /// ended. It cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
-        self.is_in_control() || self.is_turned_by_hand()
+        self.has_control() || self.is_turned_by_hand()
     }
 
     pub(super) fn stop_motion(&mut self) {

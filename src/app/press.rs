@@ -80,7 +80,7 @@ impl KeyStates {
     /// Ends a frame and returns the time in seconds after which the next frame is required at the latest. A user who
     /// presses a key again after releasing it causes no frame in between.
     #[must_use]
-    pub fn end_picture(&mut self, now: f64) -> Option<f64> {
+    pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -128,7 +128,7 @@ mod tests {
     /// Runs `count` frames without input.
     fn pictures(keys: &mut KeyStates, from: f64, apart: f64, count: u32) {
         for number in 0..count {
-            let _ = keys.end_picture(from + apart * f64::from(number));
+            let _ = keys.finish_ui_frame(from + apart * f64::from(number));
         }
     }
 
@@ -139,7 +139,7 @@ mod tests {
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
             assert!(!keys.press(Space), "a key that is held repeats itself");
-            assert_eq!(keys.end_picture(f64::from(at) * 0.04), None);
+            assert_eq!(keys.finish_ui_frame(f64::from(at) * 0.04), None);
         }
         keys.release(Space, 2.0);
         assert!(keys.is_armed(Space) && !keys.is_armed(Enter));
@@ -162,16 +162,16 @@ mod tests {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
             let mut keys = KeyStates::UP;
             assert!(keys.press(Enter));
-            let _ = keys.end_picture(0.0);
+            let _ = keys.finish_ui_frame(0.0);
             for number in 1..30 {
                 let now = f64::from(number) * 3.0 * apart;
                 keys.release(Enter, now);
                 assert!(!keys.press(Enter), "{apart}: in one picture");
-                let _ = keys.end_picture(now);
+                let _ = keys.finish_ui_frame(now);
                 keys.release(Enter, now + apart);
-                let _ = keys.end_picture(now + apart);
+                let _ = keys.finish_ui_frame(now + apart);
                 assert!(!keys.press(Enter), "{apart}: a picture later");
-                let _ = keys.end_picture(now + 2.0 * apart);
+                let _ = keys.finish_ui_frame(now + 2.0 * apart);
             }
         }
     }
@@ -183,10 +183,10 @@ mod tests {
         for apart in [0.001, 0.016, 0.05, 1.0] {
             let mut keys = KeyStates::UP;
             assert!(keys.press(Enter));
-            assert_eq!(keys.end_picture(0.0), None, "it is down, and nothing is to be waited for");
+            assert_eq!(keys.finish_ui_frame(0.0), None, "it is down, and nothing is to be waited for");
             keys.release(Enter, 1.0);
             let (mut now, mut pictures) = (1.0, 0);
-            while let Some(next) = keys.end_picture(now) {
+            while let Some(next) = keys.finish_ui_frame(now) {
                 assert!(next > 0.0 && next < 0.0501, "{next}");
                 // By the requested frame, or by an earlier one.
                 now += next.min(apart);
@@ -219,7 +219,7 @@ mod tests {
         assert!(!keys.press(Enter), "in the same picture");
         let mut keys = KeyStates::UP;
         keys.doubt(1.0);
-        let _ = keys.end_picture(1.0);
+        let _ = keys.finish_ui_frame(1.0);
         assert!(!keys.press(Enter), "in the next one, whenever that is");
         let mut keys = KeyStates::UP;
         keys.doubt(1.0);

@@ -28,7 +28,7 @@ impl Studio {
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
         let is_old = self.settings_store.is_older(&now, STALE);
-        let mut is_due = self.is_in_control() && self.settings_store.is_older(&now, PACE);
+        let mut is_due = self.has_control() && self.settings_store.is_older(&now, PACE);
         for drives in self.controlled_drives() {
             if is_old && drives.marks() == SettingsReadState::Read {
                 drives.set_read_state(SettingsReadState::Unread);
@@ -44,7 +44,7 @@ impl Studio {
     pub(super) fn apply_read_settings(&mut self, found: Option<Settings>) {
         if let Some(found) = self.settings_store.finish_read(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.drive_memory()) {
-                drives.storage_name().into_iter().for_each(|key| drives.lock_by(&found.drives(&key)));
+                drives.storage_name().into_iter().for_each(|key| drives.lock_marked_drives(&found.drives(&key)));
             }
         }
         self.remember_drives();
@@ -60,7 +60,7 @@ impl Studio {
     }
 
     fn controlled_drives(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
-        let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::is_in_control));
+        let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::has_control));
         in_hand.filter_map(|device| device.drive_memory())
     }
 }

@@ -15,8 +15,8 @@ pub struct StopPresses {
 impl StopPresses {
     /// Returns whether a press at the given time refers to a motion that is running or has just ended. Such a press
     /// counts as a stop itself.
-    pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
-        let means = moves || self.has_just_stopped(pressed);
+    pub fn counts_as_stop(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
+        let means = moves || self.has_recently_stopped(pressed);
         if means {
             self.stopped = Some(now);
         }
@@ -24,7 +24,7 @@ impl StopPresses {
     }
 
     /// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
-    pub fn has_just_stopped(&self, pressed: f64) -> bool {
+    pub fn has_recently_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
 
@@ -45,23 +45,23 @@ mod tests {
     #[test]
     fn a_second_press_within_half_a_second_counts_for_the_same_motion() {
         let mut presses = StopPresses::default();
-        assert!(!presses.means_motion(false, 9.0, 9.0), "nothing moves, and nothing has");
-        assert!(presses.means_motion(true, 10.0, 10.0));
-        assert!(presses.means_motion(false, 10.5, 10.5), "half a second later");
+        assert!(!presses.counts_as_stop(false, 9.0, 9.0), "nothing moves, and nothing has");
+        assert!(presses.counts_as_stop(true, 10.0, 10.0));
+        assert!(presses.counts_as_stop(false, 10.5, 10.5), "half a second later");
         // The time counts from the last of them.
-        assert!(presses.means_motion(false, 11.0, 11.0));
-        assert!(!presses.means_motion(false, 11.75, 11.75));
+        assert!(presses.counts_as_stop(false, 11.0, 11.0));
+        assert!(!presses.counts_as_stop(false, 11.75, 11.75));
     }
 
     #[test]
     fn a_click_counts_from_the_button_press() {
         let mut presses = StopPresses::default();
-        presses.means_motion(true, 10.0, 10.0);
+        presses.counts_as_stop(true, 10.0, 10.0);
         presses.goes_down(10.25);
         // Released long after.
         let pressed = presses.press_time(true, 12.0);
         assert_eq!(pressed, 10.25);
-        assert!(presses.means_motion(false, pressed, 12.0));
+        assert!(presses.counts_as_stop(false, pressed, 12.0));
         assert_eq!(presses.press_time(false, 13.0), 13.0, "by the keyboard");
     }
 }

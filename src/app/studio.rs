@@ -277,7 +277,7 @@ impl Studio {
 
     /// Returns whether live values are arriving, in which case the window must be redrawn continuously.
     pub fn is_live(&self) -> bool {
-        self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
+        self.devices.iter().any(|device| device.is_polling()) || self.has_control()
     }
 
     fn has_active_search(&self) -> bool {
@@ -389,7 +389,7 @@ impl Studio {
             self.with_device(id, |device, _| device.close_review());
             return;
         }
-        if self.is_in_control() {
+        if self.has_control() {
             return self.stop_motion();
         }
         self.stop();

@@ -105,7 +105,7 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
         act("shell.open", Action::AskOpen).by(COMMAND, Key::O),
         act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
         act("shell.virtual_device", Action::OpenVirtual),
-        act("shell.stop", Action::Stop).enabled_if(studio.moves() || studio.can_stop() || studio.is_in_control()),
+        act("shell.stop", Action::Stop).enabled_if(studio.moves() || studio.can_stop() || studio.has_control()),
     ];
     let keys = TAB_KEYS.into_iter().map(Some).chain(std::iter::repeat_with(|| None));
     commands.extend(views.tabs.tabs().zip(keys).map(|(tab, key)| {

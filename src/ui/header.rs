@@ -4,7 +4,7 @@ use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, connection_dot, enabled_button, icon_button, name};
 use super::page::apart;
-use super::stop_debounce::{goes_down, means_motion, press_time};
+use super::stop_debounce::{counts_as_stop, goes_down, press_time};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
@@ -221,7 +221,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let (moves, by_hand) = (shows_wide_stop(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are nothing to be alarmed about.
-    let is_alarming = moves || studio.is_working() || studio.is_in_control();
+    let is_alarming = moves || studio.is_working() || studio.has_control();
     let (word, hint) = if studio.has_drives() {
         (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
     } else {
@@ -243,7 +243,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
         // The display of a drive continues while it is stopped, and so does everything else that runs.
-        let motion = means_motion(ui.ctx(), by_hand, press_time(ui, pressed));
+        let motion = counts_as_stop(ui.ctx(), by_hand, press_time(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }

@@ -31,7 +31,7 @@ impl KeyboardFilter {
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
         // Enter completes a text entry, and presses nothing there.
         let typing = ctx.text_edit_focused();
-        let space_stops = !for_hold_button && (moves || stop_debounce::has_just_stopped(ctx, now));
+        let space_stops = !for_hold_button && (moves || stop_debounce::has_recently_stopped(ctx, now));
         let fresh = &mut self.fresh;
         let mut stops = false;
         let mut passes = |event: &Event| match event {
@@ -68,11 +68,11 @@ impl KeyboardFilter {
             _ => true,
         };
         ctx.input_mut(|input| input.events.retain(&mut passes));
-        if let Some(seconds) = self.fresh.end_picture(now) {
+        if let Some(seconds) = self.fresh.finish_ui_frame(now) {
             ctx.request_repaint_after_secs(seconds as f32);
         }
         if stops {
-            stop_debounce::means_motion(ctx, true, now);
+            stop_debounce::counts_as_stop(ctx, true, now);
         }
         stops
     }

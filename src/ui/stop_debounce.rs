@@ -5,14 +5,14 @@ use egui::{Context, Event, Id, Key, Response, Ui};
 use crate::app::StopPresses;
 
 /// Returns whether a press at the given frame time applies to a motion that is running or has just ended.
-pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
+pub(crate) fn counts_as_stop(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
-    with(ctx, |presses| presses.means_motion(moves, pressed, now))
+    with(ctx, |presses| presses.counts_as_stop(moves, pressed, now))
 }
 
 /// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
-pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
-    with(ctx, |presses| presses.has_just_stopped(pressed))
+pub(super) fn has_recently_stopped(ctx: &Context, pressed: f64) -> bool {
+    with(ctx, |presses| presses.has_recently_stopped(pressed))
 }
 
 fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
@@ -37,7 +37,7 @@ pub(crate) fn press_time(ui: &Ui, goes_down: bool) -> f64 {
 }
 
 /// Returns whether Esc is newly pressed in this frame. Repeats of a held key do not count.
-pub(super) fn escape_goes_down(ctx: &Context) -> bool {
+pub(super) fn is_escape_pressed(ctx: &Context) -> bool {
     let is_press = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
     ctx.input(|input| input.events.iter().any(is_press))
 }

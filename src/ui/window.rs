@@ -65,7 +65,7 @@ impl Window {
     /// Splits the input of a frame so that typed text reaches the entry clicked just before. Nothing is held back while
     /// drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        let at_once = !input.focused || self.studio.is_in_control();
+        let at_once = !input.focused || self.studio.has_control();
         if self.held_input.split_frame_events(&mut input.events, at_once) {
             ctx.request_repaint();
         }
@@ -191,7 +191,7 @@ impl Window {
         // Drawing must know about it in this frame.
         self.close_heard = true;
         // The jog buttons of a minimised window are in no frame.
-        if self.studio.is_under_way() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
+        if self.studio.is_motion_active() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
             self.studio.act(Action::LetGo);
         }
         if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
@@ -240,7 +240,7 @@ impl Window {
             self.views.help = !self.views.help;
         }
         let covered = self.has_open_dialog() || self.views.help;
-        surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
+        surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_motion_active() });
         if covered || !ctx.input(|input| input.focused) {
             // The held button is not visible, or the release of its key will not be reported. This frame already shows it:
             // an action would request another one each time.
@@ -315,17 +315,17 @@ impl Window {
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
         let moves = self.studio.is_turned_by_hand();
-        let goes_down = stop_debounce::escape_goes_down(ctx);
+        let goes_down = stop_debounce::is_escape_pressed(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
             // With Ctrl or Alt it closes nothing, but still stops.
-            stop_debounce::means_motion(ctx, true, ctx.input(|input| input.time));
+            stop_debounce::counts_as_stop(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }
         if !is_pressed || (in_use || !goes_down) && !moves {
             return;
         }
-        let means_motion = stop_debounce::means_motion(ctx, moves, ctx.input(|input| input.time));
+        let means_motion = stop_debounce::counts_as_stop(ctx, moves, ctx.input(|input| input.time));
         // A held key stops what has started since it was pressed, and nothing else. A further press within the half second
         // only applies to motion either: also to one requested in this frame that does not move yet.
         if !goes_down || means_motion && !moves {

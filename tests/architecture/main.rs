@@ -84,15 +84,15 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
 
 /// Returns whether a path is the list of devices at the virtual adapter, which opening an adapter requires. It is the
 /// only part of that list that a device, a bus's tests and Signals use.
-fn is_at_adapter(path: &[String]) -> bool {
-    path == ["kinds", "at_adapter"]
+fn is_attachable_kinds(path: &[String]) -> bool {
+    path == ["kinds", "attachable_kinds"]
 }
 
 #[test]
 fn layers_use_only_lower_layers() {
     for source in sources() {
         for (used, place) in source.uses(source.without_tests()) {
-            let up = place.floor() > source.place.floor() && !is_at_adapter(&used.path);
+            let up = place.floor() > source.place.floor() && !is_attachable_kinds(&used.path);
             assert!(!up, "{}:{} reaches up to {}", source.path, used.line, used.path.join("::"));
         }
     }

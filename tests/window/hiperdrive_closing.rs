@@ -65,7 +65,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
-    assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_under_way());
+    assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_motion_active());
     // No frame is drawn: the stop was requested before the question.
     let began = Instant::now();
     while !drive_state(&desk).1 {
@@ -128,7 +128,7 @@ fn closing_a_session_stops_its_motion() {
     let other = desk.studio.devices().iter().find(|own| own.id() != id).map(|own| own.id());
     if let Some(other) = other {
         desk.act(Action::CloseSession(other));
-        assert!(desk.studio.settings.tab == crate::tabs::HIPERDRIVE && unit(&desk).moves.is_under_way());
+        assert!(desk.studio.settings.tab == crate::tabs::HIPERDRIVE && unit(&desk).moves.is_motion_active());
     }
     desk.act(Action::CloseSession(id));
     desk.act(Action::Close);

@@ -60,8 +60,8 @@ fn motion(screen: &Screen) -> Motion {
     screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone()
 }
 
-fn is_under_way(studio: &Studio) -> bool {
-    studio.is_under_way()
+fn is_motion_active(studio: &Studio) -> bool {
+    studio.is_motion_active()
 }
 
 fn is_held(screen: &Screen) -> bool {
@@ -86,9 +86,9 @@ fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
         leave(&mut screen, Key::A);
         come_back(&mut screen);
         repeats(&mut screen, key);
-        assert!(!is_under_way(screen.studio()), "{key:?}");
+        assert!(!is_motion_active(screen.studio()), "{key:?}");
         up(&mut screen, key);
-        assert!(!is_under_way(screen.studio()), "{key:?}");
+        assert!(!is_motion_active(screen.studio()), "{key:?}");
         down(&mut screen, key);
         assert!(is_held(&screen), "{key:?}: a fresh act");
         up(&mut screen, key);
@@ -103,10 +103,10 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
     leave(&mut screen, Key::Space);
-    assert!(!is_held(&screen) && !is_under_way(screen.studio()));
+    assert!(!is_held(&screen) && !is_motion_active(screen.studio()));
     come_back(&mut screen);
     repeats(&mut screen, Key::Space);
-    assert!(!is_under_way(screen.studio()));
+    assert!(!is_motion_active(screen.studio()));
     until_stopped(&screen);
     // All of it between two frames.
     up(&mut screen, Key::Space);
@@ -116,7 +116,7 @@ fn a_jog_ended_by_a_window_change_does_not_restart() {
         [event(Key::Space, false), Event::WindowFocused(false), Event::WindowFocused(true), event(Key::Space, true)];
     picture(&mut screen, blink);
     repeats(&mut screen, Key::Space);
-    assert!(!is_under_way(screen.studio()));
+    assert!(!is_motion_active(screen.studio()));
 }
 
 /// Issue 21.2: buttons that begin a motion with a click are pressed once by a held key, and not by one that was held in
@@ -130,15 +130,15 @@ fn a_key_repeat_presses_no_button() {
     leave(&mut screen, Key::A);
     come_back(&mut screen);
     repeats(&mut screen, Key::Enter);
-    assert!(!is_under_way(screen.studio()));
+    assert!(!is_motion_active(screen.studio()));
     up(&mut screen, Key::Enter);
     down(&mut screen, Key::Enter);
-    assert!(is_under_way(screen.studio()), "a fresh act");
+    assert!(is_motion_active(screen.studio()), "a fresh act");
     let motion = motion(&screen);
     motion.stop();
-    screen.until("it has ended", |studio| !is_under_way(studio));
+    screen.until("it has ended", |studio| !is_motion_active(studio));
     repeats(&mut screen, Key::Enter);
-    assert!(!is_under_way(screen.studio()), "held since then");
+    assert!(!is_motion_active(screen.studio()), "held since then");
 }
 
 /// Issue 21.2: if a key repeats by an immediate release and press, the two may be in frames that are far apart.
@@ -148,7 +148,7 @@ fn a_key_repeat_split_over_two_frames_moves_nothing() {
         for _ in 0..8 {
             picture(screen, [event(key, false)]);
             picture(screen, [event(key, true)]);
-            assert!(!is_under_way(screen.studio()));
+            assert!(!is_motion_active(screen.studio()));
         }
     };
     let mut screen = on_pad();
@@ -160,13 +160,13 @@ fn a_key_repeat_split_over_two_frames_moves_nothing() {
     // A click begins this one.
     focus(&mut screen, "hd_run.forth");
     down(&mut screen, Key::Enter);
-    assert!(is_under_way(screen.studio()));
+    assert!(is_motion_active(screen.studio()));
     motion(&screen).stop();
-    screen.until("it has ended", |studio| !is_under_way(studio));
+    screen.until("it has ended", |studio| !is_motion_active(studio));
     split(&mut screen, Key::Enter);
     up(&mut screen, Key::Enter);
     down(&mut screen, Key::Enter);
-    assert!(is_under_way(screen.studio()), "a fresh act");
+    assert!(is_motion_active(screen.studio()), "a fresh act");
 }
 
 /// Issue 21.2: Space stops with any keyboard focus, and presses nothing else.
@@ -182,11 +182,11 @@ fn space_stops_motion_with_any_focus() {
         }
         let space = Event::Key { key: Key::Space, physical_key: None, pressed: true, repeat: false, modifiers };
         picture(&mut screen, [space]);
-        assert!(!is_under_way(screen.studio()), "{place:?}");
+        assert!(!is_motion_active(screen.studio()), "{place:?}");
         // It is released and pressed again in panic, and then held.
         picture(&mut screen, [event(Key::Space, false)]);
         repeats(&mut screen, Key::Space);
-        assert!(!is_under_way(screen.studio()), "{place:?}");
+        assert!(!is_motion_active(screen.studio()), "{place:?}");
         up(&mut screen, Key::Space);
         until_stopped(&screen);
         screen.steps();
@@ -207,9 +207,9 @@ fn space_in_a_text_entry_is_typed_and_stops_motion() {
         entry(&screen);
         screen.harness.step();
         picture(&mut screen, [event(Key::Num1, true), Event::Text("1".to_owned()), event(Key::Num1, false)]);
-        assert_eq!(screen.studio().is_under_way(), moves);
+        assert_eq!(screen.studio().is_motion_active(), moves);
         picture(&mut screen, [event(Key::Space, true), Event::Text(" ".to_owned()), event(Key::Space, false)]);
-        assert!(!is_under_way(screen.studio()));
+        assert!(!is_motion_active(screen.studio()));
         picture(&mut screen, []);
         assert_eq!(entry(&screen), "1 ", "{moves}");
     }
@@ -229,9 +229,9 @@ fn any_key_during_a_pointer_jog_stops() {
         assert!(is_held(&screen), "{key:?}");
         screen.harness.step();
         down(&mut screen, key);
-        assert!(!is_under_way(screen.studio()), "{key:?}");
+        assert!(!is_motion_active(screen.studio()), "{key:?}");
         repeats(&mut screen, key);
-        assert!(!is_under_way(screen.studio()), "{key:?}");
+        assert!(!is_motion_active(screen.studio()), "{key:?}");
         up(&mut screen, key);
         pointer(&mut screen, place, false);
         until_stopped(&screen);

@@ -318,7 +318,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         drive(&mut desk, Motor::JogRelease);
         desk.until("it stands", |studio| {
             let own = studio.hiperdrive().unwrap();
-            own.state(ONE) != Some(State::Moving) && !own.moves.is_under_way()
+            own.state(ONE) != Some(State::Moving) && !own.moves.is_motion_active()
         });
         assert!(unit(&desk).may_jog(ONE, up).is_err(), "freed for one press");
     }
@@ -360,7 +360,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
         drive(&mut desk, Motor::JogRelease);
         desk.until("it stands", |studio| {
             let own = studio.hiperdrive().unwrap();
-            own.state(ONE) != Some(State::Moving) && !own.moves.is_under_way()
+            own.state(ONE) != Some(State::Moving) && !own.moves.is_motion_active()
         });
     }
     desk.studio.poll();

@@ -278,7 +278,7 @@ fn stop_is_disabled_while_only_another_master_moves_a_drive() {
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling() && moves(&screen));
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Take));
-    screen.until("it is under control", Studio::is_in_control);
+    screen.until("it is under control", Studio::has_control);
     assert!(!is_disabled(&screen));
 }
 

@@ -264,10 +264,10 @@ pub trait MotionControl {
     fn is_turned_by_hand(&self) -> bool;
 
     /// Returns whether a motion requested in this window has not ended yet.
-    fn is_under_way(&self) -> bool;
+    fn is_motion_active(&self) -> bool;
 
     /// Returns whether this window has control of the drives. If it does, values arrive without being requested.
-    fn is_in_control(&self) -> bool;
+    fn has_control(&self) -> bool;
 }
 
 /// Device memory that is written after a review, and that is saved and restored as a profile.

@@ -100,7 +100,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn act(&mut self, action: Payload, context: &mut ActionContext<'_>) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn obey(&mut self, command: DeviceCommand, services: &mut Services);
+    fn apply_command(&mut self, command: DeviceCommand, services: &mut Services);
     #[doc(hidden)]
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
@@ -296,7 +296,7 @@ impl<M: DeviceModel> OpenDevice for M {
         Ok(())
     }
 
-    fn obey(&mut self, command: DeviceCommand, services: &mut Services) {
+    fn apply_command(&mut self, command: DeviceCommand, services: &mut Services) {
         DeviceModel::command(self, command, services);
     }
 

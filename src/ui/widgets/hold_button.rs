@@ -98,7 +98,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         enabled,
         window: ui.input(|input| input.focused),
         keyboard: response.has_focus(),
-        moving: around.moving && !state.is_held() || stop_debounce::has_just_stopped(ui.ctx(), now),
+        moving: around.moving && !state.is_held() || stop_debounce::has_recently_stopped(ui.ctx(), now),
     };
     state.begin(scene, last + 1 == pass);
     let place = response.interact_rect;
@@ -124,7 +124,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }
     if event == Some(HoldEvent::Stop) {
-        stop_debounce::means_motion(ui.ctx(), true, now);
+        stop_debounce::counts_as_stop(ui.ctx(), true, now);
     }
     ui.data_mut(|data| {
         data.insert_temp(response.id, HoldButtonState { state, pass, modifiers });

@@ -113,7 +113,7 @@ impl Hiperdrive {
         }
         let identity = identify(&mut self.master(context), progress)?;
         self.control.rules_refresh = RulesRefresh::default();
-        identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
+        identity.drives.iter().for_each(|drive| self.control.motion.invalidate_limits(drive.number));
         self.read_rules(context, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
         let opened = self.master(context).forward_open(identity.topology, packets.port())?;

@@ -159,7 +159,7 @@ impl Motion {
     }
 
     /// Requires the limits of a drive to be read before its next motion, because another master may have changed them.
-    pub fn doubt_limits(&self, drive: DriveNumber) {
+    pub fn invalidate_limits(&self, drive: DriveNumber) {
         let now = self.0.clock.now();
         self.with_limits(drive, |limits| limits.doubt(now));
     }
@@ -234,7 +234,7 @@ impl Motion {
     }
 
     /// Returns whether a drive is moving or changing to another state.
-    pub(super) fn is_under_way(&self) -> bool {
+    pub(super) fn is_motion_active(&self) -> bool {
         let cell = self.lock();
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
     }
@@ -297,7 +297,7 @@ impl Motion {
         self.lock().connected = connected;
     }
 
-    pub fn is_left_over(&self) -> bool {
+    pub fn is_orphaned(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }
 

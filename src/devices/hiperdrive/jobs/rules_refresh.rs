@@ -77,7 +77,7 @@ impl Hiperdrive {
             return Ok(());
         };
         let mut rules = known.rules();
-        let turn = if self.control.motion().is_under_way() { TURN_IN_MOTION } else { TURN };
+        let turn = if self.control.motion().is_motion_active() { TURN_IN_MOTION } else { TURN };
         for group in due(times, context.clock.now(), turn) {
             let now = context.clock.now();
             rules = read_rule(&mut self.master(context), drive, rules, group)?;
@@ -92,7 +92,7 @@ impl Hiperdrive {
     fn handle_refresh_failure(&mut self, context: &mut SessionContext, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
         // All limits are read before anything moves again.
-        self.control.motion().doubt_limits(drive);
+        self.control.motion().invalidate_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
             // Nothing can be queried any more: this is reported as a loss.
             return self.control.mark_session_lost();
@@ -105,7 +105,7 @@ impl Hiperdrive {
 
     /// Reads the limits of a newly selected drive before anything else.
     pub(super) fn restart_refresh(&mut self, context: &mut SessionContext, drive: DriveNumber) {
-        self.control.motion().doubt_limits(drive);
+        self.control.motion().invalidate_limits(drive);
         self.refresh_rules(context);
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use super::identify::{drive_status, identify, of, own};
-use super::limits::ends_by_itself;
+use super::limits::stops_on_timeout;
 use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
 use crate::analysis::check;
@@ -273,7 +273,7 @@ fn check_drive(
         other => (Verdict::Bad, CheckFinding::LineWord(other)),
     };
     let timeout = match master.read_number(of(TIMEOUT, number)?)? {
-        tenths if ends_by_itself(tenths) => (Verdict::Good, CheckFinding::Timeout(tenths)),
+        tenths if stops_on_timeout(tenths) => (Verdict::Good, CheckFinding::Timeout(tenths)),
         _ => (Verdict::Bad, CheckFinding::NoTimeout),
     };
     let temperature = in_range(status.temperature, &TEMPERATURES, CheckFinding::Temperature);

@@ -126,7 +126,7 @@ impl DeadMan {
         }
         self.sent = match self.received {
             Some((_, actual)) => {
-                self.check_for_end(now, actual, intent, permit);
+                self.check_end_conditions(now, actual, intent, permit);
                 self.advance(now, actual);
                 self.take(now, actual, intent, permit);
                 self.run_guarded(self.setpoint(actual), actual)
@@ -285,7 +285,7 @@ impl DeadMan {
         if permit.doubted {
             return Err(Refusal::Locked(Lock::Outdated));
         }
-        permit.check_place(request, actual)?;
+        permit.check_position_limits(request, actual)?;
         if status.has(StatusBit::Fault) {
             return Err(Refusal::Fault);
         }

@@ -40,7 +40,7 @@ const VALID: Duration = Duration::from_secs(4);
 
 /// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual
 /// does not define do not qualify.
-pub(super) fn ends_by_itself(timeout: i64) -> bool {
+pub(super) fn stops_on_timeout(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
     timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
 }
@@ -143,7 +143,7 @@ impl DriveLimits {
         [
             (Lock::Unread, unread),
             (Lock::NotRequested, requested.is_some_and(|value| value != 1)),
-            (Lock::NoTimeout, timeout.is_some_and(|value| !ends_by_itself(value))),
+            (Lock::NoTimeout, timeout.is_some_and(|value| !stops_on_timeout(value))),
             (Lock::LimitsUnconfirmed, self.unconfirmed),
         ]
         .into_iter()

@@ -48,7 +48,7 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
         };
         if touches(&PLACE) {
             base.extend(device.of(PLACE.iter().filter_map(|number| ParameterNumber::for_drive(*number, drive))));
-            let order = check_place(device, &after, drive, positions.get(&drive).copied())?;
+            let order = check_position_limits(device, &after, drive, positions.get(&drive).copied())?;
             upper_first.extend((order == Order::UpperFirst).then_some(drive));
         }
     }
@@ -162,7 +162,12 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
 
 /// Checks that the limits of a drive are in order and include its position after all writes. Returns the order in which
 /// they must be written.
-fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
+fn check_position_limits(
+    device: &Image,
+    after: &Image,
+    drive: DriveNumber,
+    position: Option<i32>,
+) -> Result<Order, PlanError> {
     let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::for_drive(number, drive));
     for number in missing {
         device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;

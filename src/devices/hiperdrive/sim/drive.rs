@@ -139,7 +139,7 @@ impl Drive {
         // A run and a jog step start on an edge; a job is a level, and starts with the next millisecond.
         let begins = control.motion_start(before, self.status()).filter(|begins| *begins != MotionStart::Job);
         self.enter(self.next(before));
-        self.obey();
+        self.apply_command();
         if let Some(begins) = begins {
             self.begin(begins);
         }
@@ -340,7 +340,7 @@ impl Drive {
     }
 
     /// Applies the control word to a running motion, without affecting a jog step.
-    fn obey(&mut self) {
+    fn apply_command(&mut self) {
         let has = |bit| self.control.has(bit);
         let speed_mode = has(ControlBit::SpeedMode);
         self.motion = match self.motion {

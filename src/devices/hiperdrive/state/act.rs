@@ -98,11 +98,11 @@ impl Unit {
             }
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
-                let outward = self.moves.is_freed(drive, direction);
+                let outward = self.moves.is_outward_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: self.moves.jog_effort(drive), outward }
             }
             Motor::SlowJogPress { direction, .. } => {
-                let outward = self.moves.is_freed(drive, direction);
+                let outward = self.moves.is_outward_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward }
             }
             Motor::Lead(goal) => MotionRequest::Lead(goal),
@@ -125,7 +125,7 @@ impl Unit {
         match request {
             MotionRequest::Jog { .. } => self.moves.press(drive, request),
             _ => {
-                self.moves.want(drive, request);
+                self.moves.request_motion(drive, request);
             }
         }
     }

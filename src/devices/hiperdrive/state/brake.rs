@@ -12,7 +12,7 @@ impl DriveStopHandle for Motion {
         Motion::is_connected(self)
     }
 
-    fn is_left_over(&self) -> bool {
-        Motion::is_left_over(self)
+    fn is_orphaned(&self) -> bool {
+        Motion::is_orphaned(self)
     }
 }

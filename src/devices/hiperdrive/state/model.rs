@@ -120,14 +120,14 @@ impl MotionControl for Unit {
     }
 
     fn is_turned_by_hand(&self) -> bool {
-        self.moves.is_moving() || self.moves.is_under_way()
+        self.moves.is_moving() || self.moves.is_motion_active()
     }
 
-    fn is_under_way(&self) -> bool {
-        self.moves.is_under_way()
+    fn is_motion_active(&self) -> bool {
+        self.moves.is_motion_active()
     }
 
-    fn is_in_control(&self) -> bool {
+    fn has_control(&self) -> bool {
         self.moves.is_open()
     }
 }

@@ -219,14 +219,14 @@ impl DriveMotion {
     }
 
     /// Returns whether the next or current jog in this direction may lead further outside the limits.
-    pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
+    pub fn is_outward_enabled(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
     }
 
     /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act, or `None` while
     /// the session is not open.
-    pub(super) fn want(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
+    pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         self.intend(drive, request, kind)
     }
@@ -334,10 +334,10 @@ impl DriveMotion {
     }
 
     /// Requires the limits of a drive to be read before it moves.
-    pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
+    pub(super) fn invalidate_limits(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().doubt(self.looked);
         if let Some(motion) = &self.motion {
-            motion.doubt_limits(drive);
+            motion.invalidate_limits(drive);
         }
     }
 
@@ -371,11 +371,11 @@ impl DriveMotion {
     }
 
     pub fn is_moving(&self) -> bool {
-        self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
+        self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_motion_active()
     }
 
     /// Returns whether an act that must be refreshed is running.
-    pub fn is_under_way(&self) -> bool {
+    pub fn is_motion_active(&self) -> bool {
         let own = |act: &Act| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
             self.view.open && is_latest && !self.has_ended(act.number, act.drive)
@@ -390,7 +390,7 @@ impl DriveMotion {
 
     /// Returns the drive that this window is moving or whose job is paused. Any other request ends that motion.
     pub fn moving_drive(&self) -> Option<DriveNumber> {
-        let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
+        let asked = self.act.filter(|act| act.moves && self.is_motion_active()).map(|act| act.drive);
         let has_job =
             |own: &&DriveSnapshot| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
         let busy = self.view.drives.iter().find(has_job).filter(|_| self.view.open);

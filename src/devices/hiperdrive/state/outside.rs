@@ -49,14 +49,14 @@ impl Unit {
     /// # Errors
     /// Explains why the drive may not be jogged.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
-        let outward = self.moves.is_freed(drive, direction);
+        let outward = self.moves.is_outward_enabled(drive, direction);
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward })
     }
 
     /// Returns whether this direction may lead further outside the limits and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
-        is_outward && !self.moves.is_freed(drive, direction)
+        is_outward && !self.moves.is_outward_enabled(drive, direction)
     }
 
     /// Returns whether this direction is blocked but can be enabled for one press.

@@ -55,7 +55,7 @@ impl DriveMemory for Unit {
         (next != *kept).then_some(next)
     }
 
-    fn lock_by(&mut self, found: &RememberedDrives) {
+    fn lock_marked_drives(&mut self, found: &RememberedDrives) {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.newly_marked(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.require_confirmation(drive);

@@ -114,7 +114,7 @@ impl Unit {
         }
         let Some(permit) = self.moves.permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
-        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(request, actual));
+        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));
         permit.check(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 

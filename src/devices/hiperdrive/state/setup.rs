@@ -64,7 +64,7 @@ impl Unit {
             stale: self.is_stale,
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
-            moves: self.is_moving() || self.moves.is_under_way(),
+            moves: self.is_moving() || self.moves.is_motion_active(),
             held: self.moves.held_motion(drive),
             actual,
             actual_at: self.last_report_time(drive),
@@ -196,7 +196,7 @@ impl Unit {
                 if let Err(why) = self.check_motion_allowed(drive, MotionRequest::Acknowledge) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
-                self.moves.want(drive, MotionRequest::Acknowledge);
+                self.moves.request_motion(drive, MotionRequest::Acknowledge);
             }
             DriveRequest::ConfirmLimits => {
                 if !self.confirm_limits(drive, services) {
@@ -210,7 +210,7 @@ impl Unit {
                 if let Err(why) = self.check_motion_allowed(drive, request) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
-                let act = self.moves.want(drive, request);
+                let act = self.moves.request_motion(drive, request);
                 if let (Some(act), AxisButton::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
                     axis.note_test_move(place, *target, act);
                 }

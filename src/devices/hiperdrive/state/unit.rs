@@ -147,7 +147,7 @@ impl Unit {
         if self.drive != drive {
             self.moves.let_go();
             // Only the selected drive and the one moved last are read repeatedly.
-            self.moves.doubt_limits(drive);
+            self.moves.invalidate_limits(drive);
             let before = std::mem::replace(&mut self.drive, drive);
             let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
             self.records.insert(before, std::mem::replace(&mut self.record, next));

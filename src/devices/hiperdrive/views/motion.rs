@@ -13,7 +13,7 @@ use crate::ui::controls::{
     button_with_reason, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
     options, paragraph, row, show_error_below, text_entry, two_columns,
 };
-use crate::ui::stop_debounce::{goes_down, means_motion, press_time};
+use crate::ui::stop_debounce::{counts_as_stop, goes_down, press_time};
 
 use crate::ui::{Theme, icons};
 
@@ -217,14 +217,14 @@ fn to_position_ui(
                     button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // It replaces the pause button: a hasty second click was meant for that.
-                if response.clicked() && !means_motion(ui.ctx(), false, press_time(ui, pressed)) {
+                if response.clicked() && !counts_as_stop(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(MotionKind::Job { .. })));
                 if enabled_button(ui, on_its_way, icons::PAUSE, &say(theme, "hd_move.pause")).clicked() {
-                    means_motion(ui.ctx(), true, ui.input(|input| input.time));
+                    counts_as_stop(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);
                 }
             }

@@ -232,7 +232,7 @@ impl Encoder {
         }
         self.old = StaleWord { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
-            Ok(command) => self.obey(now, command, before),
+            Ok(command) => self.apply_command(now, command, before),
             Err(_) => self.note_unexpected_word(now, word),
         }
     }
@@ -248,7 +248,7 @@ impl Encoder {
         Some(word)
     }
 
-    fn obey(&mut self, now: Moment, command: Command, before: u32) {
+    fn apply_command(&mut self, now: Moment, command: Command, before: u32) {
         match command {
             Command::Normal if self.activity == Activity::ReadingOut => self.end_read_out(),
             // Only an edge of bit 31 has an effect.

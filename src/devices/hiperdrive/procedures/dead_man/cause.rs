@@ -6,7 +6,13 @@ use crate::units::Moment;
 
 impl DeadMan {
     /// Ends the running motion if there is a reason to.
-    pub(super) fn check_for_end(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
+    pub(super) fn check_end_conditions(
+        &mut self,
+        now: Moment,
+        actual: ActualValues,
+        intent: &MotionIntent,
+        permit: &Permit,
+    ) {
         if self.act.is_none() {
             return;
         }
@@ -65,7 +71,7 @@ impl DeadMan {
         if is_out_of_contact {
             return Some(Ended::Deaf);
         }
-        if let Some(how) = self.is_overtaken(act.number, act.request, intent, permit) {
+        if let Some(how) = self.superseded_end(act.number, act.request, intent, permit) {
             return Some(how);
         }
         if intent.is_stale(now) && !down {
@@ -89,7 +95,7 @@ impl DeadMan {
     }
 
     /// Returns how the motion ends if the intent no longer requests it, or `None` if it still does.
-    fn is_overtaken(
+    fn superseded_end(
         &self,
         number: u64,
         request: MotionRequest,

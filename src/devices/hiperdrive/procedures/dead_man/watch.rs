@@ -188,7 +188,7 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].
-    pub fn check_place(&self, request: MotionRequest, actual: ActualValues) -> Result<(), Refusal> {
+    pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), Refusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
             MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
@@ -220,7 +220,7 @@ impl DeadMan {
             // Before the start, including the first report after leading up: the conditions for a start apply there as
             // well.
             let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
-            let refusal = doubted.or_else(|| permit.check_place(motion.request, actual).err());
+            let refusal = doubted.or_else(|| permit.check_position_limits(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {
                 act.watch = Some(Watch::begin(motion, actual, permit));
             }

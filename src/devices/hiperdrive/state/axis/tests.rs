@@ -42,7 +42,7 @@ fn at(seen: &mut DriveFacts, position: i32) {
 
 /// Makes the drive do what is requested.
 #[track_caller]
-fn obey(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
+fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
     axis.begin(ask.clone(), seen);
     match ask {
         DriveRequest::Try(values) | DriveRequest::Restore(values) => {
@@ -80,7 +80,7 @@ fn obey(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
 #[track_caller]
 fn press(axis: &mut Axis, seen: &mut DriveFacts, button: AxisButton) -> DriveRequest {
     let ask = axis.ask(button, seen).unwrap();
-    obey(axis, seen, ask.clone());
+    apply_command(axis, seen, ask.clone());
     ask
 }
 
