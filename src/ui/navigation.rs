@@ -67,11 +67,19 @@ fn pages_ui(
     let mut pressed = None;
     for (at, page) in pages.iter().enumerate() {
         let word = theme.say(page.word);
-        let mut text = egui::RichText::new(format!("{}  {word}", page.icon));
+        let text = egui::RichText::new(format!("{}  {word}", page.icon));
+        let response = entry_ui(ui, shown == at, text, &word);
         if edited(at) {
-            text = text.color(theme.palette.staged);
+            let place = response.rect.right_center() - egui::vec2(theme.space.groups, 0.0);
+            let font = egui::FontId::proportional(theme.sizes.body);
+            let ink = theme.palette.staged.into();
+            ui.painter().text(place, egui::Align2::CENTER_CENTER, icons::PENCIL_SIMPLE, font, ink);
         }
-        if entry_ui(ui, shown == at, text, &word).clicked() {
+        if shown == at {
+            let bar = response.rect.with_max_x(response.rect.left() + 3.0);
+            ui.painter().rect_filled(bar, 1.0, theme.palette.accent);
+        }
+        if response.clicked() {
             pressed = Some(at);
         }
     }

@@ -30,8 +30,9 @@ pub(super) fn paint(
     time_axis(painter, context, layout, &font);
     for lane in &layout.lanes {
         value_axis(painter, theme, lane, &font);
-        paint_lines(painter, context, layout, lane, reduced);
+        // The names hide the grid, and never a line.
         paint_names(painter, context, lane);
+        paint_lines(painter, context, layout, lane, reduced);
     }
     paint_trigger(painter, context, layout, &font);
     paint_cursors(painter, context, layout, &font);

@@ -50,6 +50,9 @@ impl Reviewable for Biss {
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(TEXTS.text("biss_review.table"));
         }
+        if prepared.plan.ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
+            warnings.push(Text::new("review.commutation"));
+        }
         warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
         warnings.extend(review::skipped_texts(

@@ -218,12 +218,14 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         paragraph(ui, theme.label(say(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
-        // Validation errors of a field are drawn below it.
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
-        show_error_below(ui, theme, form.singleturn(layout).err().as_ref());
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        show_error_below(ui, theme, form.multiturn(layout).err().as_ref());
+        // The first error of both; it names its field.
+        show_error_below(ui, theme, form.singleturn(layout).err().or(form.multiturn(layout).err()).as_ref());
         let value = form.value(layout);
+        // The encoder uses the saved value, whatever is in the fields.
+        let saved = encoder.survey.as_ref().and_then(|survey| survey.preset);
+        let is_saved = saved.is_none() || value.as_ref().ok().copied() == saved;
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
         ui.horizontal_wrapped(|ui| {
@@ -237,14 +239,15 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
             let words = theme.words(&explained::preset(stored, layout.singleturn_bits()));
             row(ui, theme, &say(theme, "preset_card.stored"), theme.monospace(words));
         }
-        paragraph(ui, theme.label(say(theme, "preset_card.fire_words")));
+        let fire_words = if is_saved { "preset_card.fire_words" } else { "preset_card.save_first" };
+        paragraph(ui, theme.label(say(theme, fire_words)));
         ui.horizontal_wrapped(|ui| {
             for (parts, id) in [
                 (PresetParts::Both, "preset_card.both"),
                 (PresetParts::Singleturn, "preset_card.singleturn"),
                 (PresetParts::Multiturn, "preset_card.multiturn"),
             ] {
-                if enabled_button(ui, ready, icons::TARGET, &say(theme, id)).clicked() {
+                if enabled_button(ui, ready && is_saved, icons::TARGET, &say(theme, id)).clicked() {
                     actions.push(Action::device(encoder.session.id, plan(None, Some(parts))));
                 }
             }

@@ -39,6 +39,7 @@ impl Unit {
             None if self.survey.is_none() || self.number(self.drive(), NUMERATOR).is_none() => {
                 Err(TEXTS.text("hd_axis.unread"))
             }
+            None if self.is_moving() => Err(TEXTS.text("hd_axis.moving")),
             None => Ok(()),
         }
     }

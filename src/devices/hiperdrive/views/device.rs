@@ -133,16 +133,33 @@ const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drive
 fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, theme.label(say(theme, note)));
+            paragraph(ui, theme.label(keep_pins_together(&say(theme, note))));
         }
     });
 }
 
+/// Returns the text with each pin and its signal, such as `2 RS-485 − green`, kept on one line.
+fn keep_pins_together(text: &str) -> String {
+    let is_pin = |part: &str| part.starts_with(|first: char| first.is_ascii_digit()) && !part.contains(". ");
+    let parts = text.split_inclusive(": ").flat_map(|part| part.split_inclusive(", "));
+    let join = |part: &str| {
+        let (pin, end) = part.strip_suffix(' ').map_or((part, ""), |pin| (pin, " "));
+        if is_pin(pin) { pin.replace(' ', "\u{a0}") + end } else { part.to_owned() }
+    };
+    parts.map(join).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::WIRING;
+    use super::{WIRING, keep_pins_together};
     use crate::devices::hiperdrive::state::TEXTS;
     use crate::ui::wiring::check_notes;
+
+    #[test]
+    fn a_pin_stays_on_the_line_of_its_signal() {
+        let kept = keep_pins_together("Each drive: 1 RS-485 + white, 2 RS-485 − green, 6 GND blue.");
+        assert_eq!(kept.replace('\u{a0}', "_"), "Each drive: 1_RS-485_+_white, 2_RS-485_−_green, 6_GND_blue.");
+    }
 
     /// Issue 22.23: the wiring card follows the HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and
     /// 4.2 (bus adapter).

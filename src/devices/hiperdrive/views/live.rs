@@ -60,15 +60,11 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     }
     row(ui, theme, &say(theme, "hd_live.state"), RichText::new(word).color(colour));
     row(ui, theme, &say(theme, "hd_effort.speed"), theme.monospace(speed));
+    // Also without one: the buttons below stay in place when control is taken.
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
-    if let Some(target) = target {
-        row(
-            ui,
-            theme,
-            &say(theme, "hd_live.target"),
-            theme.monospace(format!("{target} {}", say(theme, unit.measure.unit()))),
-        );
-    }
+    let target = target.map(|target| format!("{target} {}", say(theme, unit.measure.unit())));
+    let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));
+    row(ui, theme, &say(theme, "hd_live.target"), target);
     if ruler.scale == PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);
         row(ui, theme, &theme.say("live.turns"), theme.monospace(turn.to_string()));

@@ -204,7 +204,7 @@ fn to_position_ui(
     );
     let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
-    let can_go = allowed.clone().and_then(|()| forms::ensure_entered(&view.target));
+    let can_go = allowed.clone().and_then(|()| forms::target(unit, &view.target, unit.measure).map(drop));
     ui.horizontal_wrapped(|ui| {
         if button_with_reason(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
             view.target_problem = forms::target(unit, &view.target, unit.measure)

@@ -68,6 +68,9 @@ impl Reviewable for Hiperface {
         let mut warnings = Vec::new();
         warnings.extend(prepared.other_type.map(words::other_type));
         warnings.extend(words::created_left(&prepared.created_left));
+        if prepared.plan.ops.iter().any(|op| matches!(op, Op::SetPosition { .. })) {
+            warnings.push(Text::new("review.commutation"));
+        }
         if let Some(wanted) = prepared.wanted_position {
             let set = prepared.plan.ops.iter().find_map(|op| match op {
                 Op::SetPosition { to, .. } => Some(*to),

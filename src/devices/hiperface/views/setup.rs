@@ -32,6 +32,8 @@ pub(super) struct SetupUiState {
     new_code: String,
     new_again: String,
     code_problem: Option<Text>,
+    /// Whether the user has confirmed that no motor depends on the encoder at present.
+    is_motor_disabled: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -62,7 +64,7 @@ pub(super) fn page_ui(
             theme.gap(ui);
             settings_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            restart_ui(ui, theme, encoder, actions);
+            restart_ui(ui, theme, encoder, view, actions);
         },
     );
 }
@@ -232,10 +234,13 @@ fn chosen_settings(stored: LineSettings) -> Chosen {
     }
 }
 
-fn restart_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn restart_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "restart_card.words")));
-        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(theme, "restart_card.run")).clicked() {
+        ui.checkbox(&mut view.is_motor_disabled, say(theme, "restart_card.disabled"));
+        let allowed = encoder.session.is_ready() && view.is_motor_disabled;
+        if enabled_button(ui, allowed, icons::POWER, &say(theme, "restart_card.run")).clicked() {
+            view.is_motor_disabled = false;
             actions.push(Action::device(encoder.session.id, Hiperface::Reset));
         }
     });

@@ -57,7 +57,8 @@ impl DeviceModel for Encoder {
 
     fn read_device(&mut self, services: &mut Services) {
         if self.try_submit(InterbusJob::Survey, services) {
-            self.read_after = self.known_programs();
+            // In a real encoder each of them may cost a write cycle; the page of the cams reads one on request.
+            self.read_after = if self.session.is_virtual() { self.known_programs() } else { Vec::new() };
         }
     }
 

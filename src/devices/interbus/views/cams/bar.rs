@@ -4,10 +4,10 @@ use egui::{RichText, Ui};
 
 use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
-use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, entry, icon_menu, name, paragraph, show_error_below, text_entry};
+use crate::ui::controls::{button, entry, icon_button, icon_menu, name, paragraph, show_error_below, text_entry};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -43,10 +43,21 @@ pub(super) fn bar_ui(
             }
         }
         if encoder.staged.program(program).is_some() {
+            read_again_ui(ui, theme, encoder, program, actions);
             whole_ui(ui, theme, encoder, program, &mut view.bar, actions);
         }
         tables_ui(ui, theme, encoder, program, actions);
     });
+}
+
+/// Draws the button that reads a known program again, with its cost.
+fn read_again_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+    let ready = encoder.session.is_ready() && encoder.is_stopped();
+    let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
+    let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_again"));
+    if button.on_hover_text(theme.words(&cost)).clicked() {
+        actions.push(Action::device(encoder.session.id, Interbus::ReadPrograms(vec![program])));
+    }
 }
 
 fn whole_ui(
