@@ -219,4 +219,6 @@ impl HoldState {
 }
 
 #[cfg(test)]
+mod sessions;
+#[cfg(test)]
 mod tests;

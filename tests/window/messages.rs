@@ -48,9 +48,12 @@ fn a_refused_target_moves_nothing() {
         screen.harness.get_by_role_and_label(Role::TextInput, &label).type_text("far away");
         screen.steps();
         let before = places(&screen);
-        assert!(screen.is_enabled("hd_move.go"));
-        screen.click("hd_move.go");
+        assert!(!screen.is_enabled("hd_move.go"));
         assert!(screen.shows("far away"), "the reason is shown");
+        screen.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        screen.harness.get_by_role_and_label(Role::TextInput, &label).type_text("100");
+        screen.steps();
+        assert!(screen.is_enabled("hd_move.go") && !screen.shows("far away"));
         assert_nothing_moved(&before, &places(&screen));
     }
 }

@@ -38,19 +38,14 @@ pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Tex
     }
 }
 
-/// Checks that a distance or a position was entered at all.
-///
-/// # Errors
-/// Says that it must be entered.
-pub fn ensure_entered(text: &str) -> Result<(), Text> {
-    if text.trim().is_empty() { Err(TEXTS.text("hd_entry.empty")) } else { Ok(()) }
-}
-
 /// Parses a position without checking the limits, as needed for entering limits and for setting the position.
 ///
 /// # Errors
 /// Explains why the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
+    if text.trim().is_empty() {
+        return Err(TEXTS.text("hd_entry.empty"));
+    }
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == PositionUnit::Steps && value.fract() != 0.0 {
         return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));

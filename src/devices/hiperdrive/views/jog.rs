@@ -43,23 +43,20 @@ pub(super) fn step_card_ui(
     actions: &mut Vec<Action>,
 ) {
     folding_card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
-        length_ui(ui, theme, unit, "hd_step.by", &mut view.step, actions);
-        let allowed = &allowed.clone().and_then(|()| forms::ensure_entered(&view.step));
+        let parse = |text: &str, sign| forms::step(unit, text, unit.measure, sign);
+        length_ui(ui, theme, unit, ("hd_step.by", &mut view.step), |text| parse(text, 1).err(), actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if button_with_reason(ui, theme, allowed, "", &say(theme, id)).clicked() {
-                    match forms::step(unit, &view.step, unit.measure, sign) {
-                        Ok(by) => {
-                            view.step_problem = None;
-                            let step = Hiperdrive::Drive(Motor::Step { by });
-                            actions.push(Action::device(unit.session.id, step));
-                        }
-                        Err(why) => view.step_problem = Some(why),
-                    }
+                let step = parse(&view.step, sign);
+                let can_go = allowed.clone().and(step.clone().map(drop));
+                if button_with_reason(ui, theme, &can_go, "", &say(theme, id)).clicked() {
+                    let act = |by| Action::device(unit.session.id, Hiperdrive::Drive(Motor::Step { by }));
+                    actions.extend(step.ok().map(act));
                 }
             }
         });
-        show_error_below(ui, theme, view.step_problem.as_ref());
+        let problem = parse(&view.step, 1).err().filter(|_| !view.step.trim().is_empty());
+        show_error_below(ui, theme, problem.as_ref());
         paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_step.words")));
     });
 }

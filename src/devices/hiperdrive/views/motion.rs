@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, T
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     button_with_reason, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
-    options, paragraph, row, show_error_below, text_entry, two_columns,
+    options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
 };
 use crate::ui::stop_debounce::{counts_as_stop, goes_down, press_time};
 
@@ -24,11 +24,9 @@ pub(super) type Draft = Option<(String, Percent)>;
 pub(super) struct MotionUiState {
     pub(super) jog_effort: [Draft; 2],
     pub(super) step: String,
-    pub(super) step_problem: Option<Text>,
     pub(super) outside: outside::Draft,
     move_effort: [Draft; 2],
     pub(super) target: String,
-    target_problem: Option<Text>,
 }
 
 const NUMBER: f32 = 88.0;
@@ -191,7 +189,9 @@ fn to_position_ui(
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
-    length_ui(ui, theme, unit, "hd_move.target", &mut view.target, actions);
+    let parse = |text: &str| forms::target(unit, text, unit.measure);
+    length_ui(ui, theme, unit, ("hd_move.target", &mut view.target), |text| parse(text).err(), actions);
+    let target = parse(&view.target);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(
         ui,
@@ -204,12 +204,10 @@ fn to_position_ui(
     );
     let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
-    let can_go = allowed.clone().and_then(|()| forms::target(unit, &view.target, unit.measure).map(drop));
+    let can_go = allowed.clone().and(target.clone().map(drop));
     ui.horizontal_wrapped(|ui| {
         if button_with_reason(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
-            view.target_problem = forms::target(unit, &view.target, unit.measure)
-                .map(|target| motor(actions, id, Motor::Move { target }))
-                .err();
+            target.iter().for_each(|target| motor(actions, id, Motor::Move { target: *target }));
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
@@ -231,7 +229,8 @@ fn to_position_ui(
         }
     });
     // What keeps the drive from moving at all stands once, below the pads.
-    show_error_below(ui, theme, view.target_problem.as_ref().or(entered.as_ref().err()));
+    let target = target.err().filter(|_| !view.target.trim().is_empty());
+    show_error_below(ui, theme, target.as_ref().or(entered.as_ref().err()));
     allowed
 }
 
@@ -390,12 +389,13 @@ pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> 
     theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
+/// Draws the entry of a position or distance and its unit, and marks it if `problem` finds something in it.
 pub(super) fn length_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,
-    id: &'static str,
-    text: &mut String,
+    (id, text): (&'static str, &mut String),
+    problem: impl Fn(&str) -> Option<Text>,
     actions: &mut Vec<Action>,
 ) {
     let word = say(theme, id);
@@ -410,5 +410,8 @@ pub(super) fn length_ui(
                 actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });
+        if !text.trim().is_empty() {
+            show_error_beside(ui, theme, problem(text).as_ref());
+        }
     });
 }

@@ -66,7 +66,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
                 }
             }
         });
-        length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
+        length_ui(ui, theme, unit, ("hd_outside.place", &mut draft.place), |_| None, actions);
         if button_with_reason(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
             let change = forms::steps(unit, &draft.place, unit.measure)
                 .and_then(|position| unit.reference_change(drive, position));
