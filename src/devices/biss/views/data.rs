@@ -44,8 +44,10 @@ pub(super) fn page_ui(
                 *view = DataUiState { area: at, ..DataUiState::default() };
             }
         }
-        let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "data.read")).clicked() {
+        // An area that has not been read has this button in the middle.
+        let (ready, is_read) =
+            (encoder.session.is_ready(), shown.as_ref().is_some_and(|own| encoder.memory.area(own).is_some()));
+        if is_read && enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "data.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let shown = shown.as_ref().unwrap_or(area);
