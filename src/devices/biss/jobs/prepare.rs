@@ -100,7 +100,7 @@ fn plan_register_edits(
             }
         }
     }
-    write::ensure_operation(master, description)?;
+    write::ensure_operation_mode(master, description)?;
     if !banks.is_empty() {
         ensure_standstill(master)?;
     }

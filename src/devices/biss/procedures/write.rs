@@ -97,7 +97,7 @@ impl Write for EncoderWrite<'_, '_> {
             return changed("the encoder itself");
         }
         let description = master.description()?;
-        ensure_operation(master, &description)?;
+        ensure_operation_mode(master, &description)?;
         let password = match description.lock() {
             Some(lock) => master.read(lock.password_at)? != 0,
             None => false,
@@ -201,7 +201,7 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
 ///
 /// # Errors
 /// [`Error::NotInOperation`]; otherwise if the exchange fails.
-pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
+pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
     match unsaved_mode(master, description)? {
         None => Ok(()),
         Some(mode) => Err(Error::NotInOperation { mode }),
@@ -231,7 +231,7 @@ pub fn read_state(
     progress: &mut dyn FnMut(u64, u8),
 ) -> Result<DeviceState, Error> {
     let description = &identity.description;
-    ensure_operation(master, description)?;
+    ensure_operation_mode(master, description)?;
     let filter = read_filter(master, description)?;
     let preset = read_preset(master, description)?;
     if !banks.is_empty() {

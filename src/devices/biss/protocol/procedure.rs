@@ -15,7 +15,7 @@ pub enum ProcedureKind {
     DataWrite,
     /// Selection of the position filter (manual 6.6).
     FilterSelection,
-    /// Setting of the preset value and position (manual 6.7).
+    /// Saves the preset value and sets the position to it (manual 6.7).
     Preset,
 }
 

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Va
 /// 120), which determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
-    /// The profile is for another type of device: adapters, hubs with four ports and hubs with eight ports are three
+    /// The profile is for another type of device. Adapters, hubs with four ports and hubs with eight ports are different
     /// types.
     #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
     Device {

@@ -75,7 +75,7 @@ impl Config {
     }
 
     /// Returns the control supply voltage, in tenths of a volt.
-    pub(super) fn supply_tenths(&self) -> u16 {
+    pub(super) fn supply_in_tenths_of_volt(&self) -> u16 {
         // At most 1000.
         (self.volts * 10.0).round() as u16
     }

@@ -117,8 +117,11 @@ impl Station {
         let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
         let setup = StationConfig { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
-        station.plate =
-            NamePlate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths() };
+        station.plate = NamePlate {
+            name: config.name.clone(),
+            switch: config.switch,
+            supply_tenths: config.supply_in_tenths_of_volt(),
+        };
         station.store.dies_in = config.faults.die_in_store();
         station.resets = config.resets;
         for drive in station.present() {

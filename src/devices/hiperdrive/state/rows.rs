@@ -40,7 +40,7 @@ pub struct Row {
     /// Edited value, or `None` if the parameter has not been or cannot be edited.
     pub staged: Option<i64>,
     pub is_edited: bool,
-    /// Value in the previous reading, if it was different.
+    /// Value from the previous reading, or `None` if it has not changed since.
     pub changed_from: Option<i64>,
     /// Whether the parameter can be edited as a value.
     pub is_editable: bool,

@@ -129,13 +129,13 @@ impl Bit {
         Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
     }
 
-    /// Returns the information in bits needed to describe a bit that is not explained by anything else.
+    /// Returns the description length, in bits, of a bit that nothing else explains.
     pub(super) fn cost(&self, frames: usize) -> f64 {
         binary_entropy(self.changes, frames)
     }
 }
 
-/// Returns the information in bits needed to select `some` items out of `all`.
+/// Returns the description length, in bits, of a selection of `some` items out of `all`.
 pub(super) fn binary_entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;
