@@ -1,6 +1,6 @@
 //! Random sessions at a keyboard and a mouse, with what the system reports of them: keys that repeat themselves, also as
-//! releases followed by presses, and across a change of focus; releases that nobody reports while another window has
-//! the keyboard, and invented ones when it loses it.
+//! releases followed by presses, and across a change of focus; releases that are not reported while another window has
+//! the keyboard, and artificial ones when the window loses it.
 
 use super::*;
 
@@ -105,7 +105,7 @@ fn any_session_holds_only_what_a_person_has_pressed_since_the_last_change() {
             let event = state.end(now, hands.down[POINTER].is_some(), hands.is_on_button);
             let context = format!("seed {seed}, frame {frame}: {inputs:?}, {scene:?}");
             assert!(!state.is_held() || scene.enabled && scene.window, "{context}");
-            assert!(event != Some(HoldEvent::Press) || acted, "{context}: nobody has pressed anything");
+            assert!(event != Some(HoldEvent::Press) || acted, "{context}: nothing was pressed");
             if state.is_held_by_pointer() {
                 by_pointer += 1;
                 assert!(hands.down[POINTER].is_some_and(|since| since >= changed), "{context}");
