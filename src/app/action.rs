@@ -15,7 +15,7 @@ use super::settings_store::{LoadedSettings, SavedSettings};
 use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::tab::Tab;
-use super::{ColorScheme, Language, Picture, Settings, connect};
+use super::{ColorScheme, Language, Picture, Settings, Text, connect};
 use crate::link::LinkError;
 use crate::profile::{PlanId, ProfileDocument, ProfileError};
 use crate::store::{DeviceKey, FileError};
@@ -75,6 +75,8 @@ pub enum Action {
         visible: bool,
     },
     AskPicture(Picture),
+    /// Ask for the file name of the trace of a session.
+    AskTrace(SessionId),
     /// Report that a picture was requested of a plot that is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
@@ -140,8 +142,12 @@ pub enum Done {
     /// A profile was not saved, because these comments of the user would be lost.
     WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
-    PictureSaved(PathBuf, Result<(), FileError>),
-    ReportSaved(PathBuf, Result<(), FileError>),
+    /// A picture, a report or a trace has been saved, or could not be saved. `message` names what was saved.
+    FileSaved {
+        message: Text,
+        path: PathBuf,
+        result: Result<(), FileError>,
+    },
     /// The time limit for a wait before closing has expired.
     Waited(ShutdownWait),
     Left,

@@ -21,6 +21,7 @@ pub enum FileQuestion {
     OfDevice(DeviceFile),
     Table { owner: RecorderOwner, visible: bool, suggested: PathBuf },
     Picture { picture: Picture, suggested: PathBuf },
+    Trace { session: SessionId, suggested: PathBuf },
 }
 
 /// A file that one kind of device reads or writes, and the action to take once it has been chosen.
@@ -99,7 +100,7 @@ impl FileQuestion {
                 &["ron"]
             }
             FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
-            FileQuestion::Recording => &["trace", "txt"],
+            FileQuestion::Recording | FileQuestion::Trace { .. } => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
             FileQuestion::Picture { .. } => &["png"],
             FileQuestion::OfDevice(file) => file.endings,
@@ -115,7 +116,8 @@ impl FileQuestion {
             | FileQuestion::Recording => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }
-            | FileQuestion::Picture { suggested, .. } => Some(suggested),
+            | FileQuestion::Picture { suggested, .. }
+            | FileQuestion::Trace { suggested, .. } => Some(suggested),
             FileQuestion::OfDevice(file) => file.suggested.as_deref(),
         }
     }

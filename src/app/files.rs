@@ -10,7 +10,7 @@ use super::recorder::{self, ExportResult, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
 use crate::link::{LinkScheme, LinkUrl};
-use crate::store::{BaseFolders, FileError};
+use crate::store::{BaseFolders, FileError, write_atomically};
 
 impl Studio {
     /// Returns the action with all paths made absolute. This is the only point at which paths given by the user enter
@@ -63,8 +63,9 @@ impl Studio {
             FileQuestion::Table { owner, visible, .. } => self.write_table(owner, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
                 let result = picture.save(&path);
-                Action::Done(Done::PictureSaved(path, result))
+                Action::Done(Done::FileSaved { message: Text::new("picture.saved"), path, result })
             }),
+            FileQuestion::Trace { session, .. } => self.save_trace(session, path),
         }
     }
 
@@ -116,6 +117,20 @@ impl Studio {
     pub(super) fn ask_picture_path(&mut self, picture: Picture) {
         let suggested = self.suggested_path(None, "png");
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
+    }
+
+    pub(super) fn ask_trace_path(&mut self, session: SessionId) {
+        let suggested = self.suggested_path(Some(RecorderOwner::Device(session)), "trace");
+        self.services.file_question = Some(FileQuestion::Trace { session, suggested });
+    }
+
+    /// Saves all frames of the session's log, in the format of the command line.
+    fn save_trace(&mut self, session: SessionId, path: PathBuf) {
+        let Some(content) = self.device(session).map(|device| device.trace().file_content()) else { return };
+        self.services.tasks.run("trace", move || {
+            let result = write_atomically(&path, content.as_bytes());
+            Action::Done(Done::FileSaved { message: Text::new("trace.saved"), path, result })
+        });
     }
 
     /// Suggests a file name with the encoder and the time of day, so that recordings get different names.
@@ -173,26 +188,16 @@ impl Studio {
         self.services.notify(severity, texts, None);
     }
 
-    pub(super) fn report_saved(&mut self, path: &Path, result: Result<(), FileError>) {
+    /// Reports that a file was saved, with `message`, or why it could not be saved.
+    pub(super) fn finish_file_save(&mut self, message: Text, path: &Path, result: Result<(), FileError>) {
         let (severity, text) = match result {
             Ok(()) => {
                 self.services.log.remove_file_notices(path);
-                (Severity::Good, Text::new("report.saved").with("path", path.display()))
+                (Severity::Good, message.with("path", path.display()))
             }
             Err(error) => (Severity::Error, explain::file(&error)),
         };
         self.services.notify(severity, vec![text], None);
-    }
-
-    pub(super) fn finish_picture_save(&mut self, path: &Path, result: Result<(), FileError>) {
-        match result {
-            Ok(()) => {
-                self.services.log.remove_file_notices(path);
-                let text = Text::new("picture.saved").with("path", path.display());
-                self.services.notify(Severity::Good, vec![text], None);
-            }
-            Err(error) => self.services.notify(Severity::Error, vec![explain::file(&error)], None),
-        }
     }
 
     /// Passes new samples to the tables that are being written.

@@ -87,4 +87,4 @@ pub use tab::Tab;
 pub use tasks::{Mailbox, TaskRunner, Wake};
 pub use texts::{COMMON, Catalogue, Language, Text, decimal};
 pub use theme_data::{Palette, Rgb, Spaces, TextSizes, ThemeData};
-pub use trace::{Explained, TraceFault, TraceLine, TraceLog};
+pub use trace::{Explained, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};

@@ -134,6 +134,7 @@ impl Studio {
             Action::AskForget(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
             Action::AskPicture(picture) => self.ask_picture_path(picture),
+            Action::AskTrace(session) => self.ask_trace_path(session),
             Action::PictureCut => self.notify_picture_truncated(),
             Action::Review(id, action) => {
                 self.with_device(id, |device, services| device.apply_review_action(action, services))
@@ -329,8 +330,7 @@ impl Studio {
             }
             Done::Looked { question, path, exists: false } => self.chosen(question, path),
             Done::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
-            Done::PictureSaved(path, result) => self.finish_picture_save(&path, result),
-            Done::ReportSaved(path, result) => self.report_saved(&path, result),
+            Done::FileSaved { message, path, result } => self.finish_file_save(message, &path, result),
             // It has been handled by polling.
             Done::Left => {}
             Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use jiff::Zoned;
 
 use super::{Language, Text};
-use crate::link::{Direction, TraceEntry};
+use crate::link::{Direction, TRACE_HEADER as HEADER, TraceEntry, entry_line};
 use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,6 +57,72 @@ impl TraceLine {
     }
 }
 
+/// Selection of the frames to show.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TraceFilter {
+    /// Text contained in the bytes or in the meaning of a frame; upper and lower case are equal.
+    pub search: String,
+    /// Only frames that are broken or report an error or a warning.
+    pub faults_only: bool,
+}
+
+impl TraceFilter {
+    /// Returns whether the filter shows all frames.
+    pub fn is_empty(&self) -> bool {
+        self.search.trim().is_empty() && !self.faults_only
+    }
+
+    fn matches(&self, line: &TraceLine, language: Language) -> bool {
+        let search = self.search.trim().to_lowercase();
+        (!self.faults_only || line.fault.is_some())
+            && (search.is_empty()
+                || line.bytes.to_lowercase().contains(&search)
+                || line.words(language).to_lowercase().contains(&search))
+    }
+}
+
+/// The frames of a log that match a filter. Each frame is compared once, not whenever it is drawn.
+#[derive(Debug, Default)]
+pub struct TraceMatches {
+    filter: TraceFilter,
+    language: Option<Language>,
+    /// Numbers of the matching frames, in ascending order.
+    numbers: VecDeque<u64>,
+    /// Number of matching frames that the log has removed since the filter was set.
+    removed: u64,
+    /// Number of the first frame that was not compared yet.
+    next: u64,
+}
+
+impl TraceMatches {
+    /// Updates the matches for the frames numbered below `end`. A new filter or language starts again.
+    pub fn update(&mut self, log: &TraceLog, filter: &TraceFilter, language: Language, end: u64) {
+        if self.filter != *filter || self.language != Some(language) || self.next > end {
+            *self = TraceMatches { filter: filter.clone(), language: Some(language), ..TraceMatches::default() };
+        }
+        while self.numbers.front().is_some_and(|number| *number < log.gone()) {
+            self.numbers.pop_front();
+            self.removed += 1;
+        }
+        for number in self.next.max(log.gone())..end {
+            if log.line(number).is_some_and(|line| self.filter.matches(line, language)) {
+                self.numbers.push_back(number);
+            }
+        }
+        self.next = end;
+    }
+
+    /// Returns the numbers of the matching frames, in ascending order.
+    pub fn numbers(&self) -> &VecDeque<u64> {
+        &self.numbers
+    }
+
+    /// Returns the number of matching frames that the log has removed since the filter was set.
+    pub fn removed(&self) -> u64 {
+        self.removed
+    }
+}
+
 /// A log of the newest frames on a line.
 #[derive(Debug, Default)]
 pub struct TraceLog {
@@ -80,7 +146,12 @@ impl TraceLog {
             self.size += line.size();
             self.lines.push_back(line);
         }
-        while self.size > Self::MOST
+        self.trim(Self::MOST);
+    }
+
+    /// Removes the oldest frames until the log takes at most `size` bytes.
+    fn trim(&mut self, size: usize) {
+        while self.size > size
             && let Some(oldest) = self.lines.pop_front()
         {
             self.size -= oldest.size();
@@ -98,6 +169,32 @@ impl TraceLog {
         &self.lines
     }
 
+    /// Returns the number that the next frame will get. Frames are numbered from 0 since the connection was opened.
+    pub fn end(&self) -> u64 {
+        self.gone + self.lines.len() as u64
+    }
+
+    /// Returns the frame with this number, or `None` if it was removed or has not arrived.
+    pub fn line(&self, number: u64) -> Option<&TraceLine> {
+        self.lines.get(usize::try_from(number.checked_sub(self.gone)?).ok()?)
+    }
+
+    /// Returns the content of a trace file with all frames of the log.
+    pub fn file_content(&self) -> String {
+        let mut text = format!("{HEADER}\n");
+        if self.gone > 0 {
+            text.push_str(&format!("# {} earlier frames are not included.\n", self.gone));
+        }
+        if self.dropped > 0 {
+            text.push_str(&format!("# {} frames arrived too fast to be recorded.\n", self.dropped));
+        }
+        for line in &self.lines {
+            text.push_str(&entry_line(line.at, line.direction, &line.bytes));
+            text.push('\n');
+        }
+        text
+    }
+
     /// Returns the number of frames that arrived too fast to be shown.
     pub fn dropped_count(&self) -> u64 {
         self.dropped
@@ -109,5 +206,92 @@ impl TraceLog {
 
     pub(super) fn begin(&mut self, began: Zoned) {
         *self = TraceLog { began: Some(began), ..TraceLog::default() };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::bits::MaskedBytes;
+    use crate::link::read_trace;
+
+    fn log(frames: &[(u64, Direction, &str, Text, Option<TraceFault>)]) -> TraceLog {
+        let mut log = TraceLog::default();
+        log.add(
+            frames.iter().cloned().map(|(millis, direction, bytes, meaning, fault)| {
+                let at = Moment::from_elapsed(Duration::from_millis(millis));
+                let bytes: MaskedBytes = bytes.parse().unwrap();
+                (TraceEntry { at, direction, bytes }, Explained { meaning: vec![meaning], fault })
+            }),
+            0,
+        );
+        log
+    }
+
+    fn three() -> TraceLog {
+        log(&[
+            (31, Direction::Sent, "40 42 02", Text::new("trace.position"), None),
+            (47, Direction::Received, "40 42 00 0e", Text::new("trace.taken"), None),
+            (90, Direction::Received, "FF **", Text::new("trace.hidden"), Some(TraceFault::Broken)),
+        ])
+    }
+
+    fn matching(log: &TraceLog, search: &str, faults_only: bool, end: u64) -> Vec<u64> {
+        let mut matches = TraceMatches::default();
+        let filter = TraceFilter { search: search.to_owned(), faults_only };
+        matches.update(log, &filter, Language::English, end);
+        matches.numbers().iter().copied().collect()
+    }
+
+    #[test]
+    fn frames_are_found_by_bytes_meaning_and_fault() {
+        let log = three();
+        assert_eq!(matching(&log, "", false, 3), [0, 1, 2]);
+        assert_eq!(matching(&log, " 42 00 0E ", false, 3), [1], "upper and lower case are equal");
+        assert_eq!(matching(&log, "READ POS", false, 3), [0]);
+        assert_eq!(matching(&log, "", true, 3), [2]);
+        assert_eq!(matching(&log, "accepted", true, 3), [] as [u64; 0]);
+        assert_eq!(matching(&log, "", true, 2), [] as [u64; 0], "paused before the fault");
+    }
+
+    #[test]
+    fn a_changed_filter_compares_all_frames_again() {
+        let log = three();
+        let mut matches = TraceMatches::default();
+        let mut update = |search: &str, end| {
+            let filter = TraceFilter { search: search.to_owned(), faults_only: false };
+            matches.update(&log, &filter, Language::English, end);
+            matches.numbers().iter().copied().collect::<Vec<_>>()
+        };
+        assert_eq!(update("40", 1), [0]);
+        assert_eq!(update("40", 3), [0, 1]);
+        assert_eq!(update("ff", 3), [2]);
+        assert_eq!(update("ff", 1), [] as [u64; 0], "a pause shows fewer frames");
+    }
+
+    #[test]
+    fn removed_frames_are_counted_and_no_longer_match() {
+        let frame = |at| (at, Direction::Sent, "40 42 02", Text::new("trace.position"), None);
+        let one = log(&[frame(0)]).size;
+        let mut log = log(&[frame(0), frame(1), frame(2)]);
+        let mut matches = TraceMatches::default();
+        let filter = TraceFilter { search: "42".to_owned(), faults_only: false };
+        matches.update(&log, &filter, Language::English, log.end());
+        log.trim(2 * one);
+        matches.update(&log, &filter, Language::English, log.end());
+        assert_eq!((matches.removed(), matches.numbers().front()), (1, Some(&1)));
+        assert_eq!((log.gone(), log.end()), (1, 3));
+        assert!(log.line(0).is_none() && log.line(2).is_some() && log.line(3).is_none());
+    }
+
+    /// The file of the window is the same as one written by the command line, and `replay:` reads it.
+    #[test]
+    fn a_saved_log_is_a_trace_file() {
+        let text = three().file_content();
+        let expected = "# encoder-studio trace 1\n0.031000 > 40 42 02\n0.047000 < 40 42 00 0E\n0.090000 < FF **\n";
+        assert_eq!(text, expected);
+        assert_eq!(read_trace(&text).unwrap().len(), 3);
     }
 }

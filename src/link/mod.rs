@@ -33,7 +33,8 @@ pub use serial::{PortInfo, SerialLink, ports};
 pub use sim::{SimLink, SimPort};
 pub use tcp::TcpLink;
 pub use trace::{
-    Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header,
+    Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, entry_line, read_trace, write_entry,
+    write_header,
 };
 pub use udp::{UdpBroadcast, UdpPort};
 pub use url::{LinkScheme, LinkUrl, UrlError, UrlQuery, Wire};

@@ -83,11 +83,16 @@ pub fn write_header(file: &mut impl Write) -> io::Result<()> {
 /// # Errors
 /// Returns errors of the writer.
 pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> {
-    let sign = match entry.direction {
+    writeln!(file, "{}", entry_line(entry.at, entry.direction, &entry.bytes))
+}
+
+/// Returns a line of a trace file, without the line end. `bytes` are hexadecimal, with `**` for masked bytes.
+pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) -> String {
+    let sign = match direction {
         Direction::Sent => '>',
         Direction::Received => '<',
     };
-    writeln!(file, "{:.6} {sign} {}", entry.at.since_start().as_secs_f64(), entry.bytes)
+    format!("{:.6} {sign} {bytes}", at.since_start().as_secs_f64())
 }
 
 /// Reason why a string is not a trace.

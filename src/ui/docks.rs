@@ -165,7 +165,7 @@ impl egui_tiles::Behavior<Pane> for DockBehaviour<'_> {
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match pane {
             Pane::Workspace => workspace::workspace_ui(ui, theme, studio, self.views, self.actions),
             Pane::Live => panels::live_ui(ui, theme, studio, self.views, self.actions),
-            Pane::Trace => panels::trace_ui(ui, theme, studio, self.views),
+            Pane::Trace => panels::trace_ui(ui, theme, studio, self.views, self.actions),
             Pane::Jobs => panels::jobs_ui(ui, theme, studio),
             Pane::Log => panels::log_ui(ui, theme, studio),
         });

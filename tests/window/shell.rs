@@ -236,6 +236,69 @@ fn the_last_frames_are_in_reach_and_stay_while_others_come() {
     assert!(screen.harness.query_all_by_label(&time).next().is_some(), "back at the end");
 }
 
+#[test]
+fn the_trace_is_searched_and_paused() {
+    use egui_kittest::kittest::Queryable;
+    let mut screen = Screen::new_form(LARGE);
+    screen.act(Action::OpenLowerPanel(true));
+    screen.until("frames", |studio| studio.hiperface().unwrap().session.trace.lines().len() > 20);
+    screen.steps();
+    let read_position = "40 42 02";
+    let count = |screen: &Screen, bytes: &str| screen.harness.query_all_by_label(bytes).count();
+    let no_match = screen.say("trace.no_match");
+    let word = screen.say("trace.search");
+    let search = |screen: &mut Screen, text: &str| {
+        let entry = screen.harness.get_by_role_and_label(egui::accesskit::Role::TextInput, &word);
+        entry.focus();
+        screen.steps();
+        screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        screen.harness.key_press(Key::Delete);
+        screen.harness.event(egui::Event::Text(text.to_owned()));
+        screen.steps();
+    };
+    search(&mut screen, "no such bytes");
+    assert!(screen.shows(&no_match));
+    screen.command(DeviceCommand::ReadPosition);
+    screen.until("a position", |studio| {
+        studio.hiperface().unwrap().session.trace.lines().iter().any(|line| line.bytes == read_position)
+    });
+    search(&mut screen, read_position);
+    assert!(count(&screen, read_position) > 0);
+    // Each of the virtual encoder's replies is valid.
+    screen.click("trace.faults");
+    assert!(screen.shows(&no_match));
+    screen.click("trace.faults");
+    // Paused, the list stays as it is.
+    let before = count(&screen, read_position);
+    screen.click("trace.follow");
+    let frames = screen.encoder().session.trace.end();
+    screen.command(DeviceCommand::ReadPosition);
+    screen.until("another position", |studio| studio.hiperface().unwrap().session.trace.end() >= frames + 2);
+    screen.steps();
+    assert_eq!(count(&screen, read_position), before);
+    assert!(screen.shows("newer frames") || screen.shows("neuere"));
+    screen.click("trace.follow");
+    assert!(count(&screen, read_position) > before);
+}
+
+/// A trace that the window saves has the frames of the list, in the format that `replay:` reads.
+#[test]
+fn the_trace_is_saved_as_a_recording() {
+    let mut desk = usual("", Some("sim:"));
+    desk.until("it is read", |studio| studio.selected_device().is_some_and(|own| !own.trace().lines().is_empty()));
+    let session = desk.studio.selected_device().unwrap().id();
+    desk.act(Action::AskTrace(session));
+    let question = desk.studio.take_file_question().unwrap();
+    assert_eq!(question.suggested_path().and_then(|path| path.extension()).unwrap(), "trace");
+    let path = desk.outside.path("bench.trace");
+    let frames = desk.studio.selected_device().unwrap().trace().lines().len();
+    desk.act(Action::Chosen(question, path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(encoder_studio::link::read_trace(&text).unwrap().len() >= frames);
+    assert!(text.starts_with("# encoder-studio trace 1\n"));
+}
+
 /// A file that is asked for by its path stands over the window: the keys of the lower panel wait.
 #[test]
 fn the_key_of_the_lower_panel_waits_for_dialogs() {

@@ -73,7 +73,7 @@ fn kind(question: &FileQuestion) -> Text {
             Text::new("file.profiles")
         }
         FileQuestion::OpenCapture => Text::new("file.captures"),
-        FileQuestion::Recording => Text::new("file.recordings"),
+        FileQuestion::Recording | FileQuestion::Trace { .. } => Text::new("file.recordings"),
         FileQuestion::OfDevice(file) => file.kind().clone(),
         FileQuestion::Table { .. } => Text::new("file.tables"),
         FileQuestion::Picture { .. } => Text::new("file.pictures"),
@@ -91,6 +91,7 @@ fn title(question: &FileQuestion) -> Text {
         FileQuestion::OfDevice(file) => file.title().clone(),
         FileQuestion::Table { .. } => Text::new("file.table_title"),
         FileQuestion::Picture { .. } => Text::new("file.picture_title"),
+        FileQuestion::Trace { .. } => Text::new("file.trace_title"),
     }
 }
 

@@ -98,6 +98,18 @@ pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
+/// Draws the rows of a position that has not been read yet, so that the buttons below keep their place when it is.
+pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
+    const UNKNOWN: &str = "–";
+    if ui.available_height() < LOW {
+        ui.label(theme.caption(UNKNOWN));
+        return;
+    }
+    for label in labels {
+        row(ui, theme, &theme.say(label), theme.monospace(UNKNOWN));
+    }
+}
+
 /// Draws the position as sent by the device, in a smaller font if it would not fit on one line.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let value = theme.monospace(value);

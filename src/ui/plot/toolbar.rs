@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::{Context, PlotUiState, chart, snapshot, trigger};
 use crate::app::Action as Studio;
-use crate::app::recorder::{Cursor, RecorderAction, TriggerState};
+use crate::app::recorder::{Cursor, Recorder, RecorderAction, TriggerState};
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
 use crate::ui::icons;
 
@@ -22,8 +22,12 @@ const SPANS: [(i64, &str); 10] = [
     (86_400, "recorder.span_86400"),
 ];
 
+/// Width in points from which all tools are in one row. In narrower panels, some of them are in a menu.
+const ONE_ROW: f32 = 284.0;
+
 pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut PlotUiState) {
     let (theme, recorder) = (context.theme, context.recorder);
+    let narrow = ui.available_width() < ONE_ROW;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme.space.inside, theme.space.inside);
         // In one row in a panel at the side of the window.
@@ -40,14 +44,18 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
             context.act(RecorderAction::Follow);
         }
         span_ui(ui, context);
-        if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
-            context.act(RecorderAction::Fit);
+        if narrow {
+            more_menu_ui(ui, context, &mut view.trigger);
+        } else {
+            if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
+                context.act(RecorderAction::Fit);
+            }
+            let cursors = has_cursors(recorder);
+            if switch_ui(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
+                context.act(RecorderAction::ShowCursors(!cursors));
+            }
+            trigger_menu_ui(ui, context, &mut view.trigger);
         }
-        let cursors = Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some());
-        if switch_ui(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
-            context.act(RecorderAction::ShowCursors(!cursors));
-        }
-        trigger_menu_ui(ui, context, &mut view.trigger);
         lines_menu_ui(ui, context);
         export_menu_ui(ui, context, &mut view.shot);
         if let Some(large) = &mut view.large {
@@ -89,6 +97,34 @@ fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
             context.act(RecorderAction::SetSpan(chosen));
         }
     });
+}
+
+fn has_cursors(recorder: &Recorder) -> bool {
+    Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some())
+}
+
+/// Draws the menu with the tools for which a narrow panel has no room.
+fn more_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
+    let (theme, recorder) = (context.theme, context.recorder);
+    let some = !recorder.is_empty();
+    let mut actions = Vec::new();
+    icon_menu(ui, icons::SLIDERS, &theme.say("recorder.more"), |ui| {
+        let word = theme.say("recorder.fit");
+        if enabled_button(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, &word).clicked() {
+            actions.push(RecorderAction::Fit);
+            ui.close();
+        }
+        let mut cursors = has_cursors(recorder);
+        let check = egui::Checkbox::new(&mut cursors, theme.say("recorder.cursors"));
+        if ui.add_enabled(some, check).changed() {
+            actions.push(RecorderAction::ShowCursors(cursors));
+        }
+        if recorder.visible_series().next().is_some() {
+            ui.separator();
+            trigger::form_ui(ui, theme, recorder, form, &mut actions);
+        }
+    });
+    actions.into_iter().for_each(|action| context.act(action));
 }
 
 fn trigger_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {

@@ -116,8 +116,8 @@ pub enum RegisterEvent {
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Whether columns are hidden because the table is too narrow.
-    pub hides_columns: bool,
+    /// Whether columns are hidden or narrower than usual, so that parts of a row may be cut.
+    pub is_narrow: bool,
 }
 
 const LINE: f32 = 16.0;
@@ -177,7 +177,7 @@ pub fn register_table(
             // The lines are beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
-            output.hides_columns = columns.is_hidden_kind(table.kind);
+            output.is_narrow = columns.is_narrow();
             paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)

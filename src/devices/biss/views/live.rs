@@ -9,7 +9,7 @@ use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Mark, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
-use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row};
+use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row, unknown_rows};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
@@ -30,7 +30,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             mark_ui(ui, theme, word, ink);
         }
     });
-    let Some(reading) = reading else { return };
+    let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     if !is_angle {
         row(ui, theme, &theme.say("unit.steps"), theme.monospace(reading.position().to_string()));
     } else if ui.available_height() < LOW {

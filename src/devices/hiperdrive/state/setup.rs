@@ -148,7 +148,7 @@ impl Unit {
                 let Some(text) = self.axis_report(language) else { return };
                 services.tasks.run("report", move || {
                     let result = write_atomically(&path, text.as_bytes());
-                    StudioAction::Done(Done::ReportSaved(path, result))
+                    StudioAction::Done(Done::FileSaved { message: Text::new("report.saved"), path, result })
                 });
             }
         }

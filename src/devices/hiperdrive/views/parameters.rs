@@ -25,9 +25,8 @@ pub(super) struct DriveParametersUiState {
     table: RegisterView,
     /// Rows of the table when it was last drawn.
     lines: Vec<Vec<ParameterNumber>>,
-    /// Whether the table hid columns when it was last drawn. The hidden content of the selected row is then shown
-    /// below.
-    hides_columns: bool,
+    /// Whether the table hid or cut columns when it was last drawn. The details of the selected row are then shown below.
+    is_narrow: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
@@ -75,9 +74,9 @@ pub(super) fn page_ui(
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.add_space(theme.space.inside);
-        if view.hides_columns {
+        if view.is_narrow {
             let row = view.table.selected().and_then(|place| rows.get(place.group)?.get(place.row));
-            let words = row.map_or_else(|| say(theme, "hd_params.select"), |row| hidden_columns(theme, row));
+            let words = row.map_or_else(|| say(theme, "hd_params.select"), |row| row_details(theme, row));
             ui.add(egui::Label::new(theme.caption(words).color(theme.palette.text)).truncate());
         }
         paragraph(ui, theme.caption(say(theme, "hd_params.controller")));
@@ -182,7 +181,7 @@ fn table(
         }
         Ok(())
     });
-    view.hides_columns = output.hides_columns;
+    view.is_narrow = output.is_narrow;
     if let Some(RegisterEvent::Revert(place)) = output.event {
         edits.extend(at(place).map(|row| Edit::Revert(row.number)));
     }
@@ -190,11 +189,13 @@ fn table(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns the content of the columns of a row that a narrow window hides.
-fn hidden_columns(theme: &Theme, row: &Row) -> String {
+/// Returns the content of the columns of a row that a narrow window hides or cuts.
+fn row_details(theme: &Theme, row: &Row) -> String {
     let named = |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.say(id)));
     let range = row.range.as_ref().map(|range| theme.words(range)).unwrap_or_default();
-    let columns = [named("widget.register_range", range), named("widget.register_factory", row.factory.clone())];
+    let meaning = Some(row_meaning(theme, row)).filter(|meaning| !meaning.is_empty());
+    let columns =
+        [meaning, named("widget.register_range", range), named("widget.register_factory", row.factory.clone())];
     let columns = columns.into_iter().flatten().map(|column| format!(" · {column}")).collect::<String>();
     format!("{} {}{columns}", row.number, theme.words(&row.name))
 }
@@ -203,19 +204,28 @@ fn parameter_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
-fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
+/// Returns unit and meaning of the value, or an empty text if there is no value.
+fn row_meaning(theme: &Theme, row: &Row) -> String {
     let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
-    let value = parameter_text(row);
+    if parameter_text(row).is_empty() {
+        return String::new();
+    }
     // A unit that is part of another one is multiplied.
     let unit = match words(row.unit.as_ref()) {
         unit if unit.starts_with('0') => format!("× {unit}"),
         unit => unit,
     };
     let meaning = [unit, words(row.meaning.as_ref())].into_iter().filter(|own| !own.is_empty());
+    meaning.collect::<Vec<_>>().join(" · ")
+}
+
+fn register_row(theme: &Theme, row: &Row) -> RegisterRow {
+    let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
+    let value = parameter_text(row);
     RegisterRow {
         address: row.number.to_string(),
         name: theme.words(&row.name),
-        meaning: if value.is_empty() { String::new() } else { meaning.collect::<Vec<_>>().join(" · ") },
+        meaning: row_meaning(theme, row),
         range: words(row.range.as_ref()),
         differs: row.is_editable && !row.factory.is_empty() && !value.is_empty() && value != row.factory,
         default: row.factory.clone(),

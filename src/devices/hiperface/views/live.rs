@@ -7,7 +7,7 @@ use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::state::{self, Encoder, HiperfaceAction as Hiperface};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
-use crate::ui::panels::live::{LOW, mark, raw_row};
+use crate::ui::panels::live::{LOW, mark, raw_row, unknown_rows};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
@@ -32,7 +32,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             mark(ui, theme, "live.invalid", theme.palette.bad);
         }
     });
-    let Some(reading) = reading else { return };
+    let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
     if ui.available_height() < LOW {
         // In a low window the plot needs the space.

@@ -33,9 +33,11 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             mark(ui, theme, "live.warning", palette.warn);
         }
     });
-    let Some(reading) = last else { return };
-    let word = format!("0x{:08X}", reading.word);
-    let place = reading.place();
+    // Unknown values have their rows already, so that the buttons below stay where they are.
+    let unknown = || "–".to_owned();
+    let word = last.map_or_else(unknown, |reading| format!("0x{:08X}", reading.word));
+    let place = last.and_then(WordReading::place);
+    let is_position = last.is_none_or(|reading| reading.rpm().is_none() && reading.cams().is_none());
     if ui.available_height() < LOW {
         // In a low window the plot needs the space.
         let place = place
@@ -43,18 +45,20 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         let words = format!("{}{word}", place.unwrap_or_default());
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
-        if let Some(place) = place {
-            row(ui, theme, &theme.say("live.turns"), theme.monospace(place.turns.to_string()));
-            row(ui, theme, &theme.say("live.step"), theme.monospace(place.steps.to_string()));
-            row(
-                ui,
-                theme,
-                &say(theme, "ib_live.angle"),
-                theme.monospace(format!("{} °", theme.number(place.degrees, 3))),
-            );
+        if is_position {
+            let angle = |degrees| format!("{} °", theme.number(degrees, 3));
+            let rows = [
+                (theme.say("live.turns"), place.as_ref().map(|place| place.turns.to_string())),
+                (theme.say("live.step"), place.as_ref().map(|place| place.steps.to_string())),
+                (say(theme, "ib_live.angle"), place.as_ref().map(|place| angle(place.degrees))),
+            ];
+            for (label, value) in rows {
+                row(ui, theme, &label, theme.monospace(value.unwrap_or_else(unknown)));
+            }
         }
         raw_row(ui, theme, word);
     }
+    let Some(reading) = last else { return };
     if let Some(StartupMode::Cams(program)) = reading.mode
         && let Some(output) = reading.cams()
     {

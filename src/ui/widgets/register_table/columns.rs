@@ -33,7 +33,7 @@ const BYTES: [Widths; 8] = [
     (Column::Default, 84.0, 52.0),
 ];
 const NUMBERS: [Widths; 7] = [
-    (Column::Marks, 42.0, 34.0),
+    (Column::Marks, 42.0, 40.0),
     (Column::Address, 36.0, 36.0),
     (Column::Name, 172.0, 152.0),
     (Column::Value, 60.0, 60.0),
@@ -48,7 +48,11 @@ const NAME: f32 = 0.45;
 
 /// Visible columns, from left to right.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Columns(Vec<(Column, Rangef)>);
+pub(super) struct Columns {
+    ranges: Vec<(Column, Rangef)>,
+    /// Whether columns are hidden or narrower than usual.
+    is_narrow: bool,
+}
 
 impl Columns {
     /// Lays out the columns within `width`, with `value` as the width of the value column.
@@ -80,25 +84,26 @@ impl Columns {
             left = range.max;
             (column, range)
         };
-        Columns(shown.into_iter().map(place).collect())
+        let is_narrow = share < 1.0 || shown.len() < all(kind).len();
+        Columns { ranges: shown.into_iter().map(place).collect(), is_narrow }
     }
 
-    pub(super) fn is_hidden_kind(&self, kind: RegisterKind) -> bool {
-        self.0.len() < all(kind).len()
+    pub(super) fn is_narrow(&self) -> bool {
+        self.is_narrow
     }
 
     /// Returns the horizontal extent of a column, measured from the table's left edge, or `None` if the column is
     /// hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
-        self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
+        self.ranges.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (Column, Rangef)> {
-        self.0.iter().copied()
+        self.ranges.iter().copied()
     }
 
     pub(super) fn width(&self) -> f32 {
-        self.0.last().map_or(0.0, |(_, range)| range.max)
+        self.ranges.last().map_or(0.0, |(_, range)| range.max)
     }
 }
 
@@ -133,12 +138,13 @@ mod tests {
         assert_eq!(shown(BYTES, 477.0), [Marks, Address, Name, Value, Meaning, Access]);
         assert_eq!(shown(BYTES, 425.0), [Marks, Address, Name, Value, Meaning]);
         assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
-        // 34 + 36 + 152 + 100 + 64 + 88 + 78 = 552.
-        assert_eq!(shown(RegisterKind::Numbers, 552.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
-        assert_eq!(shown(RegisterKind::Numbers, 551.0), [Marks, Address, Name, Value, Meaning, Range]);
-        assert_eq!(shown(RegisterKind::Numbers, 473.0), [Marks, Address, Name, Value, Meaning]);
-        let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).is_hidden_kind(RegisterKind::Numbers);
-        assert!(!hides(552.0) && hides(551.0));
+        // 40 + 36 + 152 + 100 + 64 + 88 + 78 = 558.
+        assert_eq!(shown(RegisterKind::Numbers, 558.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
+        assert_eq!(shown(RegisterKind::Numbers, 557.0), [Marks, Address, Name, Value, Meaning, Range]);
+        assert_eq!(shown(RegisterKind::Numbers, 479.0), [Marks, Address, Name, Value, Meaning]);
+        // 42 + 36 + 172 + 100 + 140 + 146 + 84 = 720.
+        let is_narrow = |width| Columns::new(RegisterKind::Numbers, width, 100.0).is_narrow();
+        assert!(!is_narrow(720.0) && is_narrow(719.0) && is_narrow(500.0));
     }
 
     /// At a usual width of 694 and a minimum width of 550, each column has half of its spare width at 622.
