@@ -6,7 +6,7 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::{Action, Severity, Studio, connect};
+use encoder_studio::app::{Action, Language, Severity, Studio, connect};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
@@ -209,6 +209,28 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
     assert!(is_at_standstill(&desk));
+    // Each endless run must be allowed again.
+    let run = |_: &Unit| Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless };
+    drive_until(&mut desk, run, "it runs", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position > 0);
+    assert!(unit(&desk).moves.is_expert(ONE), "while it runs");
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+    assert!(!unit(&desk).moves.is_expert(ONE), "the run has ended");
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
+}
+
+/// The factory scale has 65,536 steps a turn. Moves begin with 25 % of 35 rpm (parameter 166): 35 turns take 4 minutes.
+#[test]
+fn distance_and_duration_of_a_move_are_estimated() {
+    let desk = in_control("sim:");
+    assert_eq!(unit(&desk).actual(ONE).unwrap().position, 0);
+    let estimate = unit(&desk).move_estimate(35 * 65_536).unwrap();
+    assert!(estimate.words(Language::English).ends_with(", about 240.0 s"), "{estimate:?}");
+    assert_eq!(
+        unit(&desk).move_estimate(-35 * 65_536).unwrap().words(Language::German).split_once(", ").unwrap().1,
+        "etwa 240,0 s"
+    );
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{
     ARRIVAL_TIME, Ended, Lock, MotionKind, MotionRequest, Permit, Phase, SpeedTorque,
 };
 use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
-use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, Setpoint, State};
+use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, RunEnd, Setpoint, State};
 use crate::units::Moment;
 
 /// Motion of the drives of a session, as requested by the user.
@@ -26,6 +26,8 @@ pub struct DriveMotion {
     jobs: BTreeMap<DriveNumber, SpeedTorque>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
+    /// Latest endless run, with its number. When it ends or is replaced, the next one must be allowed again.
+    endless_run: Option<(DriveNumber, u64)>,
     /// Direction enabled to lead further outside the limits, for the next press and the press in progress.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
@@ -66,6 +68,7 @@ impl Default for DriveMotion {
             jogs: BTreeMap::new(),
             jobs: BTreeMap::new(),
             experts: BTreeSet::new(),
+            endless_run: None,
             freed: None,
             used: None,
             limits: BTreeMap::new(),
@@ -83,7 +86,7 @@ impl DriveMotion {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
         }
-        (self.experts, self.act) = (BTreeSet::new(), None);
+        (self.experts, self.endless_run, self.act) = (BTreeSet::new(), None, None);
         // Every session begins slowly, whatever was set in the one before.
         self.jogs.clear();
         self.limits_changed.clear();
@@ -132,7 +135,14 @@ impl DriveMotion {
                 self.limits_changed.insert(*drive);
             }
         }
+        let replaced = self.endless_run.is_some_and(|(_, number)| !motion.is_latest(number));
         (self.looked, self.view, self.limits) = (at, view, limits);
+        if let Some((drive, number)) = self.endless_run
+            && (replaced || self.has_ended(number, drive))
+        {
+            self.endless_run = None;
+            self.set_expert(drive, false);
+        }
     }
 
     /// Returns the drives whose limits this program or another master has changed since the last query.
@@ -228,7 +238,11 @@ impl DriveMotion {
     /// the session is not open.
     pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
-        self.intend(drive, request, kind)
+        let number = self.intend(drive, request, kind)?;
+        if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) {
+            self.endless_run = Some((drive, number));
+        }
+        Some(number)
     }
 
     pub(crate) fn stop(&mut self) {

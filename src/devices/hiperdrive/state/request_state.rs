@@ -247,10 +247,25 @@ impl Unit {
 
     /// Returns the speed for a percentage, based on parameter 166.
     pub fn speed_text(&self, percent: Percent) -> Option<Text> {
+        Some(TEXTS.text("hd_entry.rpm").with_number("rpm", self.speed_rpm(percent)?, 1))
+    }
+
+    /// Returns the speed for a percentage in rpm, based on parameter 166.
+    fn speed_rpm(&self, percent: Percent) -> Option<f64> {
         let most = self.number(self.drive(), MAXIMUM_SPEED)?;
         // Tenths of rpm, and percent.
-        let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
-        Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
+        Some(most as f64 * f64::from(percent.get()) / 1000.0)
+    }
+
+    /// Returns the distance from the actual position to `target`, and how long a move takes at the set speed. The time
+    /// does not include acceleration. Returns `None` while the position or the speed is unknown.
+    pub fn move_estimate(&self, target: i32) -> Option<Text> {
+        let drive = self.drive();
+        let distance = target.saturating_sub(self.actual(drive)?.position);
+        let rpm = self.speed_rpm(self.moves.move_effort(drive).speed).filter(|rpm| *rpm > 0.0)?;
+        let turns = self.ruler(drive).of(i64::from(distance).abs(), PositionUnit::Turns)?;
+        let text = TEXTS.text("hd_move.estimate").with_text("distance", self.place(drive, distance));
+        Some(text.with_number("seconds", turns / rpm * 60.0, 1))
     }
 
     /// Returns the torque that the drive applies for a percentage, rounded up to the next 25 %.

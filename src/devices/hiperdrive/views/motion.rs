@@ -205,7 +205,7 @@ fn to_position_ui(
     let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
     let can_go = allowed.clone().and(target.clone().map(drop));
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         if button_with_reason(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
             target.iter().for_each(|target| motor(actions, id, Motor::Move { target: *target }));
         }
@@ -226,6 +226,10 @@ fn to_position_ui(
                     motor(actions, id, Motor::Pause);
                 }
             }
+        }
+        let estimate = target.as_ref().ok().and_then(|target| unit.move_estimate(*target));
+        if let Some(estimate) = estimate {
+            ui.add(egui::Label::new(theme.caption(theme.words(&estimate))).truncate());
         }
     });
     // What keeps the drive from moving at all stands once, below the pads.

@@ -134,7 +134,7 @@ impl LanePainter<'_> {
                 painter.circle_stroke(middle, 5.0, Stroke::new(1.5, palette.muted));
             }
             None => {
-                painter.circle_stroke(middle, 5.0, Stroke::new(1.0, palette.line));
+                painter.circle_stroke(middle, 5.0, Stroke::new(1.0, palette.muted));
             }
         }
         if lamp.differs() {
