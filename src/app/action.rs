@@ -1,4 +1,4 @@
-//! Actions of the studio, triggered by the user, a view or a finished task.
+//! The actions of the studio: from the user, a view or a finished task.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -26,31 +26,31 @@ pub enum Action {
     SetTheme(ColorScheme),
     SetLanguage(Language),
     KeepLayout(String),
-    /// Open the lower panel, or collapse it to one line.
+    /// Open the lower panel, or reduce it to one line.
     OpenLowerPanel(bool),
     /// Show live values with or without their plot.
     ShowValuesAlone(bool),
     /// Store the new size of the window, in points.
     KeepSize(u32, u32),
     Select(SessionId),
-    /// End a session, after asking for confirmation if it has edits.
+    /// End a session. The user is asked first if it has edits.
     CloseSession(SessionId),
     Stop,
     StopMotion,
-    /// Release all held buttons, because the window has lost the keyboard or is covered by a dialog.
+    /// End all held motions, because the window has lost the keyboard or a dialog covers it.
     LetGo,
-    /// Stop the running job or, if there is none, close the dialog, in response to the Escape key.
+    /// Handle the Escape key: stop the running job, or else close the dialog.
     Escape,
-    /// Close the window, after asking for confirmation if data would be lost.
+    /// Close the window. The user is asked first if data would be lost.
     Close,
-    /// Close the window without questions, because the system is ending the program.
+    /// Close the window without a question, because the system ends the program.
     Quit,
     Confirm,
     Dismiss,
     Connect(connect::ConnectAction),
     OpenVirtual,
     Save(SessionId),
-    /// Resolve the conflict in a profile that another program has changed in the meantime.
+    /// Resolve the conflict of a profile that another program has changed.
     Resolve(ConflictResolution),
     /// Ask for a file to open: a capture in the Signals tab, a profile elsewhere.
     AskOpen,
@@ -59,19 +59,19 @@ pub enum Action {
     FileNotChosen,
     /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
-    /// Use the path that the user typed. An existing file is not replaced without a question, which the system's
-    /// dialogs ask themselves.
+    /// Use the path that the user typed. The user is asked before an existing file is replaced; a dialog of the system
+    /// asks this itself.
     Typed(FileQuestion, PathBuf),
-    /// Use the file chosen in the system's dialog, which may be replaced if it exists.
+    /// Use the file chosen in a dialog of the system. It may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Clear a recording, after asking for confirmation if it is long.
+    /// Clear a recording. The user is asked first if it is long.
     AskForget(RecorderOwner),
-    /// Ask for the file name of a table, which contains either the visible part of a recording or all of it.
+    /// Ask for the file name of a table with a recording.
     AskTable {
         owner: RecorderOwner,
-        /// Only the visible part.
+        /// Whether the table contains only the visible part of the recording.
         visible: bool,
     },
     AskPicture(Picture),
@@ -80,17 +80,17 @@ pub enum Action {
     /// Report that a picture was requested of a plot that is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
-    /// Execute a command that every kind of device supports, for the given session even if another one is shown by
+    /// Execute a command that every kind of device supports, for the given session. Another session may be shown by
     /// then.
     Command(SessionId, DeviceCommand),
-    /// Execute an action specific to one kind of device; see [`Action::device`].
+    /// Execute an action of one kind of device. See [`Action::device`].
     Device(SessionId, Payload),
     /// Create an unsaved profile for the kind of device shown in a tab.
     New(Tab),
-    /// Execute an action of a tab that does not require a device; see [`Action::tool`].
+    /// Execute an action of a tool. See [`Action::tool`].
     Tool(Tab, Payload),
     Done(Done),
-    /// The system could not start a thread for a task.
+    /// Report that the system could not start a thread for a task.
     NoThread(String),
 }
 
@@ -98,7 +98,7 @@ pub enum Action {
 pub enum ReviewAction {
     /// Execute the plan with this id, which the user has reviewed.
     Write(PlanId),
-    /// Grant or withdraw a permit, which results in a different plan.
+    /// Grant or withdraw a permit. The plan is then made again.
     Toggle(Permit),
     /// Write even though the device has reached its limit of write cycles.
     ForceWear(bool),
@@ -106,7 +106,7 @@ pub enum ReviewAction {
 }
 
 pub enum Done {
-    /// The target path of a save operation was checked for an existing file.
+    /// The task that checked whether the target file of a save exists has ended.
     Looked {
         question: FileQuestion,
         path: PathBuf,
@@ -114,16 +114,15 @@ pub enum Done {
     },
     /// The attempt to open a link for a session has succeeded or failed.
     Opened(Attempt),
-    /// The result of a search started from the connection form of a tab; see [`Done::finder`].
+    /// A search in the connection form of a tab has a result. See [`Done::finder`].
     Finder(Tab, Payload),
-    /// The result of a task that belongs to no particular session, with its handler.
+    /// A task that belongs to no session has ended. Contains the function that handles its result.
     Shared(SharedResult),
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
         file: ProfileFile,
         result: Result<Box<ProfileDocument>, ReadError>,
-        /// Function that opens the profile with the tables required by its kind, or `None` for a kind that the window
-        /// does not support.
+        /// Function that opens the profile, or `None` if the window does not support its kind of device.
         open: Option<OpenProfile>,
     },
     /// Reading a profile for comparison with a session has succeeded or failed.
@@ -139,7 +138,7 @@ pub enum Done {
     },
     /// A profile was not saved, because its file has changed since it was opened.
     Diverged(Box<ProfileConflict>),
-    /// A profile was not saved, because these comments of the user would be lost.
+    /// A profile was not saved, because these comments in its file would be lost.
     WouldLose(Box<SaveRequest>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
     /// A picture, a report or a trace has been saved, or could not be saved. `message` names what was saved.
@@ -151,10 +150,10 @@ pub enum Done {
     /// The time limit for a wait before closing has expired.
     Waited(ShutdownWait),
     Left,
-    /// The settings have been read, but too late for the start of the program.
+    /// The settings were read after the program had started.
     SettingsRead(LoadedSettings),
     SettingsKept(Result<SavedSettings, FileError>),
-    /// The settings have been read while drives are under control. `None` means that there are no settings.
+    /// The settings were read while drives are under control. `None` means that there is no file.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
@@ -165,35 +164,35 @@ pub enum Done {
         path: PathBuf,
         result: Result<Box<ProfileDocument>, ReadError>,
     },
-    /// The result of a task specific to one kind of device, for one session; see `Done::device`.
+    /// A task of one kind of device has ended, for one session. See `Done::device`.
     Device(SessionId, Payload),
-    /// The result of a task of a tab that does not require a device; see [`Done::tool`].
+    /// A task of a tool has ended. See [`Done::tool`].
     Tool(Tab, Payload),
 }
 
 pub struct Attempt {
     pub session: SessionId,
-    /// Number of the attempt within its session. Only the latest attempt counts.
+    /// Number of the attempt. Only the latest attempt of a session counts.
     pub attempt: u32,
     pub(super) result: Result<Box<dyn OpenedSession>, Box<OpenFailure>>,
 }
 
-/// A session running on its own thread, with the ring buffer for its trace.
+/// A session on its thread, with the ring buffer for its trace.
 pub struct Opened<D: Kind> {
     pub(super) worker: Worker<D>,
-    /// The part of the session outside its thread.
+    /// Handle of the session that stays outside its thread.
     pub(crate) aside: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     pub(super) is_virtual: bool,
     pub began: jiff::Zoned,
-    /// Sender that lets the next attempt use the connection when it is dropped.
+    /// Sender whose drop lets the next attempt use the connection.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 
-/// An opened session on its own thread, with its kind of device erased.
+/// An opened session on its thread, for any kind of device.
 pub trait OpenedSession: Any + Send {
-    /// Closes a session that is no longer required.
+    /// Closes a session that is not needed any more.
     fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
@@ -211,12 +210,12 @@ impl<D: Kind> OpenedSession for Opened<D> {
     }
 }
 
-/// The waits before the window closes, in order. Each wait includes the preceding ones.
+/// The waits before the window closes, in order. Each one includes the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShutdownWait {
     Drives,
     Disk,
-    /// Jobs that write nothing.
+    /// Wait for jobs that write nothing.
     Jobs,
     Writes,
 }
@@ -228,7 +227,7 @@ pub enum OpenFailure {
     Held,
 }
 
-/// Handles a result that belongs to no single session.
+/// Function that handles a result that belongs to no session.
 pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 #[derive(Debug)]
@@ -240,6 +239,5 @@ pub enum ReadError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecorderOwner {
     Device(SessionId),
-    /// A tab that does not require a device.
     Tool(Tab),
 }

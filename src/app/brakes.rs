@@ -1,6 +1,6 @@
-//! Stops the drives of all sessions when the program ends: when the window is closed, on a signal, or when the display
-//! is lost. Drives are stopped and switched off and their connections are closed, whether or not the window still
-//! draws.
+//! Stop of the drives in all sessions when the program ends: when the window is closed, on a signal, or when the
+//! display is lost. The drives are stopped and switched off, and their connections are closed. This works even if the
+//! window no longer draws.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,19 +9,18 @@ use std::time::{Duration, Instant};
 
 use crate::worker::WorkerStopHandle;
 
-/// A handle that stops the drives of a session when the program ends. It works from any thread, regardless of the state
-/// of the session and of whether the window still draws.
+/// A handle that stops the drives of a session when the program ends. It works from any thread and in any state of the
+/// session, even if the window no longer draws.
 pub trait DriveStopHandle: Send {
-    /// Stops and switches off all drives and closes their connection because the program is ending. Later requests
-    /// cannot start a motion. This does not block and may be called repeatedly.
+    /// Stops and switches off all drives, and closes their connection. Later requests cannot start a motion. This
+    /// function does not block, and it may be called repeatedly.
     fn leave(&self);
 
-    /// Returns whether the device holds a connection over which drives can move. After [`leave`](Self::leave), this
-    /// becomes `false` as soon as the drives are stopped and the connection is closed.
+    /// Returns whether the device has a connection over which drives can move. After [`leave`](Self::leave), this is
+    /// `false` as soon as the drives have stopped and the connection is closed.
     fn is_connected(&self) -> bool;
 
-    /// Returns whether the session has ended. Nothing else then holds a handle to its drives, so this program can no
-    /// longer move them.
+    /// Returns whether the session has ended. This program can then no longer move its drives.
     fn is_orphaned(&self) -> bool;
 }
 
@@ -29,13 +28,13 @@ pub trait DriveStopHandle: Send {
 #[derive(Clone, Default)]
 pub struct DriveStopHandles(Arc<Shared>);
 
-/// The brake of a session with drives, and the stopper of its jobs.
+/// The stop handles of a session with drives: for the drives, and for the jobs.
 type Session = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<Session>>,
-    /// Whether the drives have been released, after which no motion is allowed.
+    /// Whether the drives have been released. No motion is allowed after that.
     released: AtomicBool,
     closing: AtomicBool,
 }
@@ -44,13 +43,13 @@ struct Shared {
 const LOOKS: Duration = Duration::from_millis(5);
 
 impl DriveStopHandles {
-    /// Time allowed for stopping drives and closing connections before the program ends regardless.
+    /// Maximum time for stopping the drives and closing the connections. The program then ends in any case.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
     pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stopper: WorkerStopHandle) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_orphaned());
-        // Under the lock that `begin` takes as well: one of the two releases the session.
+        // `begin` takes the same lock, so one of the two functions always releases the session.
         if self.has_begun() {
             brake.leave();
             stopper.stop();
@@ -62,7 +61,7 @@ impl DriveStopHandles {
         self.0.released.store(true, Ordering::SeqCst);
         let sessions = self.sessions();
         sessions.iter().for_each(|(brake, _)| brake.leave());
-        // Jobs end, and waiting threads wake up.
+        // This ends the jobs and wakes waiting threads.
         sessions.iter().for_each(|(_, stopper)| stopper.stop());
     }
 
@@ -75,7 +74,7 @@ impl DriveStopHandles {
         !self.sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits until no drive is connected, for at most `patience`. Returns whether all drives are disconnected.
+    /// Waits until no drive is connected, for at most `patience`. Returns whether this is the case.
     pub fn wait(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
@@ -84,7 +83,7 @@ impl DriveStopHandles {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Blocks until the window has begun to close, for at most `patience`. Returns whether it has.
+    /// Waits until the window has begun to close, for at most `patience`. Returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

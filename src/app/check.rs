@@ -1,4 +1,4 @@
-//! Device check results as text, for every kind of device.
+//! Results of a device check as texts, for every kind of device.
 
 use super::Text;
 use crate::analysis::check::{StepResult, Verdict};

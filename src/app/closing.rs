@@ -1,5 +1,5 @@
-//! Closing a session or the window: asks once whether losses and interruptions are acceptable, then waits for
-//! everything else.
+//! Closing of a session or the window. The user is asked once if data would be lost or a job interrupted. Everything
+//! else is waited for.
 
 use super::action::{Action, Done, ShutdownWait};
 use super::brakes::DriveStopHandles;
@@ -9,22 +9,22 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Duration in nanoseconds of a recording that is too long to be discarded by a single click.
+/// Minimum duration of a recording in nanoseconds for which the user is asked before it is discarded.
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
-    /// Returns the brakes for the drives of all sessions, to be used when the program ends.
+    /// Returns the stop handles for the drives of all sessions, for use when the program ends.
     pub fn brakes(&self) -> DriveStopHandles {
         self.services.brakes.clone()
     }
 
-    /// Returns whether the window is closing, in which case no more questions are asked.
+    /// Returns whether the window is closing. No more questions are asked then.
     pub fn is_closing(&self) -> bool {
         self.closing
     }
 
-    /// Returns whether the window may close now: no drive is under control, nothing is running, not even in released
-    /// sessions, and all data are on disk. The window may also close if the grace period has expired.
+    /// Returns whether the window may close now. Either no drive is under control, nothing is running, and all data are
+    /// on disk, or the grace period has expired. Sessions that have been released count as well.
     pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());

@@ -1,4 +1,4 @@
-//! Dispatch of requests to one device: actions of its kind, and commands that every device supports.
+//! Dispatch of requests to a device: actions of its kind, and commands that every device supports.
 
 use std::time::Duration;
 
@@ -14,8 +14,7 @@ use super::{AnyDevice, Severity, Text};
 const LIVE: Duration = Duration::from_millis(50);
 
 impl Studio {
-    /// Executes a command that every device supports. This includes opening links and commands that involve two
-    /// sessions.
+    /// Executes a command that every device supports, including those that open a link or involve two sessions.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
@@ -56,7 +55,7 @@ impl Studio {
     }
 
     fn write_profile_to(&mut self, id: SessionId, target: SessionId) {
-        // Nothing is written to a device without a memory: it also takes over profiles that are read-only.
+        // A device without a memory is never written to, so it can adopt a read-only profile.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
         if is_written && self.is_only_looked_at(id) {
             return;
@@ -92,8 +91,7 @@ impl Studio {
         self.report_wrong_kind(taken, id);
     }
 
-    /// Stops all motion if an action has reached a different kind of device, because its intended target does not
-    /// exist.
+    /// Stops all motion if an action has reached a device of another kind, because the intended target does not exist.
     pub(super) fn report_wrong_kind(&mut self, done: Result<(), PayloadKindError>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);

@@ -1,5 +1,5 @@
-//! Comparison of a device or an open profile with a profile on disk. The comparison uses the last reading and does not
-//! access the device.
+//! Comparison of a device or an open profile with a profile on disk. The last reading is used; the device is not
+//! accessed.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! Resolution of conflicts when a profile has been changed on disk since it was opened: the differences, entry by
-//! entry.
+//! Resolution of a conflict if a profile was changed on disk after it had been opened. The versions are compared entry
+//! by entry.
 
 use super::KindRegistry;
 use super::action::ReadError;
@@ -17,7 +17,7 @@ pub struct ProfileConflict {
     theirs: Result<Box<ProfileDocument>, ReadError>,
     text: String,
     rows: Vec<Row>,
-    /// Reason why the last choice was not possible.
+    /// The reason why the last choice was impossible.
     problem: Option<Text>,
 }
 
@@ -25,7 +25,7 @@ pub struct ProfileConflict {
 pub struct Row {
     change: Change,
     pub changed: ChangedSide,
-    /// The version selected for the entry, if any.
+    /// The version chosen for the entry, if any.
     pub take: Option<Side>,
 }
 
@@ -40,7 +40,7 @@ pub enum ConflictResolution {
     Reload,
     KeepMine,
     Take(usize, Side),
-    /// Write each entry from the version chosen for it.
+    /// Write each entry as in the version chosen for it.
     Merge,
     /// Close the dialog without writing anything. The edits are kept.
     Close,
@@ -108,8 +108,8 @@ impl ProfileConflict {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot be
-    /// overwritten, because its unknown content would be lost.
+    /// Returns whether the file can be overwritten. A file of a newer program version cannot, because its unknown
+    /// content would be lost.
     pub fn can_overwrite_file(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
@@ -129,10 +129,10 @@ impl ProfileConflict {
         })
     }
 
-    /// Returns a save operation that overwrites the file only if its content has not changed again.
+    /// Returns a save operation that overwrites the file, provided that its content does not change again.
     fn overwrite_file(self, document: Option<ProfileDocument>) -> SaveRequest {
         let ProfileConflict { mut saving, theirs, text, .. } = self;
-        // A file that is no longer a profile has nothing to preserve, and the user was told so.
+        // A file that is not a profile any more has no content to preserve, and the user knows this.
         saving.may_lose = theirs.is_err();
         saving.opened = saving.opened.map(|opened| FileSnapshot { text, ..opened });
         if let Some(document) = document {
@@ -158,7 +158,6 @@ impl Studio {
         }
     }
 
-    /// Shows in a profile's session that the file has changed since it was opened.
     pub(super) fn show_divergence(&mut self, diverged: ProfileConflict) {
         self.with_device(diverged.session(), |device, _| device.mark_save_waiting());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {

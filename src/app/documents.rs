@@ -1,4 +1,4 @@
-//! Opening of profiles, which are read as a task and added to the open devices.
+//! Opening of profiles. They are read in a task and added to the open devices.
 
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,7 @@ impl Studio {
         }
     }
 
-    /// Reports that a profile belongs to a kind of device that the window does not support.
+    /// Reports that the window does not support the kind of device of a profile.
     fn report_unsupported_kind(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),
@@ -64,7 +64,7 @@ impl Studio {
         self.services.notify(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
     }
 
-    /// Handles the outcome of looking up, storing or removing a session's draft.
+    /// Handles the result of a task with the draft of a session.
     pub(super) fn finish_draft(&mut self, id: SessionId, done: DraftOutcome) {
         if let DraftOutcome::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
@@ -78,7 +78,7 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// Refuses to save or write a profile with a newer schema. Returns `true` after reporting the refusal.
+    /// Refuses to save or write a profile with a newer schema. Returns `true` if it was refused.
     pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };
@@ -87,14 +87,14 @@ impl Studio {
     }
 }
 
-/// Returns the reason why a profile with a newer schema is neither saved nor written to a device, or `None` for other
-/// sources.
+/// Returns the reason why a profile with a newer schema is neither saved nor written to a device. Returns `None` for
+/// other sources.
 pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
     let Source::File { path, document, .. } = source else { return None };
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
-/// Converts a profile that has just been read to a document.
+/// Creates a document for a profile that was read just now.
 pub(crate) fn document_of(body: Body) -> ProfileDocument {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
@@ -107,7 +107,7 @@ pub(super) fn read_document(path: PathBuf, store: &Store, kinds: KindRegistry) -
         Err(error) => (String::new(), Err(error)),
     };
     let file = ProfileFile { key: file_key(&path), path, text };
-    // Without a profile, the tables are not awaited.
+    // If there is no profile, no tables are needed.
     let kind = result.as_ref().ok().and_then(|document| kinds.for_profile(document.body.kind()));
     let open = kind.map(|kind| kind.read_tables(store));
     Action::Done(Done::Read { file, result, open })

@@ -1,8 +1,8 @@
-//! Data about drives that the drives do not store themselves and that the settings keep: spindle pitch, position unit,
-//! limits not confirmed since the scaling changed, and values not saved.
+//! Data about drives that the settings store, because the drives do not: spindle pitch, position unit, limits that are
+//! not confirmed since the scaling changed, and values that are not saved.
 //!
-//! A drive may also be open in another session or window; entries in one do not change the others. Limits marked as
-//! unconfirmed in one of them lock all of them, and are confirmed in each.
+//! A drive may also be open in another session or window. Entries in one of them do not change the others. However,
+//! limits marked as unconfirmed in one of them lock all of them, and must be confirmed in each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 /// The unit in which positions are shown and entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum PositionUnit {
-    /// Transmitted steps.
+    /// Steps as transmitted by the drive.
     #[default]
     Steps,
     Turns,
-    /// Angle in degrees, which may exceed one turn.
+    /// Angle in degrees. It may exceed one turn.
     Degrees,
     /// Millimetres travelled on a spindle whose pitch has been entered.
     Millimetres,
@@ -42,13 +42,14 @@ pub struct RememberedDrives {
     pub pitches: BTreeMap<u8, u64>,
     pub measure: PositionUnit,
     unconfirmed: Vec<u8>,
-    /// Number of marks of each drive, which distinguishes a new mark from an earlier one.
+    /// Number of times that the limits of each drive were marked, by drive number. It distinguishes a new mark from an
+    /// earlier one.
     marks: BTreeMap<u8, u64>,
     /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
 }
 
-/// The readable part of a drive's entry whose other parts are broken.
+/// The readable part of an entry about a drive that is partly invalid.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct PartialDriveEntry {
@@ -56,7 +57,7 @@ pub(crate) struct PartialDriveEntry {
     marks: BTreeMap<u8, u64>,
 }
 
-/// Whether the settings have been read since control was taken. Another window may have marked limits in the settings.
+/// Whether the settings were read after control was taken. Another window may have marked limits in the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SettingsReadState {
     Unread,
@@ -64,22 +65,23 @@ pub enum SettingsReadState {
     Read,
 }
 
-/// A device with drives about which the settings store data.
+/// A device with drives, about which the settings store data.
 pub trait DriveMemory {
-    /// Returns the name under which the settings store the device's drives, or `None` before the device has been read.
+    /// Returns the name of the entry in the settings, or `None` before the device has been read.
     fn storage_name(&self) -> Option<String>;
 
-    /// Adopts the stored data of the drives, and returns the data to store next, if they differ. All data are adopted
-    /// once per device; after that, only limits marked elsewhere are adopted.
+    /// Adopts the stored data of the drives. Returns the data to store next, if they differ.
+    ///
+    /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits were marked elsewhere, before the settings contain the mark.
+    /// Locks the drives whose limits were marked elsewhere. The settings need not contain the mark yet.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
 
-    /// Returns whether the settings were read since control was taken.
+    /// Returns whether the settings were read after control was taken.
     fn marks(&self) -> SettingsReadState;
 
-    /// Sets whether the settings have been read since control was taken. Nothing moves before they have been read.
+    /// Sets whether the settings were read after control was taken. Nothing moves before this.
     fn set_read_state(&mut self, marks: SettingsReadState);
 }
 
@@ -116,8 +118,10 @@ impl RememberedDrives {
         self.marks.insert(drive, self.marks(drive).wrapping_add(times));
     }
 
-    /// Returns the drives marked since `before`. A mark with an unchanged number may already be confirmed here but not
-    /// yet on disk. Programs that do not count marks omit the numbers.
+    /// Returns the drives whose limits were marked since `before`.
+    ///
+    /// A mark with the same number may already be confirmed here, but not yet on disk. Programs that do not count marks
+    /// leave out the numbers.
     pub(crate) fn newly_marked(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
@@ -126,8 +130,8 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// Returns the data with the changes from `known` to `ours` applied. Limits marked in the meantime remain
-    /// unconfirmed, whatever `ours` has confirmed.
+    /// Returns the data with the changes from `known` to `ours`. Limits marked in the meantime stay unconfirmed, even
+    /// if `ours` has confirmed them.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {

@@ -1,5 +1,5 @@
-//! Edited values of a device by location, with undo. The underlying memory supplies the device's values and determines
-//! which may be edited.
+//! Edited values of a device by location, with undo. The memory supplies the values of the device, and defines which of
+//! them can be edited.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ pub trait EditBase: Default {
     type Place: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// Returns whether a value is an edit, that is, differs from the value read.
+    /// Returns whether a value is an edit. It is if it differs from the value that was read.
     fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
 }
 
-/// The content of a memory as read, together with the edited values.
+/// The content of a memory as last read, with the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
@@ -44,7 +44,7 @@ impl<B: EditBase> Edits<B> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values as one undoable step. A value equal to that of the device does not count as an edit.
+    /// Edits values as one undo step. A value that equals the value of the device is not an edit.
     pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -57,26 +57,26 @@ impl<B: EditBase> Edits<B> {
         self.history.step(&mut self.edits, after);
     }
 
-    /// Undoes the edits selected by `is_meant` as one step. Returns `false` if there are none.
+    /// Reverts the edits for which `is_meant` is true, as one undo step. Returns `false` if there are none.
     pub fn undo_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
     }
 
-    /// Adopts new values read from the memory. Edits are kept unless the device now contains their values.
+    /// Adopts values that were read again. Edits are kept unless the device now contains their values.
     pub fn reread(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
         self.history.forget_undone();
     }
 
-    /// Discards everything, because the values belong to a different device.
+    /// Discards all values and edits, because another device is connected.
     pub fn clear(&mut self) {
         *self = Edits::default();
     }
 
-    /// Removes edits that no longer differ from the device. An earlier step may contain such edits.
+    /// Removes edits that equal the value of the device. An undo step can bring such edits back.
     fn settle(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

@@ -9,7 +9,7 @@ use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// A question for a file that the user must choose, in a system dialog or by typing a path.
+/// A question for a file. The user answers it in a dialog of the system or by typing a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     Open,
@@ -24,7 +24,7 @@ pub enum FileQuestion {
     Trace { session: SessionId, suggested: PathBuf },
 }
 
-/// A file that one kind of device reads or writes, and the action to take once it has been chosen.
+/// A file that a kind of device reads or writes, with the action that follows when it has been chosen.
 #[derive(Clone)]
 pub struct DeviceFile {
     session: SessionId,
@@ -36,7 +36,7 @@ pub struct DeviceFile {
 }
 
 impl DeviceFile {
-    /// Creates the question for a file to read. `title` is the title of the dialog, and `kind` the name of the file
+    /// Creates the question for a file to read. `title` is the title of the dialog, and `kind` is the name of the file
     /// type, followed by its extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
@@ -48,7 +48,8 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// Creates the question for a file to write, with a suggested name. The content may depend on the window language.
+    /// Creates the question for a file to write, with a suggested name. The content of the file may depend on the
+    /// language of the window.
     pub fn write_question<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),

@@ -1,4 +1,4 @@
-//! Processing of files chosen by the user. All disk access runs as a task.
+//! Handling of files that the user has chosen. The disk is accessed only in tasks.
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +13,7 @@ use crate::link::{LinkScheme, LinkUrl};
 use crate::store::{BaseFolders, FileError, write_atomically};
 
 impl Studio {
-    /// Returns the action with all paths made absolute. This is the only point at which paths given by the user enter
-    /// the program.
+    /// Returns the action with absolute paths. Paths from the user enter the program only here.
     pub(super) fn with_absolute_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute_path(&path);
         match action {
@@ -37,7 +36,7 @@ impl Studio {
         &self.services.world.folders
     }
 
-    /// Handles a typed path. An existing file is not replaced without asking.
+    /// Handles a typed path. The user is asked before an existing file is replaced.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested_path().is_none() {
             return self.chosen(question, path);
@@ -163,7 +162,7 @@ impl Studio {
 
     pub(super) fn finish_table_export(&mut self, owner: RecorderOwner, exported: ExportResult) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
-        // Another drive may be selected by now.
+        // All recorders are searched, because another drive may be selected by now.
         let recorders = match owner {
             RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
             RecorderOwner::Tool(_) => self.recorder_mut(owner).into_iter().collect(),

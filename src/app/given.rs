@@ -1,5 +1,5 @@
-//! Values for one kind of device that are passed in from outside: start options, or substitutes in a test. The core
-//! passes them on without knowing their types.
+//! Values for a kind of device that come from outside: start options, or substitutes in a test. The studio does not
+//! know their types.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, OpenError, Session};
 
-/// Values supplied to the kinds of devices, at most one of each type.
+/// Values for kinds of devices, at most one of each type.
 #[derive(Clone, Default)]
 pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
@@ -27,7 +27,7 @@ impl Given {
     }
 }
 
-/// Prints only the number of values, because a value may be a secret.
+/// Prints only the number of values, because a value can be secret.
 impl fmt::Debug for Given {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -36,7 +36,7 @@ impl fmt::Debug for Given {
 
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// A replacement for the function with which a kind opens links. Used by tests only.
+/// A function that replaces the one with which a kind of device opens links, for tests.
 pub struct LinkOpener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> LinkOpener<D> {

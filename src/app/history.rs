@@ -1,6 +1,6 @@
-//! Undo and redo for any kind of state. The owner holds the current state.
+//! Undo and redo for any state. The owner holds the present state.
 
-/// The states before the last steps, and the states that were undone.
+/// The states before the last steps, and the undone states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct History<T> {
     undo: Vec<T>,
@@ -25,7 +25,7 @@ impl<T> History<T> {
         !self.redo.is_empty()
     }
 
-    /// Records a step that started from `before`. Steps undone earlier can no longer be redone.
+    /// Records a step from the state `before`. Undone steps are discarded.
     pub(crate) fn note(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
@@ -34,33 +34,30 @@ impl<T> History<T> {
         }
     }
 
-    /// Undoes the last step, which sets `now` to the state before it. Returns `false` if there is no step to undo.
+    /// Undoes the last step by setting `now` to the state before it. Returns `false` if there is none.
     pub(crate) fn undo(&mut self, now: &mut T) -> bool {
         let Some(before) = self.undo.pop() else { return false };
         self.redo.push(std::mem::replace(now, before));
         true
     }
 
-    /// Redoes the last undone step. Returns `false` if there is none.
     pub(crate) fn redo(&mut self, now: &mut T) -> bool {
         let Some(after) = self.redo.pop() else { return false };
         self.undo.push(std::mem::replace(now, after));
         true
     }
 
-    /// Discards all steps, so that nothing can be undone.
     pub(crate) fn forget(&mut self) {
         *self = History::default();
     }
 
-    /// Discards the undone steps, so that nothing can be redone.
     pub(super) fn forget_undone(&mut self) {
         self.redo.clear();
     }
 }
 
 impl<T: PartialEq> History<T> {
-    /// Makes a step from `now` to `after`. Returns `false` if they are equal.
+    /// Changes `now` to `after` and records the step. Returns `false` if the two are equal.
     pub(crate) fn step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;
@@ -69,8 +66,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// Applies a change of the base to the current and all earlier states. Steps that no longer make a difference are
-    /// removed.
+    /// Applies `follow` to the present state and all earlier ones, because the data below them have changed. Steps that
+    /// no longer change anything are removed.
     pub(crate) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);

@@ -1,4 +1,5 @@
-//! A button that is active while it is held, without drawing: the start of a hold, and everything that ends it.
+//! State of a button that is active while it is held: how a hold begins, and everything that ends it. Nothing is drawn
+//! here.
 //!
 //! | what comes | nothing is held | held by the pointer | held by a key |
 //! |---|---|---|---|
@@ -17,13 +18,13 @@
 
 use super::press::{KeyStates, PressKey};
 
-/// Surroundings of a hold button at the start of a frame.
+/// State of a hold button and the window at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldContext {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether a motion that this button does not hold is running or was stopped just now. A key press then stops
+    /// Whether something moves or was stopped just now that this button does not hold. A key press then stops the
     /// motion.
     pub moving: bool,
 }
@@ -35,7 +36,7 @@ pub enum HoldInput {
     WindowFocus(bool),
     Down {
         key: PressKey,
-        /// Without modifiers.
+        /// Whether no modifier key is down.
         plain: bool,
     },
     Up(PressKey),
@@ -50,7 +51,7 @@ pub enum HoldInput {
     },
     PointerUp,
     PointerGone,
-    /// A finger touched the screen. If the finger acts as the pointer, a pointer press follows.
+    /// A finger touched the screen. If it acts as the pointer, a pointer press follows.
     Finger,
 }
 
@@ -60,7 +61,7 @@ pub enum HoldEvent {
     Press,
     Hold,
     Release,
-    /// A key that holds nothing was pressed during a motion, so everything must stop.
+    /// A key was pressed during a motion that this button does not hold. Everything must stop.
     Stop,
 }
 
@@ -77,7 +78,7 @@ pub struct HoldState {
     keys: KeyStates,
     pointer: bool,
     was_held: bool,
-    /// Whether a hold has begun since the last frame.
+    /// Whether a hold began in this frame.
     began: bool,
     stop: bool,
     next_picture: Option<f64>,
@@ -103,7 +104,7 @@ impl HoldState {
         }
     }
 
-    /// Processes an input of the frame; `now` is the time on the window's clock.
+    /// Handles an input of the frame. `now` is the time on the clock of the window.
     pub fn take(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
@@ -142,15 +143,15 @@ impl HoldState {
         }
     }
 
-    /// Ends the frame, given whether the pointer is pressed and whether it is on the button. Returns the state of the
-    /// hold.
+    /// Ends the frame and returns the effect on the hold. `pointer_down` states whether the pointer is pressed, and
+    /// `inside` whether it is on the button.
     pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.finish_ui_frame(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
             self.release_pointer();
         }
-        // Released and pressed between two frames: the next press counts.
+        // If a hold ended and another one began between two frames, the new one is ignored.
         if self.stop || self.was_held && self.began {
             self.let_go();
         }
@@ -163,7 +164,7 @@ impl HoldState {
         }
     }
 
-    /// Returns the time in seconds after which another frame is required to detect that a key was released.
+    /// Returns the time in seconds after which another frame is needed to see that a key was released.
     pub const fn repaint_delay(&self) -> Option<f64> {
         self.next_picture
     }
@@ -176,8 +177,8 @@ impl HoldState {
         self.holder == Some(HoldSource::Pointer)
     }
 
-    /// Returns whether the button has the keyboard focus but no key release has been seen yet. In this case, the first
-    /// press will not count.
+    /// Returns whether the button has the keyboard focus but no key has been seen up yet. The first press is then
+    /// ignored.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

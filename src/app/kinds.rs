@@ -1,4 +1,4 @@
-//! The kinds of devices and the tools of a program. The studio receives the list as an argument and names none of them.
+//! The kinds of devices and the tools of a program. The studio receives this list and does not name any of them.
 
 use super::devices::DeviceKind;
 use super::tab::Tab;
@@ -42,14 +42,14 @@ impl KindRegistry {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }
 
-    /// Explains why a kind of device refuses a profile. If no kind recognises the cause, its own English message is
+    /// Returns the reason why a kind of device refuses a profile. If no kind knows the cause, its English message is
     /// returned.
     pub(super) fn explain(self, cause: &Cause) -> Text {
         self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
     }
 
-    /// Returns a link in a form that may be displayed and stored. Parameters that are secret for any kind
-    /// of device are removed, since the link may have been given for a different kind.
+    /// Returns a link as it may be displayed and stored. Parameters that are secret for any kind of device are removed,
+    /// because the link may be meant for another kind.
     pub fn display_link(self, url: &LinkUrl) -> String {
         let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secret_parameters()).collect();
         let query: Vec<String> =
@@ -58,7 +58,7 @@ impl KindRegistry {
         format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
     }
 
-    /// Returns the first tab of a device, or the first tab of a tool if there is none.
+    /// Returns the first tab of a device, or of a tool if there are no devices.
     pub(super) fn first_tab(self) -> Tab {
         let device = self.devices.first().map(|kind| kind.tab());
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()

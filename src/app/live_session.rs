@@ -1,5 +1,5 @@
-//! A session on its own thread, as seen from the window: the running job, the trace and the samples. Independent of the
-//! kind of device.
+//! A session on its thread, as seen from the window: the running job, the trace and the samples. It is the same for all
+//! kinds of devices.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ pub struct LiveSession<D: Device> {
 #[derive(Clone, Debug)]
 pub struct JobProgress {
     pub title: Text,
-    /// Number of completed steps, total number of steps, and the current step.
+    /// Number of completed steps, total number of steps, and description of the current step.
     pub progress: Option<(u64, u64, Text)>,
     pub stopping: bool,
 }
@@ -71,7 +71,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.poll(interval);
     }
 
-    /// Starts reading the given watched values while samples are taken.
+    /// Starts to read the given values in addition to the samples.
     pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch(watched);
     }
@@ -89,7 +89,7 @@ impl<D: Kind> LiveSession<D> {
         self.poll(pace);
     }
 
-    /// Returns the next event and records what it reports about the running job.
+    /// Returns the next event, and updates the running job accordingly.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -104,7 +104,8 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// Returns whether the thread has ended without being released and all its events have been received.
+    /// Returns whether the thread has ended although the session was not released, and all of its events have been
+    /// received.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
@@ -124,7 +125,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stopper()
     }
 
-    /// Returns the worker, to be closed where the wait for its end blocks nothing.
+    /// Returns the worker. It must be closed where waiting for its end blocks nothing.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -1,4 +1,4 @@
-//! Stop and release of motion in all sessions, for every kind of device.
+//! Stop and release of motion in all sessions.
 
 use super::devices::MotionControl;
 use super::studio::Studio;
@@ -12,18 +12,17 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether drives are connected in any session, in which case STOP must be reachable.
+    /// Returns whether drives are connected in any session. STOP must then be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
 
-    /// Returns whether a drive is known to be moving or is going to move.
+    /// Returns whether a drive is moving or about to move, as far as this is known.
     pub fn moves(&self) -> bool {
         self.motion_controls().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion requested in this window is running. Such a motion is the first to be stopped by
-    /// Escape.
+    /// Returns whether a motion requested in this window is running. Escape stops it before anything else.
     pub fn is_turned_by_hand(&self) -> bool {
         self.motion_controls().any(MotionControl::is_turned_by_hand)
     }
@@ -33,13 +32,13 @@ impl Studio {
         self.motion_controls().any(MotionControl::is_motion_active)
     }
 
-    /// Returns whether drives are under control, in which case their values arrive without being requested.
+    /// Returns whether drives are under control. Their values then arrive without a request.
     pub fn has_control(&self) -> bool {
         self.motion_controls().any(MotionControl::has_control)
     }
 
-    /// Returns whether STOP has an effect on drives: this window controls some, or a motion requested here has not
-    /// ended. It cannot stop the motion of another controller.
+    /// Returns whether STOP has an effect on drives. This window must control some, or have requested a motion that has
+    /// not ended. STOP cannot stop the motion of another controller.
     pub fn can_stop_motion(&self) -> bool {
         self.has_control() || self.is_turned_by_hand()
     }
@@ -48,13 +47,13 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends all held motions and endless runs, because the window has lost the keyboard or is covered by a
-    /// dialog.
+    /// Ends all held motions and runs without an end, because the window has lost the keyboard or a dialog covers it.
     pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 
-    /// Ends a jog or run whose panel is no longer visible because of another tab or device, a dialog, or a question.
+    /// Ends a jog or run whose panel is not visible any more. Another tab or device, a dialog or a question can hide
+    /// it.
     pub(super) fn end_invisible_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
@@ -63,7 +62,7 @@ impl Studio {
         for device in &mut self.devices {
             let is_seen = seen == Some(device.id()) && !device.is_reviewing();
             if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {
-                // A run in speed mode does not end by itself either.
+                // A run in speed mode does not end by itself, so it must be ended as well.
                 motion.let_go();
             }
         }

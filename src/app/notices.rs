@@ -1,4 +1,4 @@
-//! Notices to the user. The latest one is displayed until it has been read; all of them are in the log.
+//! Notices to the user. The latest one is displayed until it has been read, and the log contains all of them.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -17,8 +17,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns the remaining display time of a notice that has been shown for `shown`, or `None` if it stays until
-    /// dismissed.
+    /// Returns how much longer a notice is displayed that has been shown for `shown`. Returns `None` if it stays until
+    /// the user closes it.
     pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -39,7 +39,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Returns the prefix that names the device and part, or an empty string if there is none.
+    /// Returns a prefix with the names of the device and the part. It is empty if there are none.
     pub fn prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
@@ -47,20 +47,20 @@ impl Notice {
     }
 }
 
-/// The window's log of notices, newest last. The oldest notices are removed.
+/// The log of notices, with the newest last. The oldest ones are removed.
 #[derive(Debug, Default)]
 pub struct NoticeLog {
     notices: VecDeque<Notice>,
-    /// The latest notice, if it is still displayed in the window.
+    /// The notice that the window displays, if any.
     standing: Option<Notice>,
 }
 
 impl NoticeLog {
     const CAPACITY: usize = 2_000;
 
-    /// Adds a notice, which is displayed until it is dismissed or another notice arrives.
+    /// Adds a notice. It is displayed until the user closes it or another notice replaces it.
     pub fn add(&mut self, notice: Notice) {
-        // A success does not replace a notice that needs attention.
+        // A success does not replace a warning or an error.
         if notice.severity >= Severity::Warning
             || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good)
         {
@@ -89,7 +89,7 @@ impl NoticeLog {
         self.standing.as_ref()
     }
 
-    /// Removes a notice about a session from the window, because it no longer applies.
+    /// Removes a notice about a session from the window, because it is no longer true.
     pub(crate) fn settle(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);
@@ -98,7 +98,7 @@ impl NoticeLog {
         }
     }
 
-    /// Removes the error about a file that has now been read or written.
+    /// Removes an error about a file from the window, because the file has now been read or written.
     pub(crate) fn remove_file_notices(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))

@@ -1,8 +1,9 @@
-//! Parsing of numbers typed by the user: decimal point or comma, always finite, within a range that the error names.
+//! Parsing of numbers that the user types. Decimal point and comma are accepted. Numbers are finite, and an error names
+//! the allowed range.
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered. No encoder has more.
+/// Maximum number of signal periods per revolution that can be entered. Encoders do not have more.
 pub(crate) const MOST_PERIODS: u32 = 65_536;
 
 /// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.
@@ -13,10 +14,10 @@ pub fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// Parses a number from `least` to `most`. `what` names the entry.
+/// Parses a number from `least` to `most`. Errors name the entry as `what`.
 ///
 /// # Errors
-/// Returns a text that states why the entry is invalid.
+/// Returns the reason why the entry is invalid.
 pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -30,7 +31,7 @@ pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -
 /// Parses a whole number from `least` to `most`, in decimal or in hexadecimal with the prefix `0x`.
 ///
 /// # Errors
-/// Returns a text that states why the entry is invalid.
+/// Returns the reason why the entry is invalid.
 pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -50,7 +51,7 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
 /// Parses a number from 0 to `last`, in decimal, or in hexadecimal with the prefix `0x` or a final `h`.
 ///
 /// # Errors
-/// Returns a text that states why the entry is invalid.
+/// Returns the reason why the entry is invalid.
 pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -68,9 +69,10 @@ pub(crate) fn parse_number_or_hex(what: impl Into<Text>, text: &str, last: u64) 
     value.filter(|value| *value <= last).ok_or_else(refused)
 }
 
-/// Parses a quantity as printed on a component: a number with a prefix from f to G, after the number or in place of its
-/// decimal point, with or without a unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`), or with an exponent
-/// (`22e-12`). Returns `None` if the text is invalid.
+/// Parses a quantity as printed on a component, or returns `None` if the text is invalid.
+///
+/// A prefix from f to G may follow the number or replace its decimal point, and the unit may be left out: `10k`, `10
+/// kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`. An exponent is possible as well: `22e-12`.
 fn quantity(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
@@ -90,7 +92,7 @@ fn quantity(text: &str) -> Option<f64> {
     let prefix = PREFIXES.iter().find_map(|(prefix, factor)| Some((text.split_once(*prefix)?, factor)));
     match prefix {
         Some(((before, ""), factor)) => number(before).map(|value| value * factor),
-        // 4k7; a number with a decimal point has no second one.
+        // In `4k7` the prefix replaces the decimal point, so there must not be another one.
         Some(((before, behind), factor)) => {
             let whole = |digits: &str| !digits.is_empty() && digits.bytes().all(|c| c.is_ascii_digit());
             let value = number(&format!("{before}.{behind}")).filter(|_| whole(before) && whole(behind))?;
@@ -100,10 +102,10 @@ fn quantity(text: &str) -> Option<f64> {
     }
 }
 
-/// Parses a quantity from `least` to `most`. Error texts state the limits as `range`.
+/// Parses a quantity from `least` to `most`. Errors name these limits as `range`.
 ///
 /// # Errors
-/// Returns a text that states why the entry is invalid.
+/// Returns the reason why the entry is invalid.
 pub(crate) fn parse_quantity(
     what: impl Into<Text>,
     text: &str,
@@ -123,12 +125,12 @@ fn filled(what: &Text, text: &str) -> Result<(), Text> {
     if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", what.clone())) } else { Ok(()) }
 }
 
-/// Returns the number of decimals that a limit needs, at most three.
+/// Returns the number of decimals needed to show a limit, at most three.
 pub(crate) fn decimals(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
-/// Returns the number of decimals that a number needs, at most `most`.
+/// Returns the number of decimals needed to show a number, at most `most`.
 pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }

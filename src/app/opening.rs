@@ -1,5 +1,5 @@
-//! Opening of links: on a thread, after the present user of the connection has released it, and in the session that
-//! already owns the connection.
+//! Opening of links. A link is opened on a thread after the present user of the connection has released it. If a
+//! session already uses the connection, the link is opened in that session.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
@@ -16,35 +16,35 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkScheme, LinkUrl, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Maximum number of frames waiting for the window. This is ten seconds at 2,000 frames per second, far more than a
-/// window that still draws leaves unread.
+/// Maximum number of frames that wait for the window. This is enough for ten seconds at 2,000 frames per second.
 const FRAMES: usize = 20_000;
-/// Maximum memory used by waiting frames, in bytes.
+/// Maximum memory used by waiting frames in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
-    /// Returns the tab of the device to which a link leads. If the link does not determine the kind of device, the kind
-    /// last used with the link is chosen, or the tab shown last if there were several kinds. A new link uses the open
-    /// tab.
+    /// Returns the tab of the device to which a link leads.
+    ///
+    /// If several kinds of devices are possible, the kind last used with the link is chosen, or else the open tab.
+    /// Without a link, the open tab is returned.
     pub(super) fn tab_for_link(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
         let shown = if kinds.kind_for_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
         let fits = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
-        // Each kind has virtual devices: their links do not tell the kind.
+        // Every kind has virtual devices, so a `sim:` link does not identify the kind.
         let text = (link.scheme != LinkScheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
         let leads_there =
             |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
-        // An invalid link is reported by a kind that such links lead to.
+        // An invalid link is reported by a kind of device to which such links can lead.
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
 
-    /// Opens a link to a kind of device, in the session that already has the connection or else in a new session. A
-    /// session of a different kind releases the connection.
+    /// Opens a link to a kind of device. If a session of this kind uses the connection, the link is opened there,
+    /// otherwise in a new session. A session of another kind releases the connection.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_absolute_file(url);
         if let Some(id) = self.session_at(tab, &url) {
@@ -52,7 +52,7 @@ impl Studio {
         }
     }
 
-    /// Opens a link to a device found by a search. The search has already asked about other masters on the line.
+    /// Opens a link to a device found by a search. The search has already asked about other masters.
     pub(super) fn open_discovered(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
@@ -98,8 +98,9 @@ impl Studio {
         Some(id)
     }
 
-    /// Releases the session on a connection for another use, unless the session is writing. A session whose link is
-    /// still being opened has ended when the returned channel closes.
+    /// Releases the session on a connection for another use, unless it is writing.
+    ///
+    /// If its link is still being opened, a channel is returned that closes when this has ended.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -129,8 +130,8 @@ impl Studio {
         self.open_session_link(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened.
-    /// Listening proves nothing, because the drive may have read the encoder at power-up and been silent since.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked first. Listening is not sufficient,
+    /// because a drive may have read the encoder at power-up and be silent since then.
     fn open_session_link(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -147,7 +148,7 @@ impl Studio {
         }
     }
 
-    /// Opens a link again for a session. Only the result of the new attempt counts.
+    /// Starts an attempt to open a link for a session. Results of earlier attempts are then ignored.
     fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
@@ -163,7 +164,7 @@ impl Studio {
         let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
         let Some(device) = self.devices.iter_mut().find(own) else {
             if let Ok(opened) = result {
-                // Its session was closed, or has opened another one since.
+                // The session was closed, or a newer attempt was started.
                 opened.close_unneeded(session, &mut self.services);
             }
             return;
@@ -185,8 +186,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. The
-    /// connection is free again when the sender for its turn is dropped.
+    /// Opens a link on a thread, after an earlier attempt and other users of the connection have ended. The returned
+    /// channel closes when the connection is free again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,
@@ -199,7 +200,7 @@ impl Services {
         let endings = self.closing_workers_on(&url);
         self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
-                // Nothing is sent on it: it disconnects, or never does.
+                // Nothing is ever sent on this channel; it only closes.
                 let _ = earlier.recv_timeout(world.patience.job);
             }
             let free = endings.into_iter().all(|(ending, patience)| ending.wait(patience));
@@ -237,7 +238,7 @@ fn open<D: Kind>(
     }
 }
 
-/// Guard that wakes the window when the thread of a session has ended, for whatever reason.
+/// Guard that wakes the window when the thread of a session ends, for any reason.
 struct WakeOnDrop(Wake);
 
 impl Drop for WakeOnDrop {

@@ -1,13 +1,14 @@
-//! The command palette: matching and ranking of action names against a typed text.
+//! The command palette: search and ranking of actions by their name.
 
-/// Rates how well a name matches the typed text, with 0 being best. Returns `None` if a typed word is missing. Case and
-/// word order are ignored.
+/// Returns how well a name matches the typed text, or `None` if a typed word is missing. The best match is 0. Case and
+/// word order do not matter.
 pub(crate) fn fit(typed: &str, name: &str) -> Option<usize> {
     let (typed, name) = (typed.to_lowercase(), name.to_lowercase());
     typed.split_whitespace().map(|word| match_quality(word, &name)).sum()
 }
 
-/// Returns 0 for a match at the beginning of the name, 1 at the beginning of a word, and 2 within a word.
+/// Returns how well a name matches a word: 0 at the beginning of the name, 1 at the beginning of a word, and 2 within a
+/// word.
 fn match_quality(word: &str, name: &str) -> Option<usize> {
     name.match_indices(word)
         .map(|(at, _)| match name.get(..at).and_then(|before| before.chars().next_back()) {

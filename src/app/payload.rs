@@ -1,5 +1,5 @@
-//! Typed actions of one kind of device on their way through untyped code. Only [`Payload::open`] can encounter an
-//! action of another kind.
+//! Actions of a kind of device on their way through code that does not know their type. Only [`Payload::open`] can find
+//! an action of another kind.
 
 use std::any::Any;
 use std::fmt;
@@ -11,10 +11,10 @@ use super::tab::Tab;
 
 pub trait DeviceAction: Any + Send {}
 
-/// An action or a task result with its kind of device erased.
+/// An action or the result of a task, for any kind of device.
 pub struct Payload(Box<dyn Any + Send>);
 
-/// Error returned when a payload has reached a device of a different kind.
+/// Error if a payload has reached a device of another kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the action is for another kind of device")]
 pub struct PayloadKindError;

@@ -1,4 +1,4 @@
-//! Edits that have not been written, as far as they are common to every kind of device.
+//! Edits that have not been written. This part is the same for every kind of device.
 
 use super::history::History;
 
@@ -18,14 +18,14 @@ pub trait PendingEdits {
     /// Redoes the last undone step. Returns `false` if there is none.
     fn redo(&mut self) -> bool;
 
-    /// Discards all edits as one undoable step. Returns `false` if there are none.
+    /// Discards all edits as one undo step. Returns `false` if there are none.
     fn revert(&mut self) -> bool;
 
     /// Discards the undo steps, because the edits have been written or saved.
     fn forget_steps(&mut self);
 }
 
-/// Edits that are kept as a complete copy of the values, with the steps that led to them.
+/// Edits that are stored as a complete copy of the values, with their undo steps.
 pub(crate) trait SteppedEdits {
     type Values: Clone + PartialEq;
 
@@ -35,11 +35,11 @@ pub(crate) trait SteppedEdits {
 
     fn history(&self) -> &History<Self::Values>;
 
-    /// Returns the original values, the edited values and the steps, or `None` if nothing has been read.
+    /// Returns the original values, the edited values and the undo steps, or `None` if nothing has been read.
     fn parts(&mut self) -> Option<SteppedParts<'_, Self::Values>>;
 }
 
-/// The original values, the edited values and the steps.
+/// The original values, the edited values and the undo steps.
 pub(crate) type SteppedParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
 
 impl<S: SteppedEdits> PendingEdits for S {

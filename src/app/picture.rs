@@ -22,8 +22,7 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates a picture from RGB pixels. Returns `None` if there are no pixels or their number does not match the
-    /// size.
+    /// Creates a picture from RGB pixels. Returns `None` if the number of bytes does not match the size, or if it is 0.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
@@ -33,7 +32,7 @@ impl Picture {
     /// Saves the picture as PNG.
     ///
     /// # Errors
-    /// Returns the write error. The old file is kept.
+    /// Returns the error if the file cannot be written. An existing file then stays unchanged.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

@@ -1,30 +1,33 @@
-//! Fresh key presses: whether a press is a new action of the user or the repetition of a held key.
+//! Detection of fresh key presses. A press is fresh if the user has made it, rather than a held key that repeats
+//! itself.
 //!
-//! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard focus, so the
-//! next repetition of a held key looks like a first press, and the release reported at that moment is artificial. A
-//! release received while the window has the focus does prove something, once a later frame has still seen the key up:
-//! a release and a press made at the same time may arrive in two frames, however far apart. This module is pure: inputs
-//! are arguments, in order, with the time of their frame in seconds.
+//! A press alone proves nothing. Toolkits forget which keys are down when the window loses the keyboard focus. The next
+//! repetition of a held key then looks like a first press, and the release reported at that moment is artificial.
+//!
+//! A release is a proof if the window has the focus when it arrives, and a later frame still sees the key up. A release
+//! and a press made at the same time may arrive in two frames, however far apart.
+//!
+//! This module has no access to the system: inputs are arguments in order, with the time of their frame in seconds.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressKey {
     Space,
-    /// Enter, including the Enter key of the numeric pad.
+    /// Enter on the main keyboard or the numeric pad.
     Enter,
 }
 
-/// Minimum time in seconds between a user's release and the next press of a key. Remote desktops, and displays that do
-/// not distinguish repetitions from presses, repeat a key by a release followed immediately by a press.
+/// Minimum time in seconds between the release of a key and a fresh press. Some remote desktops and displays repeat a
+/// key by a release and an immediate press.
 const LEAST: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
-    /// The state of the key is unknown, so it may be held.
+    /// The state of the key is unknown. It may be held.
     #[default]
     Nothing,
     Down,
-    /// The key was released, or another key was pressed, in the frame at the given time, and the key has not been seen
-    /// up long enough since.
+    /// The key was released or another key was pressed, in the frame at this time. The key has not been up long enough
+    /// since then.
     Released(f64),
     Up,
 }
@@ -39,13 +42,12 @@ impl KeyStates {
     /// State in which both keys are up and the keyboard focus was never lost.
     pub const UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Discards the known key states, because the keyboard focus was lost, gained, or has another purpose.
+    /// Discards the states of the keys, because the keyboard focus has changed or has another purpose.
     pub fn forget(&mut self) {
         *self = KeyStates::default();
     }
 
-    /// Handles a key press. Returns whether the press is fresh, that is, whether an earlier frame saw the key up long
-    /// enough.
+    /// Handles a key press and returns whether it is fresh. An earlier frame must have seen the key up for long enough.
     pub fn press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
     }
@@ -55,8 +57,8 @@ impl KeyStates {
         *self.of(key) = KeyState::Released(now);
     }
 
-    /// Records that another key was pressed. Only the key pressed last is repeated by the system, so a repetition of an
-    /// unknown key is ignored.
+    /// Records that another key was pressed. The system repeats only the key pressed last, so a later press of a key in
+    /// an unknown state is not a repetition.
     pub fn press_other_key(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -66,8 +68,8 @@ impl KeyStates {
         }
     }
 
-    /// Records that another key was pressed outside a text entry. A press immediately afterwards is not made by a
-    /// person, since barcode scanners type digits and Enter that fast.
+    /// Records that another key was pressed outside a text entry. A press immediately after it is not fresh, because
+    /// only a barcode scanner types digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -77,8 +79,8 @@ impl KeyStates {
         }
     }
 
-    /// Ends a frame and returns the time in seconds after which the next frame is required at the latest. A user who
-    /// presses a key again after releasing it causes no frame in between.
+    /// Ends a frame. Returns the time in seconds after which another frame is needed, if the state of a key depends on
+    /// it. A release alone causes no further frame.
     #[must_use]
     pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -95,7 +97,7 @@ impl KeyStates {
         next
     }
 
-    /// Returns whether the key was seen up, so that its next press is fresh unless it follows immediately.
+    /// Returns whether the key was seen up. Its next press is then fresh, unless it follows immediately.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }

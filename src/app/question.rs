@@ -1,4 +1,5 @@
-//! A question asked before data are lost, a job is interrupted, or bytes are sent to a line with a drive on it.
+//! A question to the user before data are lost, a job is interrupted, or bytes are sent to a line that may have a drive
+//! on it.
 
 use std::path::PathBuf;
 
@@ -11,7 +12,6 @@ use super::tab::Tab;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// Description of what would be lost or interrupted.
     pub text: Text,
     pub confirm: Text,
     pub decline: Text,
@@ -35,7 +35,7 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Returns the question whether another master may be on the line to which a link leads.
+    /// Creates the question whether another master may be on the line of a link.
     pub(crate) fn other_master(link: String, then: Then) -> Self {
         Question {
             text: Text::new("question.drive").with("link", link),

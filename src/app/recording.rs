@@ -1,4 +1,4 @@
-//! The recording of a device, as far as it is common to all kinds.
+//! The recording of a device. This part is the same for all kinds of devices.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub trait Recording {
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped_count(&self) -> u64;
 
-    /// Sets the polling interval. `begins` states whether polling was off before.
+    /// Sets the polling interval. `begins` states whether polling begins with this call.
     #[doc(hidden)]
     fn poll(&mut self, interval: Option<Duration>, begins: bool);
 }

@@ -1,4 +1,4 @@
-//! Exchange of stored values between the settings and the drives. Other windows write to the same file.
+//! Exchange of stored data between the settings and the drives. Other windows write to the same settings file.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::store::FileError;
 
 /// Interval at which the settings are read again while drives are under control.
 const PACE: Duration = Duration::from_secs(1);
-/// Time for which settings remain valid after being read, the same as for values read from the drives.
+/// Time for which settings stay valid after they were read. It is the same as for values read from the drives.
 const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
@@ -23,7 +23,7 @@ impl Studio {
         }
     }
 
-    /// Reads the settings periodically while drives are under control, because another window may have marked limits as
+    /// Reads the settings periodically while drives are under control. Another window may have marked limits as
     /// unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
@@ -52,7 +52,7 @@ impl Studio {
         self.controlled_drives().filter(reading).for_each(|drives| drives.set_read_state(SettingsReadState::Read));
     }
 
-    /// Records that the settings could not be read. No drive under control moves until they have been read.
+    /// Handles a failure to read the settings. Drives under control do not move until the settings have been read.
     pub(super) fn handle_settings_error(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.handle_read_failure();

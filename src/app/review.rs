@@ -1,4 +1,4 @@
-//! The review of a write, for every kind of device: its effect, the consent, the progress and the result.
+//! The review of a write, for every kind of device: its effect, the approval of the user, the progress and the result.
 
 mod permit;
 
@@ -15,10 +15,10 @@ use crate::worker::{Committed, is_uncounted};
 pub struct Review<K: Reviewable> {
     pub title: Text,
     pub state: ReviewState<K>,
-    /// Whether to write even though the device has reached its limit of write cycles.
+    /// Whether to write although the device has reached its limit of write cycles.
     pub force_wear: bool,
     pub is_for_another: bool,
-    /// Whether the change was made for a different type of device.
+    /// Whether the change was made for another type of device.
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
     /// The relevant permits, and whether they are granted.
@@ -33,11 +33,11 @@ pub enum ReviewState<K: Reviewable> {
     Done(Box<K::Prepared>, Committed<K::Written>),
     /// The write is impossible or ended early.
     Failed {
-        /// Texts that describe what happened and what to do.
+        /// Texts that state what happened and what to do.
         texts: Vec<Text>,
-        /// Whether the device had already been written to when the write ended.
+        /// Whether the device had been written to before the write ended.
         begun: bool,
-        /// The plan that was being executed, and the number of operations known to be completed.
+        /// The plan that was being executed, and the number of operations that are known to be completed.
         cut_off: Option<(Box<K::Prepared>, usize)>,
     },
 }
@@ -58,7 +58,7 @@ impl<K: Reviewable> Review<K> {
         }
     }
 
-    /// Returns the displayed plan until the review ends.
+    /// Returns the displayed plan. There is one until the review ends.
     pub fn prepared(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -80,12 +80,12 @@ impl<K: Reviewable> Review<K> {
         matches!(self.state, ReviewState::Writing(_))
     }
 
-    /// Returns whether the plan has neither been started nor failed.
+    /// Returns whether a plan is requested or ready and has not been started.
     pub(in crate::app) fn is_pending_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// Ends the review early, with `done` completed operations if execution had begun.
+    /// Ends the review early. If the execution had begun, `done` operations had been completed.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.plan_in_progress().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
@@ -98,14 +98,14 @@ impl<K: Reviewable> Review<K> {
         Some(change)
     }
 
-    /// Returns the permits that are granted or would make a difference.
+    /// Returns the permits to offer: those that are granted, and those that would change the plan.
     fn permit_toggles(&self) -> Vec<PermitToggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::OtherType => self.is_for_another_type,
             Permit::Mounting => self.prepared().is_some_and(K::skips_mounting_values),
             Permit::Recreate => true,
-            // It is shown as a question.
+            // This permit is offered as a question.
             Permit::Copy(_) => false,
         };
         self.permits.iter().copied().filter(|own| own.is_on || matters(own.permit)).collect()
@@ -115,13 +115,13 @@ impl<K: Reviewable> Review<K> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperationTexts {
     pub item: Text,
-    /// Changes in order, of which there is at least one.
+    /// Changes in order, at least one.
     pub changes: Vec<ChangeTexts>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeTexts {
-    /// Changed part of the item, or `None` if all of it is changed.
+    /// Part of the item that is changed, or `None` for the whole item.
     pub part: Option<Text>,
     pub old: Text,
     pub new: Text,
@@ -141,7 +141,7 @@ impl OperationTexts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
-    /// Label of the answer that allows nothing.
+    /// Label of the answer that does not give the permit.
     pub no: Text,
     pub yes: Text,
     pub permit: Permit,
@@ -151,9 +151,9 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
-    /// Execution step by step, with the user at the device.
+    /// The plan is executed step by step, and the user takes part at the device.
     Leads,
-    /// Execution step by step, without writing anything.
+    /// The plan is executed step by step and writes nothing.
     Tests,
 }
 
@@ -166,7 +166,7 @@ impl ExecutionMode {
         }
     }
 
-    /// Returns the text id of the description of the next action.
+    /// Returns the id of the text that describes the next action.
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
@@ -176,25 +176,26 @@ impl ExecutionMode {
     }
 }
 
-/// A review in the form displayed, for any device.
+/// A review as it is displayed, for any device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
     pub lines: Vec<OperationTexts>,
     pub warnings: Vec<Text>,
-    /// Actions that the plan requires from the user at the device.
+    /// Actions at the device that the plan requires from the user.
     pub needs: Vec<Text>,
-    /// Values from another device that must be set up again afterwards. They are shown during planning, during writing
-    /// and at the end.
+    /// Values from another device that must be set up again later. They are shown while planning, while writing and at
+    /// the end.
     pub redo: Option<Text>,
     /// Cost in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
     pub execution_mode: ExecutionMode,
     pub toggles: Vec<PermitToggle>,
-    /// Questions that the user must answer first.
+    /// Questions that the user must answer before the plan is executed.
     pub questions: Vec<Question>,
-    /// Whether to write even if the device reaches its limit of write cycles or their number is unknown.
+    /// Whether to write although the limit of write cycles is reached or their number is unknown. `None` if the user
+    /// need not decide this.
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
@@ -206,7 +207,7 @@ pub enum Stage {
     /// The plan contains nothing to do.
     Nothing,
     Ready(PlanId),
-    /// The plan is being executed. Holds the number of completed operations.
+    /// The plan is being executed. Contains the number of completed operations.
     Writing(usize),
     Done {
         verified: Text,
@@ -222,22 +223,22 @@ pub enum Stage {
     },
 }
 
-/// A kind of device with a memory, and the texts for its writes.
+/// A kind of device with a memory, with the texts for its writes.
 pub trait Reviewable: Kind<Review = Review<Self>> {
     type Change: Clone;
     type Prepared: Planned + Clone;
     type Written;
 
     fn change(change: &Self::Change) -> Text;
-    /// Returns the flag of a permit, or `None` if the permit does not apply.
+    /// Returns the flag for a permit in a change, or `None` if the permit does not apply.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
-    /// Returns whether mounting values differ and are left unchanged.
+    /// Returns whether some values depend on the mounting, differ, and are not written.
     fn skips_mounting_values(_prepared: &Self::Prepared) -> bool {
         false
     }
 
-    /// Returns the written values that belong to a different device and must be set up again.
+    /// Returns the written values that come from another device and must be set up again.
     fn redo(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
@@ -250,14 +251,14 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns the actions that the plan requires from the user at the device.
+    /// Returns the actions at the device that the plan requires from the user.
     fn requirements(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
     fn cost(prepared: &Self::Prepared) -> Text;
 
-    /// Returns whether the plan makes the device reach its limit of write cycles.
+    /// Returns whether the device reaches its limit of write cycles with this plan.
     fn reaches_wear_limit(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
@@ -284,7 +285,8 @@ pub fn written_texts<K: Reviewable>(committed: &Committed<K::Written>) -> (Sever
     }
 }
 
-/// Describes the values that a restore leaves unchanged: those missing on one side, and those of a different mounting.
+/// Describes the values that a restore does not change: values that are missing on one side, and values that depend on
+/// another mounting.
 pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
@@ -302,12 +304,12 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 }
 
 impl<K: Reviewable> Review<K> {
-    /// Returns the review in the form displayed, after `done` operations have been completed.
+    /// Returns the review as it is displayed after `done` completed operations.
     pub fn sheet(&self, done: usize) -> ReviewSheet {
         self.review_sheet(done, K::op)
     }
 
-    /// Returns the review in the form displayed, with the connected device's own descriptions of operations.
+    /// Returns the review as it is displayed. `op` describes the operations for the connected device.
     pub(in crate::app) fn review_sheet(
         &self,
         done: usize,

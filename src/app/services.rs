@@ -1,4 +1,4 @@
-//! Services of the studio for sessions: the environment, threads for blocking tasks, the log, and the job list.
+//! Services of the studio for its sessions: the environment, threads for blocking tasks, the log, and the list of jobs.
 
 use std::any::{Any, TypeId};
 use std::collections::{HashMap, VecDeque};
@@ -19,18 +19,18 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{BaseFolders, Store};
 use crate::worker::JobId;
 
-/// The studio's access to the outside world, which tests replace.
+/// Access to everything outside the studio. Tests replace it.
 #[derive(Clone)]
 pub struct Environment {
     pub store: Store,
-    /// The configuration that kinds of device receive from outside.
+    /// Values for kinds of devices from outside.
     pub given: Given,
     pub kinds: KindRegistry,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
-    /// The folders to which relative paths refer.
+    /// Folders that relative paths refer to.
     pub folders: BaseFolders,
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
-    /// Maximum waiting times when closing.
+    /// Maximum waiting times when sessions or the window are closed.
     pub patience: GracePeriods,
 }
 
@@ -74,23 +74,23 @@ pub struct Services {
     jobs: VecDeque<JobRecord>,
     pub(crate) file_question: Option<FileQuestion>,
     pub(crate) brakes: DriveStopHandles,
-    /// Sessions that have been released but have not ended yet.
+    /// Sessions that have been released and are still ending.
     pub(super) closing_sessions: Vec<ClosingSession>,
     pub(super) opening_files: Vec<std::path::PathBuf>,
     pub(super) drafts_on_their_way: usize,
-    /// Data shared by the sessions of one kind of device.
+    /// Data shared by all sessions of a kind of device, by type.
     shared: HashMap<TypeId, Box<dyn Any>>,
 }
 
 impl Services {
     const JOBS: usize = 500;
 
-    /// Returns the data shared by the sessions of one kind of device, or `None` if no data have been shared yet.
+    /// Returns the data shared by all sessions of a kind of device, or `None` if there are none yet.
     pub fn shared_data<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 
-    /// Shares data with the other sessions of the same kind of device, replacing earlier data.
+    /// Shares data with all sessions of a kind of device. Earlier data are replaced.
     pub fn share<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
@@ -121,7 +121,7 @@ impl Services {
         self.log.add(self.notice(severity, texts, about));
     }
 
-    /// Adds a notice about a part of the device to the log and displays it in the window.
+    /// Adds a notice about a part of a device to the log, and displays it in the window.
     pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
@@ -131,7 +131,7 @@ impl Services {
         self.log.add(Notice { part, ..self.notice(severity, texts, about) });
     }
 
-    /// Adds a notice to the log only, because the window shows it elsewhere.
+    /// Adds a notice to the log. It is not displayed, because the window already shows it elsewhere.
     pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.notice(severity, texts, about));
     }

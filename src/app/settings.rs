@@ -1,5 +1,5 @@
-//! Settings stored between runs: appearance, language, links and panel layout. Defaults apply if they cannot be read.
-//! This module does not access files.
+//! Settings that are stored between runs: appearance, language, links and layout of the panels. If they cannot be read,
+//! the defaults apply. Files are not accessed here.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,22 +24,22 @@ pub enum ColorScheme {
 pub struct Settings {
     pub theme: ColorScheme,
     pub language: Language,
-    /// Links used in each tab, latest first. Access codes are not part of a link and are therefore not included.
+    /// Links used in each tab, with the latest first. They contain no access codes.
     links: Links,
-    /// Layout of the panels, which only the window interprets.
+    /// Layout of the panels. Only the window interprets it.
     pub layout: Option<String>,
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
-    /// Whether the user has stopped live values, in which case they no longer start automatically.
+    /// Whether the user has stopped live values. They then no longer start automatically.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub live_stopped: bool,
     /// Whether the Live panel shows values without a plot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub values_alone: bool,
-    /// Stored data about drives, by the device to which the drives are connected.
+    /// Data about drives, by the name of the device to which the drives are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -61,20 +61,20 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the settings used when the program is started for the first time.
+    /// Returns the settings for the first start of the program.
     pub fn of(kinds: KindRegistry) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
     const LINKS: usize = 12;
 
-    /// Parses settings. Returns `None` if the file was not written by [`emit`](Self::emit).
+    /// Parses settings, or returns `None` if the text is not in the form that [`emit`](Self::emit) writes.
     pub fn parse(text: &str) -> Option<Self> {
         ron::from_str(text).ok()
     }
 
-    /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry. For example, an unknown
-    /// tab does not cause the links to be lost.
+    /// Returns the readable part of a file that [`parse`](Self::parse) refuses. Entries are read one by one, so an
+    /// unknown tab, for example, does not affect the links.
     pub(super) fn parse_partial(text: &str) -> Self {
         macro_rules! entry {
             ($name:ident: $type:ty, $usual:expr) => {{
@@ -91,7 +91,7 @@ impl Settings {
             language: entry!(language: Language, usual.language),
             links: entry!(
                 links: Links,
-                // The format from when there was only one kind of device.
+                // This is the format from the time when there was only one kind of device.
                 entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(Links::default(), |mut links, link| {
                     links.change(Tab::default(), |own| own.insert(0, link));
                     links
@@ -105,7 +105,7 @@ impl Settings {
             values_alone: entry!(values_alone: bool, usual.values_alone),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
-                // Unconfirmed limits stay unconfirmed, even if other parts are broken.
+                // Unconfirmed limits stay unconfirmed, even if other parts are invalid.
                 entry!(drives: BTreeMap<String, PartialDriveEntry>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))
@@ -114,8 +114,8 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the changes from `known` to `ours` applied. Another window may have changed everything
-    /// else in the meantime.
+    /// Returns the settings with the changes from `known` to `ours`. Another window may have changed other parts in the
+    /// meantime.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
         macro_rules! take {
@@ -157,7 +157,7 @@ impl Settings {
         self.drives.insert(device, what);
     }
 
-    /// Returns the links used for the devices of a tab, latest first.
+    /// Returns the links used in a tab, with the latest first.
     pub fn links(&self, tab: Tab) -> &[String] {
         self.links.of(tab)
     }
@@ -179,7 +179,7 @@ impl Settings {
     }
 }
 
-/// Links used in each tab, in the order of first use of the tabs.
+/// Links used in each tab. Tabs are in the order of their first use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Links(Vec<(Tab, Vec<String>)>);
 
@@ -202,7 +202,8 @@ impl Links {
         self.0.iter().map(|(tab, _)| *tab)
     }
 
-    /// Assigns links from files written before several kinds existed to the first tab.
+    /// Moves links from an old file to the first tab. Such files date from the time when there was only one kind of
+    /// device.
     fn settle(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);
@@ -238,7 +239,7 @@ impl<'de> Deserialize<'de> for Links {
     }
 }
 
-/// Returns the links of `ours` used since `known`, which precede the unchanged rest.
+/// Returns the links of `ours` that were used since `known`. They precede the unchanged links.
 fn newer_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);

@@ -1,8 +1,8 @@
-//! Storage of the settings: changes are written on a thread, one write at a time.
+//! Storage of the settings. Changes are written on a thread, one write at a time.
 //!
-//! Other windows write to the same file. A write merges the present content of the file with the changes made in this
-//! window since the last read or write, under a lock. Changes by others are adopted only if they lock drives or concern
-//! devices that are not open.
+//! Other windows write to the same file. Under a lock, a write merges the present content of the file with the changes
+//! that this window has made since the last read or write. Changes of others are adopted only if they lock drives or
+//! concern devices that are not open here.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,24 +18,23 @@ use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileErrorKind, read_text, update_text};
 
-/// Maximum time for which the start of the program waits for the settings.
+/// Maximum time for which the program waits for the settings when it starts.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 const NOT_KEPT: &str = "session.settings_not_kept";
 
-/// Pause between a failed attempt to read the settings and the next one.
+/// Time between a failed attempt to read the settings and the next one.
 const AGAIN: Duration = Duration::from_secs(1);
 
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
-    /// Settings of this window at the time when the file was last read or written.
+    /// Settings of this window when the file was last read or written.
     known: Settings,
     failed: Option<Settings>,
     writing: Option<Settings>,
-    /// Whether the file has been read or set aside. The file is not overwritten before that.
+    /// Whether the file has been read, or copied because it is invalid. It is not overwritten before that.
     may_write: bool,
     is_failure_reported: bool,
-    /// Time since which the file is being read, if a read is in progress.
     reading_since: Option<Zoned>,
     last_read: Option<Zoned>,
     last_failed_read: Option<Zoned>,
@@ -43,10 +42,10 @@ pub(crate) struct SettingsStore {
 
 #[derive(Debug)]
 pub enum LoadedSettings {
-    /// The settings are complete, as the program wrote them.
+    /// The file was valid and complete.
     Whole(Box<Settings>),
     Missing,
-    /// The file is broken. Holds its readable part and the copy that was made.
+    /// The file is invalid. Contains its readable part, and the copy that was made.
     Broken {
         settings: Box<Settings>,
         path: PathBuf,
@@ -60,16 +59,16 @@ pub enum LoadedSettings {
 #[derive(Debug)]
 pub struct SavedSettings {
     settings: Box<Settings>,
-    /// Paths of a broken file and of its copy.
+    /// Paths of an invalid file and of its copy.
     aside: Option<(PathBuf, PathBuf)>,
 }
 
 impl SettingsStore {
-    /// Reads the settings. If the disk does not respond at once, the settings arrive later as an action.
+    /// Reads the settings. If the disk does not respond in time, they arrive later as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
-        // Rendezvous channel: without a waiting receiver the settings go to the mailbox.
+        // The channel has no buffer. If nothing receives from it any more, the settings go to the mailbox.
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
             if let Err(late) = sender.send(read(path, kinds)) {
@@ -97,7 +96,7 @@ impl SettingsStore {
         (settings, store)
     }
 
-    /// Adopts settings that were read. Changes made by the user in the meantime are kept.
+    /// Adopts settings that were read. Changes of the user in the meantime are kept.
     pub(super) fn take(&mut self, read: LoadedSettings, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
         let kinds = services.world.kinds;
@@ -140,7 +139,7 @@ impl SettingsStore {
         services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
-    /// Handles the result of a write. A failure is reported only once.
+    /// Handles the result of a write. A failure is reported only the first time.
     pub(super) fn finish_write(
         &mut self,
         result: Result<SavedSettings, FileError>,
@@ -162,7 +161,7 @@ impl SettingsStore {
                 }
             }
             Err(error) => {
-                // Another program will release it: the write is retried.
+                // If another program is using the file, the write is repeated later.
                 self.failed = (error.problem != FileErrorKind::InUse).then_some(written);
                 if !std::mem::replace(&mut self.is_failure_reported, true) {
                     let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
@@ -172,8 +171,8 @@ impl SettingsStore {
         }
     }
 
-    /// Starts reading the settings again, as another window may have changed them. Returns whether a read starts with
-    /// this call.
+    /// Starts to read the settings again, because another window may have changed them. Returns whether a read has
+    /// started.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
@@ -188,13 +187,13 @@ impl SettingsStore {
         true
     }
 
-    /// Handles a failure to read the settings. They are treated as not read, since they may contain locks.
+    /// Handles a failed read. The settings still count as not read, because they may contain locks.
     pub(crate) fn handle_read_failure(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
-    /// Merges settings that were read. During a write, the settings are returned instead, and the result of the write
-    /// is merged later.
+    /// Merges settings that were read. While a write is in progress they are returned instead, because the result of
+    /// the write is merged later.
     pub(crate) fn finish_read(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
@@ -206,14 +205,14 @@ impl SettingsStore {
         None
     }
 
-    /// Returns whether the last read of the settings is longer ago than the given time.
+    /// Returns whether the last read of the settings is older than the given time.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
-        // The wall clock may be set back.
+        // The clock of the system may be set back, so the difference has no sign.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
-    /// Adopts data about drives that other windows have written.
+    /// Adopts data about drives from other windows.
     fn reconcile(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.adopt_drives(found);
@@ -226,7 +225,7 @@ impl SettingsStore {
     }
 }
 
-/// Reads the settings. A broken file is copied to a name next to it.
+/// Reads the settings. An invalid file is copied to another name in the same folder.
 fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => LoadedSettings::Whole(Box::new(settings)),
@@ -241,8 +240,7 @@ fn read(path: PathBuf, kinds: KindRegistry) -> LoadedSettings {
     }
 }
 
-/// Parses settings as far as possible, and returns them with whether they are complete. Returns `None` if there is no
-/// file.
+/// Parses settings as far as possible, and returns whether they are complete. Returns `None` if there is no file.
 fn understood(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
@@ -261,7 +259,7 @@ fn understood(text: Result<String, FileError>, kinds: KindRegistry) -> Result<Op
     }
 }
 
-/// Reads the settings, or returns `None` if no window can have written any.
+/// Reads the settings, or returns `None` if no window can have written them.
 fn found(path: &Path, kinds: KindRegistry) -> Result<Option<Settings>, FileError> {
     use FileErrorKind::{IsFolder, NoFolder, NotAFile, NotFolder};
     match understood(read_text(path), kinds) {
@@ -276,7 +274,7 @@ fn broken_copy_path(path: &Path) -> PathBuf {
     PathBuf::from(aside)
 }
 
-/// Writes the changes of `ours` since `known` into the current file.
+/// Writes the changes from `known` to `ours` into the present file.
 fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) -> Result<SavedSettings, FileError> {
     update_text(path, |text| {
         let (there, is_whole) = match understood(text, kinds)? {
@@ -284,14 +282,14 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
             None => (None, true),
         };
         let aside = if is_whole { None } else { move_to_backup(path)? };
-        // If the file was deleted, it has no other changes.
+        // A deleted file has no changes of others.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
         Ok((text, SavedSettings { settings: Box::new(merged), aside }))
     })
 }
 
-/// Copies a broken file unless it has been copied before. Returns both paths.
+/// Copies an invalid file, unless this has been done before. Returns the paths of the file and of the copy.
 fn move_to_backup(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
     let aside = broken_copy_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));

@@ -1,4 +1,5 @@
-//! Released sessions whose end is still to be reported. The window and the connection are not free before.
+//! Sessions that have been released and are still ending. The window cannot close and their connections are not free
+//! until they have ended.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,14 +16,16 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// Maximum waiting times when closing, and when opening a link whose connection is still held.
+/// Maximum waiting times when sessions or the window are closed, and when a link is opened whose connection is still in
+/// use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
     /// Maximum waiting time for a job that writes nothing.
     pub job: Duration,
-    /// Maximum waiting time for a write to reach a point at which it can end, and to lock again what it unlocked.
+    /// Maximum waiting time for a write. In this time it must reach a point at which it can end, and lock what it has
+    /// unlocked.
     pub write: Duration,
 }
 
@@ -53,7 +56,7 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the connection is free.
     fn is_ended(&self) -> bool;
 
-    /// Waits for the end, for at most `patience`. Returns whether the end was reached.
+    /// Waits for the end, for at most `patience`. Returns whether it has been reached.
     fn wait(&self, patience: Duration) -> bool;
 
     fn job_endings(&self) -> Vec<JobCompletion>;
@@ -92,7 +95,8 @@ pub(crate) fn shares_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 }
 
 impl Services {
-    /// Releases a thread. When the thread ends, `turn` is dropped, which lets the next user of the connection proceed.
+    /// Releases the thread of a session. When it ends, `turn` is dropped, and the next user of the connection can
+    /// continue.
     pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
@@ -121,7 +125,7 @@ impl Services {
     pub(super) fn poll_closing_sessions(&mut self) {
         let mut endings = Vec::new();
         self.closing_sessions.retain_mut(|closing| {
-            // In this order: a thread that has ended reports nothing more.
+            // The order matters: a thread that has ended reports nothing more.
             let ended = closing.ending.is_ended();
             for end in closing.ending.job_endings() {
                 if closing.info.write == Some(end.job) {
@@ -143,12 +147,12 @@ impl Services {
         }
     }
 
-    /// Returns whether a session that is ending is still writing.
+    /// Returns whether a session is ending and still writes.
     pub(super) fn is_closing_with_write(&self) -> bool {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
-    /// Returns the sessions that are ending on the connection of a link, with the time allowed for each.
+    /// Returns the sessions that are still ending on the connection of a link, with the maximum waiting time for each.
     pub(crate) fn closing_workers_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
         let own = self.closing_sessions.iter().filter(|closing| shares_wire(&closing.info.url, url));
         own.map(|closing| (closing.ending.clone(), self.closing_timeout(closing.info.write.is_some()))).collect()

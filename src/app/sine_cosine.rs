@@ -1,4 +1,5 @@
-//! Capability used by Signals: a device that provides sine and cosine in addition to its absolute position.
+//! Interface of a device that provides sine and cosine signals in addition to its absolute position. The tool Signals
+//! uses it.
 
 use super::action::Action;
 use super::studio::SessionId;
@@ -6,14 +7,14 @@ use super::texts::Text;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineReading {
-    /// The absolute position, in steps of 1/32 period.
+    /// Absolute position in steps of 1/32 period.
     pub position: u32,
     pub valid: bool,
     /// Sine and cosine signals in volts, if the device provides them.
     pub signals: Option<SineCosineVolts>,
 }
 
-/// Sine and cosine voltages, each relative to its reference wire.
+/// Voltages of sine and cosine, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
     pub sine_v: f64,
@@ -29,9 +30,9 @@ pub struct SineCosineRange {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
     pub session: SessionId,
-    /// Serial number, if it has been read.
+    /// Serial number, or `None` if it has not been read.
     pub serial_number: Option<String>,
-    /// Measuring range, if it is known and rotary.
+    /// Measuring range, or `None` if it is unknown or not rotary.
     pub range: Option<SineCosineRange>,
 }
 
@@ -42,6 +43,7 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Takes the requested reading, or the reason why there is none. Returns `None` if neither is available.
+    /// Returns the requested reading or the reason why there is none, and removes it. Returns `None` if there is
+    /// neither.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

@@ -1,8 +1,8 @@
-//! Presses that closely follow a stop. A user who stops a machine presses twice, holds the key, or releases the button
-//! after the machine has stopped; such presses must not affect anything else. They still stop motion, which may have
-//! started in the meantime. This module is pure: times are those of the frames, in seconds.
+//! Presses that closely follow a stop. A user who stops a machine may press twice, hold the key, or release the button
+//! after the machine has stopped. Such presses must not have any other effect. However, they still stop motion, which
+//! may have started in the meantime. Times are those of the frames, in seconds.
 
-/// Time in seconds after a stop during which another press also counts as a stop.
+/// Time in seconds after a stop in which another press is also a stop.
 const FRIGHT: f64 = 0.5;
 
 /// Times of the last stop of a motion, and of the last press of a stop button.
@@ -13,8 +13,8 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Returns whether a press at the given time refers to a motion that is running or has just ended. Such a press
-    /// counts as a stop itself.
+    /// Returns whether a press at the given time is meant for a motion that is running or has just ended. Such a press
+    /// counts as another stop.
     pub fn counts_as_stop(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
@@ -23,7 +23,7 @@ impl StopPresses {
         means
     }
 
-    /// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
+    /// Returns whether the last stop was so recent that a press must be meant for the same motion.
     pub fn has_recently_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
@@ -32,7 +32,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// Returns the time of the press that counts now. A click made with the keyboard has no separate press.
+    /// Returns the time of the press that belongs to the present click. A click by the keyboard has no separate press.
     pub fn press_time(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

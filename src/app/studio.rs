@@ -1,4 +1,4 @@
-//! Complete state of the window and its actions. It does not require a window: tests send actions and read the state.
+//! State of the program and its actions. A window is not required: tests send actions and read the state.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
 
-/// Number of a session, counted from the start of the program.
+/// Number of a session. Sessions are counted from the start of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(crate) u32);
 
@@ -42,7 +42,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Creates a studio with its stored settings. `wake` is called when there are new events.
+    /// Creates a studio with the stored settings. `wake` is called when there are new events.
     pub fn new(world: Environment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
@@ -66,7 +66,7 @@ impl Studio {
         }
     }
 
-    /// Starts with a link, a profile or, if neither is given, the virtual encoder.
+    /// Begins with a link or a profile, or with the virtual encoder if neither is given.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_for_link(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();
@@ -153,7 +153,7 @@ impl Studio {
         self.write_if_changed();
     }
 
-    /// Processes all events since the last call. This must be called in every frame.
+    /// Handles all events since the last call. Must be called in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
             self.act(action);
@@ -188,7 +188,6 @@ impl Studio {
         self.services.tasks.mailbox()
     }
 
-    /// Takes the pending question for a file, if any.
     pub fn take_file_question(&mut self) -> Option<FileQuestion> {
         self.services.file_question.take()
     }
@@ -211,19 +210,18 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
-    /// Returns the device shown in the open tab, or the device shown last if there is none.
+    /// Returns the device shown in the open tab, or else the device shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
-    /// Returns the device of type `M` that is shown in its tab.
+    /// Returns the device of type `M` that its tab shows.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
-    /// Returns whether a tab does not require a device.
     fn is_tool(&self, tab: Tab) -> bool {
         self.tools.iter().any(|(own, _)| *own == tab)
     }
@@ -233,8 +231,7 @@ impl Studio {
         Some(self.services.world.kinds.kind_for_tab(tab)?.virtual_link())
     }
 
-    /// Shows a tab. If nothing is open in the tab and its kind can create profiles without a device, a new profile is
-    /// created.
+    /// Shows a tab. If no device is open in it, an unsaved profile is created, provided that its kind supports this.
     fn show_tab(&mut self, tab: Tab) {
         self.settings.tab = tab;
         if self.shown.of(tab).is_none() {
@@ -254,7 +251,7 @@ impl Studio {
         }
     }
 
-    /// Returns the sine/cosine source of a device shown in its tab, if there is one.
+    /// Returns the source of sine and cosine signals among the devices that are shown in their tabs, if any.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
         kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
@@ -265,18 +262,18 @@ impl Studio {
         self.shown.set(tab, id);
     }
 
-    /// Returns whether any session has a job or polling that can be stopped.
+    /// Returns whether a job, polling, a search or a tool can be stopped.
     pub fn can_stop(&self) -> bool {
         self.devices.iter().any(|device| device.is_active()) || self.has_active_search() || self.can_stop_tools()
     }
 
-    /// Returns whether a job or a measurement is running. Polling does not count.
+    /// Returns whether a job or a measurement is running. Polling is not included.
     pub fn is_working(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().map(Box::as_ref).any(device) || self.has_active_search() || self.can_stop_tools()
     }
 
-    /// Returns whether live values are arriving, in which case the window must be redrawn continuously.
+    /// Returns whether live values are arriving. The window must then be drawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.has_control()
     }
@@ -363,20 +360,20 @@ impl Studio {
         }
     }
 
-    /// Stops the jobs of tabs that do not require a device.
     pub(super) fn stop_tools(&mut self) {
         self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }
 
     fn press_escape(&mut self) {
-        // Before anything else.
+        // Escape stops a motion before anything else.
         if self.is_turned_by_hand() {
             return self.stop_motion();
         }
         if self.dismiss_question() || self.diverged.take().is_some() || self.close_comparison() {
             return;
         }
-        // Polling is no work: drives stay visible while a dialog closes, or while they are under control.
+        // Escape does not stop polling, because values of drives must stay visible while a dialog closes or while
+        // drives are under control.
         if self.is_working() {
             self.stop();
             return;

@@ -1,5 +1,5 @@
-//! Blocking tasks such as file access, opening links and system dialogs. Each runs on its own thread and returns its
-//! result as an action.
+//! Blocking tasks, such as file access, the opening of links, and dialogs of the system. Each one runs on a thread and
+//! returns its result as an action.
 
 use std::sync::Arc;
 use std::thread;
@@ -11,7 +11,7 @@ use super::Action;
 /// A callback that wakes the window when there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Runner for tasks on threads. The result of each task is an action.
+/// Runs tasks on threads. The result of each task is an action.
 pub struct TaskRunner {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
@@ -26,14 +26,13 @@ pub struct Mailbox {
 }
 
 impl TaskRunner {
-    /// Creates an empty list of tasks.
     pub(crate) fn new(wake: Wake) -> Self {
-        // Unbounded: each thread sends once, and there are as many as the user's clicks.
+        // The channel needs no limit, because each thread sends only once and is started by an action of the user.
         let (sender, receiver) = unbounded();
         TaskRunner { sender, receiver, wake }
     }
 
-    /// Runs a task on a thread. The result of the task is returned as an action.
+    /// Runs a task on a thread. Its result is returned as an action.
     pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
@@ -58,7 +57,7 @@ impl TaskRunner {
 
 impl Mailbox {
     pub fn send(&self, action: Action) {
-        // The studio has ended: the action is not needed.
+        // If the studio has ended, the action is not needed.
         let _ = self.sender.send(action);
         self.wake();
     }

@@ -1,5 +1,5 @@
-//! Texts in English and German, read from catalogues in `assets/texts`: a common one, and one each for every device,
-//! the adapter and Signals. A text refers to its catalogue.
+//! Texts in English and German from the catalogues in `assets/texts`. There is a common catalogue, and one for each
+//! device, the adapter and Signals. A text refers to its catalogue.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,7 +14,7 @@ pub enum Language {
     German,
 }
 
-/// A catalogue text with its arguments, independent of the language.
+/// A text of a catalogue with its arguments. It does not depend on the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -25,7 +25,7 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum TextArgument {
     Words(String),
-    /// A number in English format, with a decimal point.
+    /// A number with a decimal point, as in English.
     Number(String),
     Name(String, String),
     Text(Text),
@@ -33,7 +33,7 @@ enum TextArgument {
 }
 
 impl TextArgument {
-    /// Returns the memory in bytes used by the argument's heap data.
+    /// Returns the memory of the argument on the heap in bytes.
     fn size(&self) -> usize {
         match self {
             TextArgument::Words(words) | TextArgument::Number(words) => words.len(),
@@ -61,7 +61,7 @@ pub struct Catalogue {
     rows: OnceLock<BTreeMap<String, Row>>,
 }
 
-/// Catalogue of texts that belong to no device or to several devices.
+/// Catalogue of texts that do not belong to a single device.
 pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
@@ -69,7 +69,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English text for the command line, or empty if it is the same as in the window.
+    /// English text for the command line. It is empty if it is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -85,42 +85,42 @@ impl Text {
         COMMON.text(id)
     }
 
-    /// Replaces `{name}` with a word, a number or a name.
+    /// Replaces `{name}` by a word, a number or a name.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Words(value.to_string())));
         self
     }
 
-    /// Replaces `{name}` with another text.
+    /// Replaces `{name}` by another text.
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
         self.arguments.push((name, TextArgument::Text(text)));
         self
     }
 
-    /// Replaces `{name}` with a name that is not in a catalogue, given in English and German.
+    /// Replaces `{name}` by a name that is not in a catalogue, given in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
         self.arguments.push((name, TextArgument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
-    /// Replaces `{name}` with a number with the given decimals, formatted as 1.5 in English and 1,5 in German.
+    /// Replaces `{name}` by a number with the given decimals, such as 1.5 in English and 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, TextArgument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// Replaces `{name}` with a number that is already in English format.
+    /// Replaces `{name}` by a number that is given with a decimal point.
     #[must_use]
     pub(crate) fn with_formatted_number(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, TextArgument::Number(digits.to_string())));
         self
     }
 
-    /// Replaces `{name}` with a list of other texts, separated by commas.
+    /// Replaces `{name}` by other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, TextArgument::List(texts.into_iter().collect())));
@@ -149,7 +149,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// Returns the text for the command line, which is always English and contains hints for command-line users.
+    /// Returns the text for the command line. It is in English and contains hints for the command line.
     pub fn terminal_text(&self) -> String {
         self.text_for(Output::Terminal)
     }
@@ -161,7 +161,7 @@ impl Text {
             Output::Terminal if !row.terminal.is_empty() => &row.terminal,
             Output::Window(Language::English) | Output::Terminal => &row.en,
         };
-        // One pass over the template: an argument may itself contain braces.
+        // The template is read once, because an argument may itself contain braces.
         let mut words = String::new();
         let mut rest = template.as_str();
         while let Some((before, after)) = rest.split_once('{') {
@@ -178,7 +178,7 @@ impl Text {
     }
 }
 
-/// Formats a number given in digits with the decimal sign of a language.
+/// Formats a number, given with a decimal point, with the decimal sign of a language.
 pub(crate) fn signed(number: &str, language: Language) -> String {
     TextArgument::Number(number.to_owned()).text_for(Output::Window(language))
 }
@@ -199,11 +199,11 @@ impl Catalogue {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// Returns the text with the given id from this catalogue, or from the common catalogue if it is missing here.
+    /// Returns the text with the given id from this catalogue, or else from the common one.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
-        // The tests find an unknown id; the window would show it instead of a text.
+        // An unknown id is found by the tests. The window would show the id instead of a text.
         debug_assert!(catalogue.rows().contains_key(id), "no text {id}");
         Text { catalogue, id, arguments: Vec::new() }
     }
@@ -223,7 +223,7 @@ impl Catalogue {
     }
 
     fn rows(&self) -> &BTreeMap<String, Row> {
-        // A test checks that it parses; otherwise every text would show its own id.
+        // A test checks that the catalogue can be parsed. Otherwise the window would show ids instead of texts.
         self.rows.get_or_init(|| ron::from_str(self.source).unwrap_or_default())
     }
 }

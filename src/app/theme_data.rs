@@ -42,11 +42,11 @@ pub struct Palette {
     pub muted: Rgb,
     pub accent: Rgb,
     pub on_accent: Rgb,
-    /// Colour of values that are edited but not yet written.
+    /// Colour of values that are edited and not yet written.
     pub staged: Rgb,
     pub good: Rgb,
     pub warn: Rgb,
-    /// Error; STOP.
+    /// Colour of errors and of STOP.
     pub bad: Rgb,
     pub on_bad: Rgb,
     pub series: [Rgb; 8],
@@ -71,7 +71,7 @@ impl ThemeData {
     /// Returns the built-in theme.
     ///
     /// # Errors
-    /// Returns a description of a defect in the theme file. A test ensures that there is none.
+    /// Returns a description of the error in the theme file. A test checks that there is none.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }

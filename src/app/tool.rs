@@ -1,4 +1,4 @@
-//! A tab that does not require a device. The studio treats all tools alike and names none of them.
+//! A tab that does not need a device. All tools are alike for the studio, which does not name any of them.
 
 #![warn(missing_docs)]
 
@@ -16,16 +16,16 @@ use super::tab::Tab;
 use super::{Action, Text};
 use crate::link::LinkUrl;
 
-/// A tool as known before the window is open.
+/// A tool before the window is open.
 pub trait ToolKind: Sync {
     /// Returns the tab in which the tool is shown.
     fn tab(&self) -> Tab;
 
-    /// Creates the tool. `links` are the links previously used in it, latest first.
+    /// Creates the tool. `links` are the links used in it before, with the latest first.
     fn begin(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
-/// A tab that does not require a device.
+/// A tab that does not need a device.
 pub trait Tool: Any {
     /// Executes an action.
     ///
@@ -54,10 +54,10 @@ pub trait Tool: Any {
     /// Returns the recorder of the tool, mutably.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Adopts a reading that the device took at standstill.
+    /// Adopts a reading that the device has taken at standstill.
     fn follow(&mut self, source: &mut dyn SineCosineSource);
 
-    /// Releases a connection that is needed elsewhere.
+    /// Releases a connection, because it is needed elsewhere.
     fn free_wire(&mut self, url: &LinkUrl, services: &mut Services);
 
     /// Returns whether the tool can open the given file.
@@ -67,7 +67,7 @@ pub trait Tool: Any {
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool, which can be boxed as a payload.
+/// An action of a tool. It can be passed on as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
@@ -99,8 +99,8 @@ impl ToolContext<'_> {
         &mut self.studio.services
     }
 
-    /// Releases the session on a connection, unless the session is writing. `why` is reported in that session. The
-    /// returned channel, if any, closes when the connection is free.
+    /// Releases the session on a connection, unless it is writing. The session then shows `why`. If a channel is
+    /// returned, the connection is free when it closes.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -108,7 +108,7 @@ impl ToolContext<'_> {
         self.studio.free_wire(url, why)
     }
 
-    /// Adds a link to the previously used links.
+    /// Adds a link to those used before.
     pub fn use_link(&mut self, link: &str) {
         self.studio.settings.use_link(self.tab, link);
     }
@@ -137,7 +137,7 @@ impl Studio {
         }
     }
 
-    /// Opens a file in the tool that accepts it. Returns the path if no tool does.
+    /// Opens a file in the tool that accepts it. Returns the path if there is no such tool.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
         let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
         self.settings.tab = *tab;
@@ -145,8 +145,8 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a requested capture in the open tab if that is a tool, or otherwise in the first tool. If another tab has
-    /// been opened in the meantime, it stays open.
+    /// Opens a capture in the open tab if it is a tool, otherwise in the first tool. A tab that is opened in the
+    /// meantime stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();

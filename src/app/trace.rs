@@ -1,4 +1,4 @@
-//! Traffic on a line, decoded for the trace panel. Frames are decoded on arrival, not when drawn.
+//! Traffic on a line, decoded for the trace panel. A frame is decoded when it arrives, not when it is drawn.
 
 use std::collections::VecDeque;
 
@@ -10,10 +10,10 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
-    /// Time on the session's clock at which the first byte was sent or received.
+    /// Time of the first byte on the clock of the session.
     pub at: Moment,
     pub direction: Direction,
-    /// Bytes of the frame, in which `**` represents a masked byte.
+    /// Bytes of the frame. A masked byte is `**`.
     pub bytes: String,
     pub meaning: Vec<Text>,
     /// Fault at the end of the frame, if any.
@@ -24,7 +24,7 @@ pub struct TraceLine {
 pub enum TraceFault {
     /// The frame reports an error or a warning of the device.
     Reported,
-    /// The bytes are not a valid frame, or not a reply to the preceding request.
+    /// The bytes are not a valid frame, or are not a reply to the request before them.
     Broken,
 }
 
@@ -134,10 +134,10 @@ pub struct TraceLog {
 }
 
 impl TraceLog {
-    /// Maximum memory of the log lines in bytes, enough for about 40,000 position readings.
+    /// Maximum memory of the log in bytes. It is enough for about 40,000 readings of a position.
     const MOST: usize = 16 << 20;
 
-    /// Adds frames with their explanations. `dropped` frames arrived too fast to be shown.
+    /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
@@ -159,7 +159,7 @@ impl TraceLog {
         }
     }
 
-    /// Returns the number of lines that were removed to make room for newer ones.
+    /// Returns the number of frames that were removed to make room for newer ones.
     pub fn gone(&self) -> u64 {
         self.gone
     }

@@ -1,5 +1,5 @@
-//! Recording of a device that is being read: unwrapped position, speed, acceleration and watched values. Independent of
-//! the kind of device, which supplies the meaning of positions and values.
+//! Recording of a device that is being read: position without wrap-around, speed, acceleration and watched values. The
+//! kind of device supplies the meaning of positions and values.
 
 use std::time::Duration;
 
@@ -20,53 +20,53 @@ use follower::PositionTracker;
 pub use meaning::Meaning;
 pub use watchable::{Watchable, WatchedValue};
 
-/// Maximum number of positions, enough for more than a day at the fastest rate of a serial line.
+/// Maximum number of positions. It is enough for more than a day at the highest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Time in nanoseconds between positions above which they are never joined, because a connecting line would show a
-/// motion that was not observed.
+/// Maximum time in nanoseconds between two positions that are joined by a line. A line across a longer time would show
+/// a motion that was not observed.
 const APART: i64 = 5_000_000_000;
-/// Tolerated delay of a position in nanoseconds, in addition to four intervals. It allows for a lost reply that was
-/// requested again.
+/// Delay of a position in nanoseconds that is tolerated in addition to four intervals. A lost reply that is requested
+/// again causes such a delay.
 const LATE: i64 = 400_000_000;
-/// Time in nanoseconds between watched values above which they are not joined. Watched values arrive more slowly than
-/// positions.
+/// Maximum time in nanoseconds between two watched values that are joined by a line. Watched values arrive less often
+/// than positions.
 const WATCHED_APART: i64 = APART;
-/// Maximum number of samples kept for a watched value.
+/// Maximum number of samples of a watched value.
 const WATCHED: usize = 500_000;
-/// Time span in nanoseconds that is displayed initially.
+/// Duration in nanoseconds that is displayed at first.
 const SPAN: i64 = 30_000_000_000;
 
-/// Column kinds of positions, for position, speed and acceleration.
+/// Kinds of the columns for position, speed and acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
-/// A sampled position, or the information that there is none.
+/// A sampled position. The sample may also be without a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
     pub at: Moment,
-    /// Position in steps within the range, or `None` if the device reports none.
+    /// Position in steps, or `None` if the device reports none.
     pub position: Option<i64>,
     /// Whether the device reports the position as invalid.
     pub is_bad: bool,
     pub is_warned: bool,
 }
 
-/// The recorder of a device, with the state required to fill it. `W` is the type of values that can be watched.
+/// The recorder of a device with the state needed to fill it. `W` is the type of the values that can be watched.
 #[derive(Debug)]
 pub struct DeviceRecorder<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
     lines: [SeriesId; 3],
     watched: Vec<Watched<W>>,
-    /// Meaning of positions, or `None` before the first position.
+    /// Tracking of positions, or `None` before the first position.
     follower: Option<PositionTracker>,
     dropped: u64,
-    /// Start of the first session's clock, and the offset of the current session's clock.
+    /// Start of the first session, and offset of the present session's clock from it.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<SampleTime>,
     /// Last position as received.
     last: i64,
-    /// Time in nanoseconds between two positions above which they are not joined.
+    /// Maximum time in nanoseconds between two positions that are joined by a line.
     apart: i64,
 }
 
@@ -75,7 +75,7 @@ struct Watched<W> {
     value: W,
     group: GroupId,
     line: SeriesId,
-    /// Whether the value is being recorded. If not, only its earlier samples are kept.
+    /// Whether the value is being recorded. Otherwise only its earlier samples are kept.
     active: bool,
 }
 
@@ -110,7 +110,7 @@ impl Columns {
     fn push(&mut self, time: SampleTime, steps: i64, rates: MotionRates, flags: Flags) {
         self.times.push(time);
         self.steps.push(steps);
-        // An unknown value is NaN, which breaks the line and counts nowhere.
+        // An unknown value is NaN. It interrupts the line and is left out of statistics.
         self.speed.push(rates.speed.unwrap_or(f64::NAN));
         self.acceleration.push(rates.acceleration.unwrap_or(f64::NAN));
         self.flags.push(flags);
@@ -143,11 +143,11 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
     }
 
-    /// Begins a session. Earlier recordings are kept, shifted by the difference between the clocks.
+    /// Begins a session. Earlier recordings are kept. The new ones are shifted by the difference between the clocks.
     pub fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
-        // The wall clock may be set back.
+        // The clock of the system may be set back.
         let behind = self.newest.map_or(0, |newest| newest.nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
         self.gap();
@@ -157,7 +157,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Sets the polling interval. When polling begins, earlier positions are not joined to later ones.
+    /// Sets the polling interval. If polling begins, positions before and after are not joined.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
@@ -166,7 +166,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
     }
 
-    /// Records that samples were dropped before the next samples.
+    /// Counts samples that were dropped, and marks a gap.
     pub fn record_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
@@ -186,19 +186,19 @@ impl<W: Watchable> DeviceRecorder<W> {
             Part::real(&columns.speed).flagged(flags),
             Part::real(&columns.acceleration).flagged(flags),
         ];
-        // Their times are in order: none of them is before the newest.
+        // This cannot fail, because the times are in order and none is before the newest one.
         let _ = self.recorder.append(self.positions, &columns.times, &parts);
     }
 
     fn add_sample(&mut self, sighting: &PositionSample, columns: &mut Columns) {
         let time = SampleTime::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
-            // A single reading between two samples that are already recorded.
+            // This is a single reading, taken between two samples that are already recorded.
             return;
         }
         self.newest = Some(time);
         let Some(word) = sighting.position else {
-            // A damaged frame: the times of the positions on both sides are known.
+            // The frame is damaged. The positions on both sides of it may still be joined.
             if let Some(follower) = &mut self.follower {
                 follower.note_missing_sample();
             }
@@ -220,7 +220,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Records exactly the given values in addition to the position. Existing recordings of other values are kept.
+    /// Selects the values that are recorded in addition to the position. Earlier recordings of other values are kept.
     pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
@@ -234,7 +234,7 @@ impl<W: Watchable> DeviceRecorder<W> {
                 self.recorder.remove_line(own.line);
             }
         }
-        // A recording that was cleared has no ended lines.
+        // The lines of ended values no longer exist if the recording was cleared.
         kept.retain(|own| self.recorder.line(own.line).is_some());
         self.watched = kept;
         watched.iter().for_each(|what| self.begin_watching(what));
@@ -278,7 +278,8 @@ impl<W: Watchable> DeviceRecorder<W> {
             None => ([0], [f64::NAN]),
         };
         let part = if what.is_whole() { Part::whole(&whole) } else { Part::real(&real) };
-        // Each kind of value arrives in the order of time; the clock of a later session starts after the last position.
+        // This cannot fail. The samples of a value arrive in the order of time, and the clock of a later session starts
+        // after the last position.
         let _ = self.recorder.append(group, &[time], &[part.flagged(&flags)]);
     }
 
@@ -294,7 +295,7 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     /// Discards the recording of the previous device, unless it contains minutes of data that have not been exported.
-    /// The selection of watched values is kept.
+    /// The selection of values is kept.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -309,8 +310,8 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.watch(&watched);
     }
 
-    /// Decodes the recording again, as far as its words are stored. The times do not change. If not all words are
-    /// stored, the old recording is kept as well.
+    /// Prepares to decode the recording again from the `kept` words that are stored. The times do not change. If not
+    /// all words are stored, the old recording is kept as well.
     pub fn restart_decoding(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::for_steps(None));
@@ -322,8 +323,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the meaning of later positions. Recordings with a different meaning are kept unchanged in lines that end at
-    /// this point.
+    /// Sets the meaning of the positions that follow. Positions with another meaning stay in lines that end here.
     fn observe(&mut self, meaning: &Meaning) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
             if own.meaning != *meaning {
@@ -337,7 +337,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.follower = Some(PositionTracker::new(meaning.clone()));
     }
 
-    /// Replaces the lines with new lines for positions of the given meaning.
+    /// Replaces the lines by new ones for positions with the given meaning.
     fn part(&mut self, meaning: &Meaning) {
         let has_samples = self.positions() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -360,7 +360,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// Returns the name and heading of a line that ends now.
+    /// Returns the name and the heading of a line that ends now.
     fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
         let newest = self.newest.map_or(0, SampleTime::nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());

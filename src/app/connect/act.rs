@@ -16,7 +16,7 @@ impl Studio {
                 let tab = Some(self.settings.tab).filter(|tab| kinds.kind_for_tab(*tab).is_some());
                 let shown = || self.selected_device().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
-                // The last used target comes first.
+                // The dialog begins with the link that was used last.
                 let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
                 self.connect = Some(ConnectDialog::new(kinds, device, last));
                 self.list_ports();
@@ -80,7 +80,7 @@ impl Studio {
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_finder_action(&action);
         let Some((tab, place)) = self.form_position(is_its) else {
-            // Without a dialog it is too late.
+            // If the dialog is closed, the result comes too late and is ignored.
             if self.connect.is_some() {
                 self.notify_wrong_kind(None);
             }
@@ -118,7 +118,7 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Lends the rest of the studio to a form of the dialog, and then executes the requests of the form.
+    /// Calls `act` with a form of the dialog and the rest of the studio, and then executes what the form has requested.
     fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();

@@ -18,11 +18,11 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// The next action of the dialog after a request to a search.
+/// The next actions of the dialog after a call of a search.
 #[derive(Default)]
 pub(super) struct NextAction {
     pub(super) found: Option<LinkUrl>,
-    /// Reason why the request was not executed, to be shown to the user.
+    /// Reason why the request could not be executed, for the user.
     pub(super) problem: Option<Text>,
 }
 
@@ -52,8 +52,8 @@ impl<'a> FinderContext<'a> {
         self.studio.new_number()
     }
 
-    /// Releases the session and the tool on a connection, unless the session is writing. `why` is reported there. The
-    /// returned channel, if any, closes when the connection is free.
+    /// Releases the connection, which a session or a tool may hold. A session that is writing is not released;
+    /// otherwise it shows `why`. The returned channel, if any, closes when the connection is free.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -63,7 +63,7 @@ impl<'a> FinderContext<'a> {
         Ok(earlier)
     }
 
-    /// Asks whether another master is on the line. The search continues if the user confirms that there is none.
+    /// Asks the user whether another master is on the line. The search continues if there is none.
     pub fn confirm_other_master(&mut self, url: &LinkUrl) {
         self.studio.question =
             Some(Question::other_master(self.studio.services.world.kinds.display_link(url), Then::Find(self.tab)));
@@ -73,7 +73,7 @@ impl<'a> FinderContext<'a> {
         self.problem = Some(problem);
     }
 
-    /// Closes the dialog and connects to a device found on a line that has already been checked for other masters.
+    /// Closes the dialog and connects to a device that was found. The line has already been checked for other masters.
     pub fn open_discovered(&mut self, url: LinkUrl) {
         self.found = Some(url);
     }

@@ -1,5 +1,5 @@
-//! Connection form of a kind of device, and the search for devices. Typed in the device's folder, object-safe for the
-//! dialog; a single adapter connects the two.
+//! Connection form of a kind of device, and the search for devices. The folder of a device implements both with its
+//! types, and an adapter provides them to the dialog as trait objects.
 
 #![warn(missing_docs)]
 
@@ -14,12 +14,12 @@ use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A form whose entries make up a link to a kind of device. Entries of other connection types are preserved.
+/// A form whose entries make up a link to a kind of device. Entries for another type of connection are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// The search for devices, or [`NoFinder`] if the form has none.
     type Finder: Finder<Form = Self>;
 
-    /// Returns the link to the virtual device, which the form contains initially.
+    /// Returns the link to the virtual device, with which the form begins.
     fn usual() -> LinkUrl;
 
     /// Fills in a new form from a link.
@@ -67,13 +67,13 @@ pub trait Finder: Default + 'static {
     /// Stops the search.
     fn stop(&mut self) {}
 
-    /// Ends the search and discards its results. The returned channel, if any, closes when the connection is free.
+    /// Ends the search and discards its results. If a channel is returned, the connection is free when it closes.
     fn end(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
         None
     }
 }
 
-/// The finder of a form without a device search.
+/// The search of a form that cannot search for devices.
 pub struct NoFinder<F>(PhantomData<fn() -> F>);
 
 impl<F> Default for NoFinder<F> {
@@ -96,7 +96,7 @@ impl<F: 'static> Finder for NoFinder<F> {
     }
 }
 
-/// Object-safe interface of a connection form, used by the dialog. Implemented for every [`FormModel`].
+/// The interface of a connection form for the dialog. It is implemented for every [`FormModel`].
 pub trait AnyForm {
     /// Returns the form for downcasting.
     fn form(&self) -> &dyn Any;
@@ -124,7 +124,7 @@ pub trait AnyForm {
     /// # Errors
     /// Returns an error if the entries belong to a different kind of device.
     fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
-    /// Passes an action to the finder. Returns whether the finder has filled in the form.
+    /// Passes an action to the finder. Returns whether the finder has changed the form.
     ///
     /// # Errors
     /// Returns an error if the action belongs to a different kind of device.
@@ -137,7 +137,7 @@ pub trait AnyForm {
     fn is_running(&self) -> bool;
     /// Stops the finder.
     fn stop(&mut self);
-    /// Ends the search. The returned channel, if any, closes when the connection is free.
+    /// Ends the search. If a channel is returned, the connection is free when it closes.
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 

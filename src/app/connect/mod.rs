@@ -1,5 +1,5 @@
-//! The connection dialog: a form for the link, the serial ports of this computer, and the search for devices.
-//! Independent of the kinds of devices, each of which provides its form.
+//! The connection dialog: a form for the link, the serial ports of this computer, and the search for devices. Each kind
+//! of device provides its form.
 
 mod act;
 pub mod context;
@@ -30,9 +30,9 @@ pub enum ConnectAction {
     Close,
     ListPorts,
     Device(Tab),
-    /// The form for a kind of device has been edited; see [`ConnectAction::edit`].
+    /// The form for a kind of device was edited. See [`ConnectAction::edit`].
     Edit(Payload),
-    /// A request to the search for devices; see [`ConnectAction::find`].
+    /// A request to the search for devices. See [`ConnectAction::find`].
     Find(Payload),
     /// A link was typed, pasted or selected. A valid link fills in the form.
     Use(String),
@@ -56,7 +56,7 @@ pub struct ConnectDialog {
     pub device: Tab,
     kinds: KindRegistry,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as typed, or `None` once the form has been edited and determines the link.
+    /// The link as typed, or `None` after the form has been edited. The form then defines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -64,7 +64,7 @@ pub struct ConnectDialog {
 }
 
 impl ConnectDialog {
-    /// Creates the dialog for a kind of device. `last` returns the link last used in a tab.
+    /// Creates the dialog for a kind of device. `last` returns the last link used in a tab.
     pub(super) fn new(kinds: KindRegistry, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
         ConnectDialog { device, kinds, forms, typed: None, ports: None, problem: None }
@@ -86,10 +86,10 @@ impl ConnectDialog {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// Returns the typed link or, if there is none, the link of the form.
+    /// Returns the link as typed, or else the link of the form.
     ///
     /// # Errors
-    /// Returns a text that names the invalid part and the allowed values.
+    /// Returns a message that names the invalid part and the allowed values.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
@@ -117,8 +117,8 @@ impl ConnectDialog {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as typed or, if none was typed, the link of the form. The string is empty if the form has no
-    /// valid link.
+    /// Returns the link as typed, or else the link of the form. The string is empty if the form does not have a valid
+    /// link.
     pub fn link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),
@@ -139,7 +139,7 @@ impl ConnectDialog {
     }
 }
 
-/// Starts a task that lists the serial ports. `links` are the previously used links, latest first.
+/// Starts a task that lists the serial ports. `links` are the links used before, with the latest first.
 pub(super) fn list_ports(services: &Services, links: &[String]) {
     let (ports, links) = (services.world.ports.clone(), links.to_vec());
     services.tasks.run("ports", move || {

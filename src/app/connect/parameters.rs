@@ -1,4 +1,4 @@
-//! Conversion between link parameters and form entries, including parameters that have no entry.
+//! Conversion between link parameters and the entries of a form. Parameters without an entry are preserved.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::parameter::Entry;
 /// Name and value of a link parameter.
 pub(crate) type Pair = (String, String);
 
-/// Returns the parameters of a link that have no form entry. `take` fills in an entry and returns whether the entry
-/// exists.
+/// Returns the parameters of a link that have no entry in the form. `take` fills in an entry, and returns whether the
+/// entry exists.
 pub(crate) fn parameters_without_entry(query: &UrlQuery, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// Values typed into form entries, by parameter name.
+/// Values typed into the entries of a form, by the name of the parameter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Typed(BTreeMap<&'static str, String>);
 
@@ -42,7 +42,7 @@ impl Typed {
     }
 }
 
-/// Link parameters derived from the form entries, in order. Default values are omitted.
+/// Link parameters from the entries of a form, in order. Default values are left out.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<Pair>);
 
@@ -71,7 +71,8 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds parameters that have no form entry. Parameters of a virtual device are added only if the link leads to one.
+    /// Adds the parameters that have no entry in the form. Those of a virtual device are added only if the link leads
+    /// to one.
     pub(crate) fn add_remaining(
         &mut self,
         rest: &[Pair],
@@ -81,7 +82,8 @@ impl Parameters {
         self.rest(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
-    /// Adds the parameters that have no form entry but belong to the link. An entry overrides an older parameter.
+    /// Adds the parameters without an entry that belong to the link. An entry takes precedence over an older parameter
+    /// of the same name.
     pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
@@ -93,7 +95,7 @@ impl Parameters {
     /// Returns the link with these parameters.
     ///
     /// # Errors
-    /// Returns an error if a character would end a part of the link, or if the parts do not form a link.
+    /// Returns a message if a character would end a part of the link, or if the parts do not make up a link.
     pub(crate) fn link(&self, (scheme, target): (LinkScheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])

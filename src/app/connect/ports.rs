@@ -1,21 +1,22 @@
-//! Serial ports offered by the connection form, in order of likelihood.
+//! Serial ports in the order in which the connection form offers them.
 
 use crate::link::{LinkScheme, LinkUrl, PortInfo};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortEntry {
-    /// Path or name of the port, as used in a link.
+    /// Path or name of the port as in a link.
     pub path: String,
-    /// Description of the adapter as given by the system, which may be empty.
+    /// Description of the adapter by the system. It may be empty.
     pub description: String,
     pub used: bool,
-    /// Whether the port currently exists. The system lists it, or its path exists, as for a pseudo-terminal, which is
-    /// never listed. A previously used port may have been unplugged.
+    /// Whether the port exists at present. Either the system lists it, or its path exists, for example for a
+    /// pseudo-terminal. A port used before may have been unplugged.
     pub listed: bool,
 }
 
-/// Returns previously used ports, latest first, then USB adapters, then all others. `links` are the previously used
-/// links, latest first; `exists` checks a path that the system does not list.
+/// Returns the ports used before with the latest first, then USB adapters, then all other ports.
+///
+/// `links` are the links used before, with the latest first. `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {

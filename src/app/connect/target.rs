@@ -1,4 +1,4 @@
-//! Parts common to all connection forms: mandatory entries, host and port, and the reasons why a link is unusable.
+//! Parts common to all connection forms: mandatory entries, host and port, and the reasons why a link cannot be used.
 
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
@@ -11,7 +11,7 @@ use crate::worker::OpenError;
 /// Returns an entry without surrounding blanks.
 ///
 /// # Errors
-/// Returns the text `missing` if the entry is empty.
+/// Returns the message `missing` if the entry is empty.
 pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
@@ -43,7 +43,7 @@ pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), O
     Ok(url)
 }
 
-/// Explains why a link cannot be used, with reference to the invalid entry, if any.
+/// Returns the reason why a link cannot be used. The message names the invalid entry, if any.
 pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
@@ -65,7 +65,7 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// Returns the message for a link that cannot be used although none of its entries is invalid.
+/// Returns the message for a link that cannot be used although each of its entries is valid.
 pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
@@ -103,13 +103,13 @@ pub(crate) fn host_and_default_port(
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
-/// Splits a network address of a link into host and port. The port is empty if the address has none.
+/// Splits a network address into host and port. The port is empty if the address has none.
 pub(crate) fn split_target(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
 }
 
-/// Splits a network address of a link into host and port. The port is empty if it is the default port.
+/// Splits a network address into host and port. The port is empty if it is the default port.
 pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, String) {
     let (host, port) = split_target(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! Methods shared by all devices, derived from the device commands.
+//! Methods of all devices, based on their common interface.
 
 use std::any::Any;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::profile::ProfileDocument;
 use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
 
 impl AnyDevice {
-    /// Returns the device as `M`, or `None` if it is of another kind.
+    /// Returns the device as the type `M`, or `None` if it is of another kind.
     pub fn get<M: Any>(&self) -> Option<&M> {
         (self as &dyn Any).downcast_ref()
     }
@@ -26,7 +26,6 @@ impl AnyDevice {
         (self as &mut dyn Any).downcast_mut()
     }
 
-    /// Returns the session number of the device in the studio.
     pub fn id(&self) -> SessionId {
         self.state().id
     }
@@ -36,7 +35,7 @@ impl AnyDevice {
         self.state().name()
     }
 
-    /// Returns the source of the data, without secrets.
+    /// Returns the source of the data without secrets.
     pub fn place(&self) -> String {
         self.state().place()
     }
@@ -65,18 +64,18 @@ impl AnyDevice {
         &self.state().trace
     }
 
-    /// Returns whether this is the current attempt to open the link of the device.
+    /// Returns whether this is the latest attempt to open the link of the device.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.state().is_attempt(attempt)
     }
 
-    /// Returns the backups, or the reason why there are none; `None` if they have not been requested yet.
+    /// Returns the backups or the reason why there are none, or `None` if they have not been requested yet.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Returns the writes of this device in the logbook, or the reason why there are none; `None` if they have not been
-    /// requested yet.
+    /// Returns the writes in the logbook or the reason why there are none, or `None` if they have not been requested
+    /// yet.
     pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
@@ -133,7 +132,7 @@ impl AnyDevice {
         }
     }
 
-    /// Returns whether minutes of a recording have not been exported.
+    /// Returns whether the recording contains minutes of data that have not been exported.
     pub(in crate::app) fn has_recorded_much(&self) -> bool {
         self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
     }
@@ -142,7 +141,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Records that a save is waiting for an answer from the user, so that another save may begin.
+    /// Marks a save as waiting for an answer of the user. Another save may then begin.
     pub(in crate::app) fn mark_save_waiting(&mut self) {
         self.state_mut().is_saving = false;
     }

@@ -1,4 +1,4 @@
-//! Commands that every device supports, regardless of its kind.
+//! Commands that every kind of device supports.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -14,9 +14,8 @@ pub enum DeviceCommand {
     Read,
     AskSave,
     Review,
-    /// Start polling the position, or stop polling.
+    /// Start to poll the position at this interval, or stop polling.
     Poll(Option<Duration>),
-    /// Read the position once.
     ReadPosition,
     Undo,
     Redo,
@@ -25,7 +24,7 @@ pub enum DeviceCommand {
     AskRestore,
     AskCompare,
     Compare(PathBuf),
-    /// Show the effect of writing this profile to a connected device.
+    /// Show the effect of writing this profile to the device of the given session.
     WriteInto(SessionId),
 }
 

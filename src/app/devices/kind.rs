@@ -1,5 +1,5 @@
-//! A kind of device before one is open: its tab, its links and its profiles. A device implements [`DeviceType`]; an
-//! adapter turns it into a [`DeviceKind`], which the studio lists.
+//! A kind of device before a device is open: its tab, its links and its profiles. Each kind implements [`DeviceType`],
+//! and an adapter provides it to the studio as a [`DeviceKind`].
 
 #![warn(missing_docs)]
 
@@ -20,12 +20,12 @@ use crate::profile::{Cause, Profile, ProfileDocument, ProfileFormat};
 use crate::store::Store;
 use crate::worker::OpenError;
 
-/// A kind of device, implemented once per device folder.
+/// A kind of device. Each device folder implements it once.
 pub trait DeviceType: DeviceModel + Sized {
     /// Entry in the list of device kinds.
     const KIND: &'static dyn DeviceKind = &DeviceKindAdapter::<Self>(PhantomData);
 
-    /// Name of the bus, identical in every language.
+    /// Name of the bus, which is the same in every language.
     const BUS: &'static str;
 
     /// Profile in which a device of this kind is saved.
@@ -34,16 +34,16 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Type of the form in the connection dialog.
     type Form: FormModel;
 
-    /// Tables required in addition to the file to read profiles of this kind.
+    /// Tables that are needed in addition to the file to read profiles of this kind.
     type Tables: Send + 'static;
 
-    /// Checks whether a link can lead to a device of this kind, as far as possible without opening the link.
+    /// Checks whether a link can lead to a device of this kind. The link is not opened.
     ///
     /// # Errors
     /// Returns the reason why it cannot.
     fn check(url: &LinkUrl) -> Result<(), OpenError>;
 
-    /// Returns the link parameters declared as secret, whose values are neither displayed nor stored.
+    /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
     fn secret_parameters() -> Vec<&'static str>;
 
     /// Returns whether another master may be connected to the line of a link. If so, the user is asked before anything
@@ -52,8 +52,7 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
-    /// Creates a device about which nothing is known except the opened profile, if any, and the tables for reading that
-    /// profile.
+    /// Creates a device. Nothing is known about it except the opened profile, if any, with the tables for reading it.
     fn begin(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
@@ -82,13 +81,14 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
-    /// Explains why a profile of this kind was refused, or returns `None` if the cause belongs to another kind.
+    /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
     fn explain(_cause: &Cause) -> Option<Text> {
         None
     }
 
-    /// Creates a profile that has not been saved to a file, or returns `None` if profiles of this kind only come from
-    /// devices. `is_taken` returns whether a file name is in use.
+    /// Creates a profile that is not stored in a file. Returns `None` if profiles of this kind only come from devices.
+    ///
+    /// `is_taken` returns whether a file name is in use.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
         None
     }
@@ -98,11 +98,11 @@ pub trait DeviceType: DeviceModel + Sized {
 pub(crate) type OpenProfile =
     Box<dyn FnOnce(SessionId, ProfileFile, ProfileDocument, &mut Services) -> Box<AnyDevice> + Send>;
 
-/// Object-safe interface of a kind of device, used by the studio. Implemented for every [`DeviceType`].
+/// The interface of a kind of device for the studio. It is implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
     /// Returns the tab in which devices of this kind are shown.
     fn tab(&self) -> Tab;
-    /// Returns the name of the bus, which is identical in every language.
+    /// Returns the name of the bus, which is the same in every language.
     fn bus(&self) -> &'static str;
     /// Returns the keyword for this kind in profiles and on the command line.
     fn word(&self) -> &'static str;
@@ -113,13 +113,13 @@ pub trait DeviceKind: Sync {
     /// # Errors
     /// Returns the reason why it cannot.
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
-    /// Returns the link parameters whose values are neither displayed nor stored.
+    /// Returns the secret parameters of a link. Their values are neither displayed nor stored.
     fn secret_parameters(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
-    /// Explains why a profile of this kind was refused, or returns `None` if the cause belongs to another kind.
+    /// Returns the reason why a profile was refused, or `None` if the cause belongs to another kind of device.
     fn explain(&self, cause: &Cause) -> Option<Text>;
     /// Returns the form for the connection dialog, filled in from a link.
     fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;

@@ -1,4 +1,4 @@
-//! The typed model of a device for the studio: what each device provides so that everything else can be shared.
+//! The interface that each kind of device implements for the studio. Everything else is shared by all kinds.
 
 #![warn(missing_docs)]
 
@@ -22,7 +22,7 @@ use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
-/// The state of a device or a profile, with all data known about it.
+/// The state of a device or profile, with all data known about it.
 pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Tab in which the device is shown.
     const TAB: Tab;
@@ -33,12 +33,12 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Results of the tasks that a device starts.
     type Done: Any + Send;
 
-    /// Returns the function that prepares a session before it moves to its thread.
+    /// Returns a function that prepares the session before it moves to its thread.
     fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
 
-    /// Attaches the session of the opened link.
+    /// Adopts the session of the opened link.
     fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
 
     /// Executes an action specific to this kind of device.
@@ -69,7 +69,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// Executes a command that every device supports.
     fn command(&mut self, command: DeviceCommand, services: &mut Services) {
         match command {
-            // The studio opens links, asks for files, and knows other sessions.
+            // The studio executes these commands, because it opens links, asks for files and knows the other sessions.
             DeviceCommand::Reconnect
             | DeviceCommand::WriteInto(_)
             | DeviceCommand::AskRestore
@@ -114,7 +114,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.session().ask_where_to_save(services);
     }
 
-    /// Returns whether positions can be streamed at thousands of samples per second.
+    /// Returns whether thousands of positions per second can be streamed.
     fn can_stream(&self) -> bool {
         false
     }
@@ -161,16 +161,16 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.memory()?.wanted_body()
     }
 
-    /// Returns the profile to use in comparisons, which is the edited one or else the last one read, or `None` if
-    /// nothing has been read.
+    /// Returns the profile for comparisons, or `None` if nothing has been read. This is the edited profile, or else the
+    /// one read last.
     ///
     /// # Errors
-    /// Returns a message for each value that a profile requires and that has not been read.
+    /// Returns a message for each value that a profile requires but that has not been read.
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
         self.wanted_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
     }
 
-    /// Adopts a profile by opening the review of a write or by editing the layout to match.
+    /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.
     ///
     /// # Errors
     /// The profile belongs to another kind of device.
@@ -188,7 +188,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         self.memory().is_some_and(DeviceMemory::is_savable)
     }
 
-    /// Returns the source of sine and cosine signals, or `None` for a kind without analogue signals.
+    /// Returns the source of sine and cosine signals, or `None` for a kind that has no such signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         None
     }
@@ -208,7 +208,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
         None
     }
 
-    /// Returns the interface for stored data about drives, or `None` for a kind without drives.
+    /// Returns the access to stored data about drives, or `None` for a kind without drives.
     fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
         None
     }
@@ -229,7 +229,7 @@ impl<'a> ActionContext<'a> {
         ActionContext { services, others, next: Vec::new() }
     }
 
-    /// Queues another command for the same device, to be sent once the action is done.
+    /// Queues a command for the same device. It is executed after the present action.
     pub(crate) fn queue_command(&mut self, command: DeviceCommand) {
         self.next.push(command);
     }
@@ -248,13 +248,13 @@ impl<'a> ActionContext<'a> {
     }
 }
 
-/// Control of motion requested in this window. STOP and key release act only through this interface, never through an
-/// action of a device kind.
+/// Control of the motion requested in this window. STOP and the release of a key act only through this interface, never
+/// through an action of a kind of device.
 pub trait MotionControl {
     /// Stops all motion.
     fn stop(&mut self);
 
-    /// Ends every motion that lasts only while a button is held, such as jogging and running without an end.
+    /// Ends every motion that would otherwise continue until a button is released or without an end.
     fn let_go(&mut self);
 
     /// Returns whether a drive is moving or about to move.
@@ -266,11 +266,11 @@ pub trait MotionControl {
     /// Returns whether a motion requested in this window has not ended yet.
     fn is_motion_active(&self) -> bool;
 
-    /// Returns whether this window has control of the drives. If it does, values arrive without being requested.
+    /// Returns whether this window has control of the drives. Values then arrive without a request.
     fn has_control(&self) -> bool;
 }
 
-/// Device memory that is written after a review, and that is saved and restored as a profile.
+/// A device memory. It is written after a review, and is saved and restored as a profile.
 pub trait DeviceMemory {
     /// Opens the review of the edits.
     fn review_edits(&mut self, services: &mut Services);
@@ -284,7 +284,7 @@ pub trait DeviceMemory {
     /// Executes an action of the review.
     fn apply_review_action(&mut self, action: ReviewAction, services: &mut Services);
 
-    /// Closes the review; a write in progress continues.
+    /// Closes the review. A write in progress continues.
     fn close_review(&mut self);
 
     /// Returns the edited profile, or `None` for a device.
@@ -293,7 +293,7 @@ pub trait DeviceMemory {
     /// Returns the profile of the last reading, or `None` if nothing has been read.
     ///
     /// # Errors
-    /// Returns a message for each value that a profile requires and that has not been read.
+    /// Returns a message for each value that a profile requires but that has not been read.
     fn last_read_profile(&self) -> Option<Result<Body, Vec<Text>>>;
 
     /// Opens the review of restoring a profile.
@@ -311,10 +311,10 @@ pub trait DeviceMemory {
     /// Reads a backup that is to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
-    /// Stores the lists of backups and writes, ignoring lists of another device.
+    /// Stores the lists of backups and writes. Lists of another device are ignored.
     fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
-    /// Handles a backup that was read, or the error, ignoring backups of another device.
+    /// Handles a backup that was read, or the error. A backup of another device is ignored.
     fn apply_backup(
         &mut self,
         of: &DeviceKey,

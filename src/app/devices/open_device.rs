@@ -1,5 +1,5 @@
-//! A device of any kind, as used by the studio, the shared parts of the window, and other devices. A single
-//! implementation covers all kinds.
+//! A device of any kind, as seen by the studio, the shared parts of the window, and other devices. One implementation
+//! covers all kinds.
 
 #![warn(missing_docs)]
 
@@ -25,7 +25,7 @@ use crate::store::FileError;
 /// A device or profile of any kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// Interface common to all devices. A kind implements `DeviceModel`, from which this interface follows.
+/// The interface of a device of any kind. It is implemented for every `DeviceModel`.
 pub trait OpenDevice: Any {
     /// Returns the state common to all sessions.
     fn state(&self) -> &SessionState;
@@ -47,11 +47,12 @@ pub trait OpenDevice: Any {
     fn is_active(&self) -> bool;
     /// Returns whether the device is connected and idle, so that a job may start.
     fn is_ready(&self) -> bool;
-    /// Returns whether the device can be read again. This includes a device that did not reply, and a profile.
+    /// Returns whether the device can be read again. This is also true for a device that did not reply, and for a
+    /// profile.
     fn is_readable(&self) -> bool;
     /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
-    /// Returns whether positions can be streamed at thousands of samples per second.
+    /// Returns whether thousands of positions per second can be streamed.
     fn can_stream(&self) -> bool;
     /// Returns the running job, if any.
     fn running(&self) -> Option<JobProgress>;
@@ -63,9 +64,9 @@ pub trait OpenDevice: Any {
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Returns whether edits are restored after the device has been closed.
+    /// Returns whether edits are restored if the device is closed and opened again.
     fn preserves_edits(&self) -> bool;
-    /// Returns whether every edit has been saved to disk, as far as the disk accepts it.
+    /// Returns whether every edit has been written to disk, unless the disk refuses it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped_count(&self) -> u64;
@@ -77,7 +78,7 @@ pub trait OpenDevice: Any {
     fn recorders(&self) -> Vec<&Recorder>;
     #[doc(hidden)]
     fn recorders_mut(&mut self) -> Vec<&mut Recorder>;
-    /// Returns the source of sine and cosine signals, or `None` for a kind without analogue signals.
+    /// Returns the source of sine and cosine signals, or `None` for a kind that has no such signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource>;
     #[doc(hidden)]
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource>;

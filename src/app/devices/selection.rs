@@ -1,4 +1,4 @@
-//! Selection of the device that each tab shows.
+//! The device that each tab shows.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ impl Selection {
         self.by_tab.get(&tab).copied()
     }
 
-    /// Returns the device shown last in any tab.
+    /// Returns the device that was shown last, in any tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }
@@ -28,8 +28,10 @@ impl Selection {
         self.last = Some(id);
     }
 
-    /// Removes a device, where `left` are the remaining ones. Its tab then shows the device opened last, and the device
-    /// shown last becomes that of the last tab.
+    /// Removes a device. `left` contains the remaining devices.
+    ///
+    /// Its tab then shows the device that was opened last there. If the removed device was the one shown last in any
+    /// tab, the device of the last tab takes its place.
     pub(in crate::app) fn remove(&mut self, kinds: KindRegistry, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

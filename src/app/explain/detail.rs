@@ -1,5 +1,5 @@
-//! Explanations why a link, a setting, a profile, a table or the logbook cannot be used, as parts of a sentence.
-//! Messages of the operating system or a library are quoted unchanged.
+//! Reasons why a link, a setting, a profile, a table or the logbook cannot be used, as parts of a sentence. Messages of
+//! the operating system or of a library are quoted without changes.
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -12,7 +12,7 @@ use crate::profile::{ProfileError, SyntaxErrorKind};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookErrorKind};
 
-/// Explains why a string is not a valid link, or why the link does not accept a parameter.
+/// Returns the reason why a string is not a valid link, or why a link does not accept a parameter.
 pub fn url(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
@@ -61,7 +61,7 @@ pub fn setting(error: &ConfigError) -> Text {
     }
 }
 
-/// Explains why a file is not a valid profile. `kinds` supplies the explanations of devices that refuse a value.
+/// Returns the reason why a file is not a valid profile. `kinds` explains values that a device refuses.
 pub fn document(error: &ProfileError, kinds: KindRegistry) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
@@ -80,7 +80,7 @@ pub fn document(error: &ProfileError, kinds: KindRegistry) -> Text {
         ProfileError::Refused { path, cause } => {
             Text::new("detail.value").with("path", path).with_text("what", kinds.explain(cause))
         }
-        // These have their own texts.
+        // These errors have separate messages.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }
 }

@@ -1,5 +1,5 @@
-//! Error messages for the user: what happened and what to do. This is the only place for them, except for errors of a
-//! single kind of device, which have their own module.
+//! Error messages for the user: what happened, and what to do. Errors of a single kind of device have a separate
+//! module.
 
 mod detail;
 mod expected;
@@ -57,8 +57,8 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-/// Explains why a link could not be opened, including the case that no thread could be started. `open` supplies the
-/// explanation for the kind of device.
+/// Returns the reason why a link could not be opened or its thread could not be started. `open` explains the errors of
+/// the kind of device.
 pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailure::Link(error) => open(error),
@@ -86,19 +86,18 @@ pub fn file(error: &FileError) -> Text {
     }
 }
 
-/// Explains an error in the program's folders. Errors in device-specific files are explained by the code that reads
-/// them.
+/// Returns the message for an error in the folders of the program. Errors in files of a kind of device are explained by
+/// the code that reads them.
 pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
         StoreError::File(error) => file(error),
-        // The device's own text is more specific: this is for a kind that has none.
+        // This is for a kind of device that does not have a more specific message.
         StoreError::Refused(cause) => Text::new("store.refused").with_text("why", plain(cause)),
     }
 }
 
-/// Explains why a profile cannot be read. `kinds` supplies the explanations of devices. The command line, which is in
-/// English, does not require them.
+/// Returns the reason why a profile cannot be read. `kinds` explains values that a device refuses.
 pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     let path = path.display();
     match error {
@@ -115,7 +114,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: KindRegistry) -> Text {
     }
 }
 
-/// Returns remarks about an opened profile that has a newer schema or entries that the schema does not define.
+/// Returns remarks about an opened profile if it has a newer schema or entries that are not in the schema.
 pub fn profile_remarks(path: &Path, document: &ProfileDocument) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];
@@ -125,7 +124,7 @@ pub fn profile_remarks(path: &Path, document: &ProfileDocument) -> Vec<Text> {
     if document.beyond.is_empty() { Vec::new() } else { vec![beyond()] }
 }
 
-/// Describes a profile with a newer schema and its unknown content.
+/// Returns the message about a profile with a newer schema and its unknown content.
 pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
     let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
     Text::new(id)
@@ -158,7 +157,7 @@ pub fn parity(parity: Parity) -> Text {
     })
 }
 
-/// Returns a text that is the same in every language, such as a name, a number or bytes.
+/// Returns a text that is the same in every language, such as a name or a number.
 pub fn plain(words: impl ToString) -> Text {
     Text::new("plain.words").with("words", words)
 }

@@ -1,4 +1,4 @@
-//! Messages about sine/cosine captures: why they cannot be read or analysed, and which signals are faulty.
+//! Messages about sine/cosine captures: why a capture cannot be read or analysed, and which signals are faulty.
 
 use std::path::Path;
 
@@ -54,7 +54,7 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Explains why samples cannot be analysed. `path` is the file that contains them.
+/// Returns the reason why samples cannot be analysed. `path` is the file with the samples.
 pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
@@ -90,7 +90,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
     }
 }
 
-/// Explains why a reference yields no deviation over one revolution.
+/// Returns the reason why the deviation over one revolution cannot be determined from a reference.
 pub fn revolution(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {
@@ -201,7 +201,7 @@ pub fn comparison_obstacle(untold: ComparisonObstacle) -> Text {
 }
 
 fn with_frequency(text: Text, frequency_hz: f64) -> Text {
-    // Users look for a round number: four digits are enough above 1 kHz.
+    // Above 1 kHz no decimals are shown, because the user expects a round number.
     text.with_number("hertz", frequency_hz, if frequency_hz < 1_000.0 { 1 } else { 0 })
 }
 

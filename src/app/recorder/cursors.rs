@@ -1,5 +1,5 @@
-//! Two cursors and the statistics of the samples between them, calculated from the raw samples rather than from those
-//! reduced for drawing.
+//! Two cursors, and the statistics of the samples between them. The statistics use all samples, not only those that are
+//! drawn.
 
 use super::{Recorder, Series};
 use crate::analysis::SampleTime;
@@ -22,13 +22,13 @@ impl Cursor {
     }
 }
 
-/// Cursor readings on a line in its unit, or `None` where there is no valid sample.
+/// Readings of both cursors on a line, in the unit of the line. A reading is `None` if there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub a: Option<f64>,
     pub b: Option<f64>,
     pub difference: Option<f64>,
-    /// Mean, minimum, maximum and standard deviation of the samples from one cursor to the other, inclusive.
+    /// Statistics of the samples from one cursor to the other, both included.
     pub between: Option<CursorStatistics>,
 }
 
@@ -51,12 +51,12 @@ impl Recorder {
         }
     }
 
-    /// Returns the distance from cursor A to cursor B in nanoseconds.
+    /// Returns the time from cursor A to cursor B in nanoseconds.
     pub fn cursor_distance(&self) -> Option<i64> {
         Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
     }
 
-    /// Returns the cursor readings on a line, or `None` if no cursor is set.
+    /// Returns the readings of the cursors on a line, or `None` if no cursor is set.
     pub fn measure(&self, line: &Series) -> Option<Measured> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {
@@ -84,16 +84,16 @@ impl Recorder {
             count: statistics.count,
             bad: statistics.bad,
             mean: statistics.mean * factor,
-            // A unit may count in the opposite direction.
+            // The unit may have the opposite sign, which exchanges minimum and maximum.
             min: ends.0.min(ends.1),
             max: ends.0.max(ends.1),
             deviation: statistics.deviation * factor.abs(),
         })
     }
 
-    /// Returns the raw sample of a line nearest to a point in time, or `None` if nothing was recorded then.
+    /// Returns the sample of a line nearest to a point in time, or `None` if nothing was recorded at that time.
     pub fn at(&self, line: &Series, time: SampleTime) -> Option<Sample> {
-        /// Divisor of the visible range that gives how far a cursor may be from the first or last sample.
+        /// Divisor of the visible range. The result is the maximum distance of a cursor from the first or last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
         let all = history.all();
@@ -102,8 +102,8 @@ impl Recorder {
         (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
     }
 
-    /// Moves a cursor to the nearest sample, so that time and value belong together. If nothing was recorded there, the
-    /// cursor stays at the given time.
+    /// Moves a cursor to the nearest sample. If nothing was recorded at that time, the cursor is set to the time
+    /// itself.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<SampleTime>) {
         let nearest = |time: SampleTime| {
             let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
@@ -117,7 +117,7 @@ impl Recorder {
         }
     }
 
-    /// Shows both cursors at the thirds of the visible samples, or hides them.
+    /// Shows both cursors, each a third of the visible samples from an end, or hides them.
     pub(super) fn show_cursors(&mut self, shown: bool) {
         if !shown {
             self.cursors = [None; 2];

@@ -1,12 +1,12 @@
-//! Lines that have ended because later samples have another meaning or no longer arrive. They keep their samples and
-//! units, and follow the active lines.
+//! Lines that have ended, because later samples have another meaning or no longer arrive. They keep their samples and
+//! units, and are listed after the active lines.
 
 use super::{Recorder, Scale, Series, SeriesId};
 use crate::app::Text;
 
 impl Recorder {
-    /// Continues a line with new samples, keeping its colour and, if possible, its unit. The old line ends under the
-    /// given name.
+    /// Replaces a line by a new one, which has the same colour and, if possible, the same unit. The old line ends and
+    /// gets the given name.
     pub(in crate::app) fn continue_line(
         &mut self,
         old: SeriesId,
@@ -35,7 +35,7 @@ impl Recorder {
         Some(self.lines.remove(at))
     }
 
-    /// Ends a line. No more samples are added, and the line moves behind the active lines.
+    /// Ends a line. No more samples are added to it, and it is listed after the active lines.
     pub(in crate::app) fn end_line(&mut self, id: SeriesId, name: Text, heading: String) {
         if let Some(line) = self.take(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });
@@ -52,7 +52,7 @@ impl Recorder {
         group.into_iter().for_each(|group| self.break_before_next(group));
     }
 
-    /// Changes the units in which the samples of a line can be displayed.
+    /// Changes the possible units of a line.
     pub(in crate::app) fn rescale(&mut self, id: SeriesId, scales: Vec<Scale>) {
         if self.line(id).is_none_or(|line| line.scales == scales) {
             return;
@@ -62,7 +62,7 @@ impl Recorder {
             (line.scales, line.range) = (scales, None);
             line.choose(unit.as_ref());
         });
-        // A level is in the unit in which it was entered.
+        // The trigger level was entered in the old unit.
         self.forget_trigger(id);
     }
 

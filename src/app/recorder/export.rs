@@ -1,5 +1,5 @@
-//! Export of samples as CSV. They are passed in portions to a writer thread, so the window does not wait for the disk,
-//! nor the recording for the export.
+//! Export of samples as CSV. A thread writes the rows, which it receives in portions. Neither the window nor the
+//! recording waits for the disk.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::store::{FileError, write_with};
 const ROWS: usize = 16_384;
 const WAITING: usize = 2;
 
-/// A table being written. No file is written if it is dropped before all rows have been passed on.
+/// A table that is being written. If it is dropped before all rows have been passed on, no file is written.
 #[derive(Debug)]
 pub struct Export {
     pub path: PathBuf,
@@ -30,11 +30,11 @@ pub struct Export {
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
-    /// End of the recorded range to include, or `None` for the visible part only.
+    /// Time up to which the recording is exported, or `None` if only the visible part is exported.
     until: Option<SampleTime>,
 }
 
-/// The number of a table, unique in the process.
+/// Number of a table, which is unique in the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct ExportNumber(u64);
 
@@ -49,11 +49,11 @@ impl ExportNumber {
 pub struct ExportResult {
     pub(in crate::app) number: ExportNumber,
     pub path: PathBuf,
-    /// Number of rows written, or `None` if the export was cancelled and no file was written.
+    /// Number of rows, or `None` if the export was cancelled and no file was written.
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// The position up to which a group of samples has been handed over.
+/// Position in the samples of a group up to which they have been passed on.
 #[derive(Debug)]
 struct Head {
     group: GroupId,
@@ -67,32 +67,32 @@ struct Column {
     head: usize,
     column: usize,
     factor: f64,
-    /// Whether the values are derived, so that a missing value is not an error of the sample.
+    /// Whether the values are calculated from another line. A missing value is then not an error of the sample.
     derived: bool,
 }
 
 #[derive(Debug)]
 enum Portion {
     Rows(Rows),
-    /// End of the samples. A table without it is incomplete.
+    /// End of the samples. Without it, the table is incomplete.
     End,
 }
 
-/// A portion of the table. Each row has a time and one cell per column.
+/// Rows of a table, each with a time and a cell for each column.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<SampleTime>,
     cells: Vec<Cell>,
 }
 
-/// A table cell, empty if the line has no sample at that time. The sample may be invalid.
+/// A cell of a table. It is empty if the line has no sample at that time, and the sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
     flags: Flags,
 }
 
-/// The part of an export that runs on a thread and writes rows as they arrive.
+/// The part of an export that runs on a thread. It writes rows as they arrive.
 pub(in crate::app) struct Writing {
     path: PathBuf,
     number: ExportNumber,
@@ -108,7 +108,7 @@ impl Export {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
 
-    /// Returns the number of samples evicted while the table was written.
+    /// Returns the number of samples that were removed from the recording before they could be written.
     pub fn lost(&self) -> u64 {
         self.lost
     }
@@ -123,9 +123,10 @@ impl Recorder {
         self.export.as_ref()
     }
 
-    /// Starts writing a table of the displayed lines, either the visible part or everything recorded. Returns the part
-    /// to run on a thread, which [`feed_export`](Self::feed_export) supplies with rows, or `None` if there is nothing
-    /// to write or a table is already being written.
+    /// Starts to write a table of the displayed lines, with either the visible part or the whole recording.
+    ///
+    /// Returns the part to run on a thread; [`feed_export`](Self::feed_export) supplies it with rows. Returns `None` if
+    /// there is nothing to write, or if a table is already being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
         if self.export.is_some() {
             return None;
@@ -183,7 +184,7 @@ impl Recorder {
         Some(writing)
     }
 
-    /// Passes on as many rows as the time between two frames allows, without blocking.
+    /// Passes on as many rows as possible between two frames, without blocking.
     pub(in crate::app) fn feed_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
         if let Some(sender) = export.sender.clone() {
@@ -196,15 +197,15 @@ impl Recorder {
                 Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
                 Err(TrySendError::Full(portion)) => export.next = Some(portion),
-                // The receiver has ended: the thread reports why.
+                // The thread has ended, and reports the reason itself.
                 Err(TrySendError::Disconnected(_)) => export.sender = None,
             }
         }
         self.export = Some(export);
     }
 
-    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread wrote an earlier
-    /// table.
+    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread has written an
+    /// earlier table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {
@@ -213,19 +214,20 @@ impl Recorder {
         Some(export.lost)
     }
 
-    /// Returns the nanoseconds of recording that have not been exported to a table.
+    /// Returns the duration of the recording in nanoseconds that has not been exported.
     pub fn unsaved(&self) -> i64 {
         let Some((first, last)) = self.recorded() else { return 0 };
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// Returns the next rows, with the samples of all groups in time order and samples of the same time in one row.
+    /// Returns the next rows. The samples of all groups are in the order of time, and samples of the same time are in
+    /// one row.
     fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
-        // In the order of the heads; a removed group no longer has samples.
+        // The histories have the order of the heads. A group that was removed has no samples any more.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
         for (head, history) in heads.iter_mut().zip(&histories) {
-            // Samples evicted meanwhile are lost.
+            // Samples that were removed in the meantime are lost.
             let start = history.map_or(head.end, |history| history.all().start.min(head.end));
             *lost += start.saturating_sub(head.next);
             head.next = head.next.max(start);
@@ -260,7 +262,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     Cell { value, flags }
 }
 
-/// Returns the column heading with name and unit, independent of the window language.
+/// Returns the heading of a column with name and unit. It does not depend on the language of the window.
 fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal_text()),
@@ -269,12 +271,12 @@ fn heading(line: &Series) -> String {
 }
 
 impl Writing {
-    /// Writes until all rows have arrived, calling `wake` whenever more rows can be passed on.
+    /// Writes rows until all have arrived. Calls `wake` whenever more rows can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> ExportResult {
         let mut given_up = false;
         let rows = write_with(&self.path, |file| {
             given_up = !self.write(file, wake)?;
-            // An incomplete file does not replace the existing one.
+            // An incomplete table must not replace an existing file.
             if given_up { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
         });
         let rows = match rows {
@@ -290,12 +292,12 @@ impl Writing {
         let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {
             text.push(',');
-            // Headings contain no quotes; a comma in one would be another column.
+            // Headings are not quoted, so a comma would begin another column.
             text.push_str(&heading.replace([',', '"'], " "));
         }
         text.push_str(",remark\n");
         file.write_all(text.as_bytes())?;
-        // More can be passed on.
+        // Further rows can be passed on now.
         wake();
         for portion in &self.receiver {
             wake();
@@ -311,7 +313,7 @@ impl Writing {
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
-        // The sender has ended.
+        // The export was dropped before the end of the samples.
         Ok(false)
     }
 }

@@ -1,4 +1,4 @@
-//! A line of a recorder: a column of samples with a name and units.
+//! A line of a recorder, which is a column of samples with a name and units.
 
 use super::GroupId;
 use crate::analysis::history::{Sample, Value};
@@ -10,7 +10,7 @@ pub struct SeriesId(pub(super) u32);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
-    /// Size of this unit in units of the samples. Never zero.
+    /// Size of this unit in units of the samples. It is never 0.
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
@@ -27,17 +27,17 @@ impl Scale {
 pub struct Series {
     pub id: SeriesId,
     pub name: Text,
-    /// Column heading in a table.
+    /// Heading of the column in a table.
     pub heading: String,
-    /// Index of the colour, one of eight. Further lines reuse the colours from the start.
+    /// Index of the colour. There are eight colours, which are then used again.
     pub colour: usize,
     pub shown: bool,
-    /// Displayed range of values in the unit of the line, or `None` to fit the visible samples.
+    /// Displayed range of values in the unit of the line. `None` shows all visible samples.
     pub range: Option<(f64, f64)>,
     pub ended: bool,
-    /// Whether the values are calculated from another line, so that a missing value is not a fault of the device.
+    /// Whether the values are calculated from another line. A missing value is then not a fault of the device.
     pub derived: bool,
-    /// Current remark explaining why there are no samples.
+    /// The reason why there are no samples, if known.
     pub remark: Option<Text>,
     pub(super) group: GroupId,
     pub(super) column: usize,
@@ -46,7 +46,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Creates a line from a column of a group. `scales` must not be empty, and its first entry is displayed.
+    /// Creates a line for a column of a group. `scales` must not be empty; the first one is displayed.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: SeriesId::default(),
@@ -96,7 +96,7 @@ impl Series {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Displays values in the given unit, or in the default unit if there is no such unit.
+    /// Selects the unit of displayed values, or the default unit if there is no such unit.
     pub(super) fn choose(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }

@@ -1,5 +1,6 @@
-//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and CSV export.
-//! Independent of devices and drawing; the owner sets the origin, unit and depth of the samples.
+//! A chart recorder, which shows incoming samples as lines over time. It can follow the samples and zoom, and it has
+//! two cursors, a trigger and a CSV export. It does not depend on devices or drawing. The owner defines source, unit
+//! and number of the samples.
 
 mod cursors;
 mod ended;
@@ -30,17 +31,17 @@ pub enum RecorderAction {
     Show(SeriesId, bool),
     /// Display a line in the unit with this index.
     SetScale(SeriesId, usize),
-    /// Set the range of values of a line in its unit, or `None` to fit the visible samples.
+    /// Set the displayed range of values of a line, or `None` to show all visible samples.
     SetRange(SeriesId, Option<(f64, f64)>),
-    /// Draw all lines on one shared axis, or each line on its own.
+    /// Draw all lines with one axis, or each line with a separate axis.
     ShareAxis(bool),
     Follow,
     Pause,
     Fit,
     Look(SampleTime, SampleTime),
-    /// Set the length of the view in nanoseconds, keeping its current end.
+    /// Set the duration of the view in nanoseconds. Its end stays in place.
     SetSpan(i64),
-    /// Lengthen (above 1) or shorten (below 1) the view around a point in time.
+    /// Make the view longer (above 1) or shorter (below 1) around a point in time.
     Zoom(SampleTime, f64),
     /// Move a cursor to a point in time, or remove it.
     SetCursor(Cursor, Option<SampleTime>),
@@ -54,7 +55,7 @@ pub enum RecorderAction {
 /// Nanoseconds between two samples whose interval is unknown.
 pub const SAMPLE: i64 = 1_000;
 
-/// A group of samples that are taken together.
+/// Number of a group of samples that are taken together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
 
@@ -67,7 +68,8 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// Identifier of the samples of one group among all groups, including cleared ones and those of other recorders.
+/// Identifier of the samples of a group. It is unique among all groups, including cleared ones and those of other
+/// recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp(u64);
 
@@ -87,7 +89,7 @@ impl Group {
         }
     }
 
-    /// Marks a gap before the next sample, unless there are no samples yet.
+    /// Marks a gap before the next sample. Nothing happens if there are no samples yet.
     fn break_before_next(&mut self) {
         if !self.history.all().is_empty() {
             self.history.break_before_next();
@@ -107,23 +109,23 @@ pub struct Recorder {
     cursors: [Option<SampleTime>; 2],
     watch: Option<Watch>,
     export: Option<Export>,
-    /// Time up to which everything has been exported to a table.
+    /// Time up to which the recording has been exported to a table.
     saved: Option<SampleTime>,
 }
 
 impl Recorder {
-    /// Creates an empty recorder that shows the given number of nanoseconds in follow mode.
+    /// Creates an empty recorder whose view follows the samples and shows `span` nanoseconds.
     pub fn new(span: i64) -> Self {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// Creates a recorder for samples without times, where the time is the sample number times [`SAMPLE`]. In follow
-    /// mode it shows the given number of samples.
+    /// Creates a recorder for samples without times. The time of a sample is its number times [`SAMPLE`]. The view
+    /// follows the samples and shows the given number of them.
     pub fn counting(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Marks the recording as complete. No further samples arrive, so a trigger has either fired or never will.
+    /// Marks the recording as complete. No more samples arrive, so a trigger that has not fired is missed.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
@@ -132,8 +134,8 @@ impl Recorder {
         self.counts
     }
 
-    /// Adds a group of samples with the given columns and capacity. Samples more than `longest_pause` nanoseconds apart
-    /// are not joined.
+    /// Adds a group of samples with the given columns, for at most `capacity` samples. Samples that are more than
+    /// `longest_pause` nanoseconds apart are not joined.
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
@@ -151,7 +153,7 @@ impl Recorder {
         id
     }
 
-    /// Removes a line, and its samples unless another line shows samples of the same group.
+    /// Removes a line. Its samples are removed as well, unless another line shows samples of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: SeriesId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;
@@ -171,10 +173,11 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group. Samples are skipped while they would evict samples of a held view.
+    /// Appends samples to a group. They are ignored if they would displace samples of a held view.
     ///
     /// # Errors
-    /// The batch does not have the group's columns, or its time goes back.
+    /// Returns an error if the samples do not have the columns of the group, or if a time is earlier than the previous
+    /// one.
     pub fn append(&mut self, group: GroupId, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
         if self.would_discard_picture(group, times.len()) {
             self.break_before_next(group);
@@ -187,12 +190,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Marks that samples are missing before the next samples of every group.
+    /// Marks a gap before the next samples of every group.
     pub(in crate::app) fn break_all(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
-    /// Marks that samples are missing before the next samples of a group.
+    /// Marks a gap before the next samples of a group.
     pub(crate) fn break_before_next(&mut self, group: GroupId) {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
@@ -237,7 +240,7 @@ impl Recorder {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// Returns the displayed lines, including ended ones only if they have samples in the visible range.
+    /// Returns the displayed lines. A line that has ended is included only if it has samples in the visible range.
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
         let is_visible = move |line: &&Series| {
@@ -246,12 +249,10 @@ impl Recorder {
         self.selected_series().filter(is_visible)
     }
 
-    /// Returns the lines selected for display, regardless of the visible range.
     fn selected_series(&self) -> impl Iterator<Item = &Series> {
         self.lines.iter().filter(|line| line.shown)
     }
 
-    /// Returns the history with the samples of a line.
     pub fn history(&self, line: &Series) -> Option<&History> {
         self.groups.get(&line.group).map(|group| &group.history)
     }
@@ -268,7 +269,7 @@ impl Recorder {
         self.groups.values().all(|group| group.history.all().is_empty())
     }
 
-    /// Returns the raw sample of a line that is nearest to a point in time.
+    /// Returns the sample of a line that is nearest to a point in time.
     pub fn nearest(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest(time)?)
@@ -288,7 +289,7 @@ impl Recorder {
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
 
-    /// Discards the samples and ended lines, but keeps active lines, units and the length of the view.
+    /// Discards the samples and the lines that have ended. Active lines, units and the duration of the view are kept.
     pub(crate) fn clear(&mut self) {
         let ended: Vec<SeriesId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));
@@ -296,7 +297,7 @@ impl Recorder {
             *history = Group::history(columns, *capacity, *longest_pause);
             *stamp = Stamp::new();
         }
-        // Nothing of a half-written table is kept.
+        // A table that is not complete is discarded.
         self.export = None;
         self.saved = None;
         self.cursors = [None; 2];
@@ -312,7 +313,7 @@ impl Recorder {
                 line.range = None;
             }
         });
-        // A level is in the unit in which it was entered.
+        // The trigger level was entered in the old unit.
         self.forget_trigger(id);
     }
 

@@ -1,4 +1,4 @@
-//! The trigger: waits for an event in a line and shows it together with the samples before it.
+//! The trigger, which waits for an event in a line and then shows it with the samples before it.
 
 use super::{GroupId, Recorder, SeriesId, TimeWindow};
 use crate::analysis::SampleTime;
@@ -10,7 +10,7 @@ pub enum TriggerCondition {
     Below,
     Rising,
     Falling,
-    /// A sample that the device marks as bad or with a warning.
+    /// The device marks a sample as bad or with a warning.
     Error,
 }
 
@@ -28,27 +28,27 @@ impl TriggerCondition {
     }
 }
 
-/// A trigger with its condition and the range displayed around the event.
+/// A trigger: its condition, and the range that is displayed around the event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: SeriesId,
     pub when: TriggerCondition,
     pub level: f64,
-    /// Fraction of the view before the event, from 0 to 1.
+    /// Fraction of the view that lies before the event, from 0 to 1.
     pub before: f64,
-    /// Whether to wait again after each view instead of holding it.
+    /// Whether the trigger waits for the next event after each view. Otherwise the view is held.
     pub repeat: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriggerState {
-    /// Waiting for the event.
+    /// The trigger waits for the event.
     Armed,
-    /// The event occurred at this time, and later samples are still being recorded.
+    /// The event occurred at this time, and the samples after it are still being recorded.
     Fired(SampleTime),
     /// The event occurred at this time, and the view is complete.
     Held(SampleTime),
-    /// The event did not occur in a complete recording.
+    /// The recording is complete, and the event did not occur.
     Missed,
 }
 
@@ -58,9 +58,9 @@ pub(super) struct Watch {
     when: TriggerCondition,
     level: f64,
     state: TriggerState,
-    /// Last valid value, required to detect an edge; `None` after a break.
+    /// Last valid value, which is needed to detect an edge. It is `None` after a gap.
     last: Option<f64>,
-    /// Nanoseconds of the picture.
+    /// Duration of the view in nanoseconds.
     span: i64,
 }
 
@@ -78,11 +78,11 @@ impl Watch {
         (from, from.plus(self.span))
     }
 
-    /// Checks the next sample and returns whether the event has occurred.
+    /// Checks the next sample, and returns whether the event has occurred.
     fn check_trigger(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
-        // Across a gap no edge was observed.
+        // An edge across a gap was not observed.
         let last = self.last.filter(|_| !sample.flags.contains(Flags::BREAK));
         self.last = value;
         let level = self.level;
@@ -108,7 +108,7 @@ impl Recorder {
         if trigger.when.has_level() && !level.is_finite() {
             return;
         }
-        // In a unit that counts in the opposite direction, rising is falling.
+        // In a unit with the opposite sign, a rising edge is a falling one.
         let when = match trigger.when {
             TriggerCondition::Above if factor < 0.0 => TriggerCondition::Below,
             TriggerCondition::Below if factor < 0.0 => TriggerCondition::Above,
@@ -144,13 +144,13 @@ impl Recorder {
         }
     }
 
-    /// Returns whether adding samples to a group would evict samples from a held view.
+    /// Returns whether new samples of a group would displace samples of a held view.
     pub(super) fn would_discard_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;
         let Some(oldest) = history.time(history.all().start) else { return false };
-        // Samples that are evicted from before the view are not needed.
+        // Samples before the view may be displaced.
         let remains = history.oldest_after(more);
         remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
     }
@@ -173,10 +173,11 @@ impl Recorder {
                 watch.state = if watch.trigger.repeat { TriggerState::Armed } else { TriggerState::Held(at) };
                 shown = Some(at);
             }
-            // Each sample is checked, so that an edge is also seen in the first one after a view.
+            // Every sample is checked, so an edge in the first sample after a view is detected as well.
             if watch.check_trigger(&sample) && watch.state == TriggerState::Armed {
                 watch.state = TriggerState::Fired(sample.time);
-                // A repeated one is shown when it is complete: otherwise it would never be seen whole.
+                // A repeating trigger shows its view when it is complete, because the next event would replace an
+                // incomplete one.
                 shown = if watch.trigger.repeat { shown } else { Some(sample.time) };
             }
         }

@@ -10,9 +10,9 @@ const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
-    /// The newest samples over this many nanoseconds.
+    /// The newest samples, for a fixed duration.
     Follow {
-        /// Nanoseconds, at least 1.
+        /// Duration of the view in nanoseconds, at least 1.
         span: i64,
     },
     Fixed {
@@ -53,7 +53,7 @@ impl Recorder {
     }
 
     pub(super) fn follow(&mut self) {
-        // As long as the previous view.
+        // The view keeps its duration.
         self.view = TimeWindow::Follow { span: self.span() };
         self.lines.iter_mut().for_each(|line| line.range = None);
     }
@@ -66,7 +66,7 @@ impl Recorder {
     pub(super) fn fit(&mut self) {
         self.lines.iter_mut().for_each(|line| line.range = None);
         let Some((first, last)) = self.recorded() else { return };
-        // Slightly more to the right, so that the last sample is visible.
+        // The view ends slightly later, so the last sample is visible.
         let span = last.nanoseconds_since(first).max(SHORTEST);
         self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
     }
@@ -85,7 +85,7 @@ impl Recorder {
         };
     }
 
-    /// Zooms around a time. In follow mode the newest sample stays at its position.
+    /// Zooms around a time. If the view follows the samples, the newest one stays in place.
     pub(super) fn zoom(&mut self, about: SampleTime, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;

@@ -1,4 +1,4 @@
-//! Permits that the user may grant for a write.
+//! Permits that the user can give for a write.
 
 use crate::profile::RestoreOptions;
 
@@ -9,11 +9,11 @@ pub enum Permit {
     Mounting,
     /// Delete fields and create them again.
     Recreate,
-    /// Copy bytes of unknown meaning in the given data field to a different device.
+    /// Copy the bytes of this data field to another device, although their meaning is unknown.
     Copy(u8),
 }
 
-/// A permit that results in a different plan, with whether it is granted.
+/// A permit that changes the plan, and whether it is granted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PermitToggle {
     pub permit: Permit,
@@ -43,8 +43,7 @@ impl Permit {
         }
     }
 
-    /// Returns the restore option that corresponds to the permit, or `None` if no such option is common to all kinds of
-    /// devices.
+    /// Returns the restore option for a permit, or `None` if not all kinds of devices have this option.
     pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

@@ -1,5 +1,5 @@
-//! A device or profile whose edits survive a crash. A kind defines its edits and their key; loading, storing and
-//! discarding drafts is shared.
+//! A device or profile whose edits survive a crash. Each kind of device defines its edits and their key. Loading,
+//! storing and discarding drafts is the same for all kinds.
 
 #![warn(missing_docs)]
 
@@ -17,12 +17,13 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 /// A session with edits.
 pub trait HasDraft: HasSession {
     /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
-    /// without an identity.
+    /// that has no identity.
     fn key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and serial number under which the device's draft is stored, since a different type may use
-    /// the same number. The serial number is empty for a device without an identity. Returns `None` if nothing has been
-    /// read.
+    /// Returns the type and serial number that name the draft of the device, or `None` if nothing has been read.
+    ///
+    /// The type is included because another type may use the same number. The serial number is empty for a device that
+    /// has no identity.
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }
@@ -30,7 +31,7 @@ pub trait HasDraft: HasSession {
     /// Returns the current edits.
     fn edited(&self) -> Edits<Self>;
 
-    /// Restores earlier edits, omitting those that are no longer valid.
+    /// Restores earlier edits. Edits that are no longer valid are left out.
     fn take_edits(&mut self, edits: Edits<Self>);
 
     /// Adopts a profile that was read again from its file. Edits are kept.
@@ -42,7 +43,7 @@ pub trait HasDraft: HasSession {
     /// Returns the edits for undo and redo.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
-    /// Discards all edits as one step.
+    /// Discards all edits as one undo step.
     fn revert_edits(&mut self) {
         self.pending_mut().revert();
     }
@@ -50,11 +51,11 @@ pub trait HasDraft: HasSession {
     /// Handles the successful saving of a connected device's profile to a file.
     fn note_profile_saved(&mut self, _document: ProfileDocument) {}
 
-    /// Returns the key of the draft, or `None` for a device that does not identify itself.
+    /// Returns the key of the draft, or `None` for a device that has no identity.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::for_file(Self::Device::KIND, key)),
-            // Files are named by 16 hexadecimal digits.
+            // The drafts of files are named by 16 hexadecimal digits.
             Source::New { suggested } => Some(DraftKey::for_file(Self::Device::KIND, &suggested.to_string_lossy())),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
@@ -65,7 +66,7 @@ pub trait HasDraft: HasSession {
         }
     }
 
-    /// Starts looking up the draft with earlier edits.
+    /// Starts a task that looks for a draft with earlier edits.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
@@ -93,7 +94,7 @@ pub trait HasDraft: HasSession {
             self.session_mut().drafting.report_missing_draft(&name, services);
         }
         if edits.has_no_edits() {
-            // They were written, saved or discarded.
+            // The edits were written, saved or discarded.
             services.log.settle(DRAFT_BACK, Some(&name));
         }
         self.session_mut().drafting.save(key, edits, services);
@@ -104,13 +105,14 @@ pub trait HasDraft: HasSession {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk, because a different device or none is being opened.
+    /// Leaves the edits of the previous device on disk, because another device or none is opened.
     fn release_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);
     }
 
-    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none.
+    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none
+    /// behind.
     fn written(
         &mut self,
         saving: SaveRequest,

@@ -1,6 +1,8 @@
-//! Drafts: edits survive a crash. Each edit is stored at once with the studio's other data, in one file for each device
-//! or profile, and is restored with it. A draft has a single owner: a second session with the same device, in this or
-//! another window, neither adopts nor overwrites it. Only the kind of device knows what an edit contains.
+//! Drafts, with which edits survive a crash. Each edit is stored at once together with the other data of the studio, in
+//! one file for each device or profile.
+//!
+//! A draft has a single owner. A second session with the same device, in this or another window, neither adopts nor
+//! overwrites it. Only the kind of device knows the content of an edit.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +19,7 @@ use crate::store::{Claim, Drafts, FileError};
 
 pub(super) const DRAFT_BACK: &str = "session.draft_back";
 
-/// Time allowed for another session to release its claim. A closed session may still be writing.
+/// Maximum time for another session to release its claim. A closed session may still be writing.
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -42,7 +44,7 @@ impl DraftKey {
 pub enum DraftOutcome {
     Looked {
         key: DraftKey,
-        /// Claim to store the draft, or `None` if the draft belongs to another window or session.
+        /// Right to store the draft, or `None` if another window or session has it.
         claim: Result<Option<Claim>, FileError>,
         result: Result<Option<String>, FileError>,
     },
@@ -65,23 +67,23 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// The edits most recently passed on for storing.
+    /// Edits that were last passed on for storing.
     kept: E,
     busy: bool,
-    /// Whether the edits may differ from those most recently passed on.
+    /// Whether the edits may have changed since they were last passed on.
     due: bool,
-    /// Whether the earlier draft has been looked up. The draft is not overwritten before that.
+    /// Whether an earlier draft has been looked for. The draft is not overwritten before that.
     is_loaded: bool,
-    /// Claim to store the draft. If there is none, the draft belongs to another window or session.
+    /// Right to store the draft. If it is `None`, another window or session has it.
     claim: Option<Arc<Claim>>,
     is_failure_reported: bool,
 }
 
-/// Returns the draft name for a file, which does not depend on the path leading to it. This accesses the disk and must
-/// therefore run in a task.
+/// Returns the name of the draft for a file, which is the same for every path to the file. This accesses the disk, so
+/// it must run in a task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    // FNV-1a, the same in every version of the program.
+    // The hash is FNV-1a in every version of the program.
     let mut hash: u64 = 0xCBF2_9CE4_8422_2325;
     for byte in path.as_os_str().as_encoded_bytes() {
         hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
@@ -90,7 +92,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> ActiveDraft<E> {
-    /// Creates the draft state of a session, before any draft has been looked up.
+    /// Creates the state of a draft that has not been looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         ActiveDraft {
             session,
@@ -107,7 +109,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Starts again, because the saved profile has no edits, and earlier drafts belong to the file that it replaced.
+    /// Takes over the draft of a newly saved profile. The profile has no edits, and an earlier draft belongs to the
+    /// file that it replaced.
     pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -137,8 +140,10 @@ impl<E: DraftEdits> ActiveDraft<E> {
         });
     }
 
-    /// Handles the result of a task, which contains the edits of an earlier session, if any. A result about a draft
-    /// other than `own` is outdated; edits made in the meantime (`dirty`) take precedence.
+    /// Handles the result of a task. Returns the edits of an earlier session, if any.
+    ///
+    /// A result about a draft other than `own` is outdated. If `dirty` is set, new edits take precedence over earlier
+    /// ones.
     pub(in crate::app) fn take(
         &mut self,
         done: DraftOutcome,
@@ -162,7 +167,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
                 services.notify(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
                 return None;
             }
-            // A draft cannot be stored in such a folder, which is reported when there is one to store.
+            // No draft can be stored in this folder. This is reported when there is a draft to store.
             Err(_) => {}
         }
         self.is_loaded = true;
@@ -188,7 +193,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Records that earlier edits have been restored. `edits` are those that are still valid.
+    /// Handles the restoration of earlier edits. `edits` are those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.has_no_edits() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
@@ -212,12 +217,13 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.due = true;
     }
 
-    /// Returns whether the edits must be compared again, because events have occurred since the last check.
+    /// Returns whether the edits must be compared again, because there were events since the last check.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
 
-    /// Stores the edits if they have changed. Only one task runs at a time, and later changes follow in the next one.
+    /// Stores the edits if they have changed. Only one task runs at a time, so later changes are stored by the next
+    /// one.
     pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
@@ -232,15 +238,14 @@ impl<E: DraftEdits> ActiveDraft<E> {
         store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
-    /// Reports that a device without a serial number has no draft. This is reported once, at the first edit.
+    /// Reports that a device without a serial number has no draft. This happens only once, at the first edit.
     pub(in crate::app) fn report_missing_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
-    /// Returns whether the earlier draft has been looked up. If so, edits are restored after the session has been
-    /// closed.
+    /// Returns whether an earlier draft has been looked for. Edits are then restored after the session was closed.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }
@@ -249,7 +254,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk, because a different device or none is being opened.
+    /// Leaves the edits of the previous device on disk, because another device or none is opened.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
@@ -271,7 +276,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 }
 
-/// Passes edits on for storing. The claim is held until the edits are stored.
+/// Stores edits in a task. The claim is held until they are stored.
 fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,

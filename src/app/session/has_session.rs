@@ -1,4 +1,4 @@
-//! An open device, or a profile of one, of any kind.
+//! An open device or profile of any kind.
 
 use super::{Kind, Session};
 

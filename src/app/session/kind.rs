@@ -1,5 +1,5 @@
-//! The associated types and functions of a kind of device, which allow opening, running and leaving sessions to be
-//! shared.
+//! The types and functions that define a kind of device. With these, sessions of all kinds are opened, run and released
+//! in the same way.
 
 #![warn(missing_docs)]
 
@@ -11,18 +11,18 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, Event, JobId, OpenError, Session};
 
-/// A kind of device, with everything that its sessions require.
+/// A kind of device, with everything that its sessions need.
 pub trait Kind: Device + Sized {
-    /// Name of the device kind in profiles.
+    /// Name of the kind in profiles.
     const KIND: &'static str;
 
     /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// The part of a session that stays outside its thread.
+    /// Handle of a session that stays outside its thread.
     type SessionHandle: Send;
 
-    /// Review of a write, which is [`Review`](crate::app::review::Review) for a kind with a memory.
+    /// Review of a write. It is [`Review`](crate::app::review::Review) for a kind with a memory.
     type Review;
 
     /// Whether live values may start automatically on a line without another master.
@@ -34,20 +34,20 @@ pub trait Kind: Device + Sized {
     /// Opens a link to a device of this kind.
     ///
     /// # Errors
-    /// Returns an error if the link cannot be opened or leads to a different kind of device.
+    /// Returns an error if the link cannot be opened or leads to another kind of device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
-    /// Explains why a link cannot be opened and what to do.
+    /// Returns the reason why a link cannot be opened, and what to do.
     fn open_error(error: &OpenError) -> Text {
         explain::open(error)
     }
 
-    /// Explains why a link could not be opened, including the case that no thread could be started.
+    /// Returns the reason why a link could not be opened or its thread could not be started.
     fn open_failed(failed: &OpenFailure) -> Text {
         explain::open_failed(failed, Self::open_error)
     }
 
-    /// Describes a job.
+    /// Returns the name of a job.
     fn job_text(job: &Self::Job) -> Text;
 
     /// Returns whether a job changes the memory of the device.
@@ -58,21 +58,21 @@ pub trait Kind: Device + Sized {
     /// Returns the job that reads all displayed values of the device.
     fn survey() -> Self::Job;
 
-    /// Describes a step of a job.
+    /// Returns the description of a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;
 
-    /// Describes the result of a job that writes. Returns `None` for other jobs.
+    /// Returns the texts about the result of a job that writes, or `None` for another job.
     fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
 
-    /// Explains why a job ended early and what to do.
+    /// Returns the reason why a job ended early, and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
-    /// Explains why the connection failed. Returns `None` if further requests are still possible over the connection.
+    /// Returns the reason for the loss of the connection, or `None` if the error does not end it.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
-    /// Returns the final message about the job from an event of a released session, if the event ends the job.
+    /// Returns the message about the end of a job in a released session, or `None` if the event does not end it.
     fn job_endings(event: &Event<Self>) -> Option<JobCompletion> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {

@@ -1,5 +1,5 @@
-//! Writing to a device memory through a review: from a change to a plan, from the approved plan to the job that
-//! executes it, and to its result. A kind defines its changes, plans and jobs and their further consequences.
+//! Writing to the memory of a device with a review: a change leads to a plan, and the approved plan is executed by a
+//! job that has a result. Each kind of device defines its changes, plans and jobs, and their further effects.
 
 #![warn(missing_docs)]
 
@@ -38,7 +38,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         Self::Device::op(prepared, op)
     }
 
-    /// Returns the review for display, after `done` operations have been executed.
+    /// Returns the review as it is displayed, after `done` operations have been executed.
     fn sheet(&self, done: usize) -> Option<ReviewSheet> {
         self.review().map(|review| review.review_sheet(done, |prepared, op| self.op(prepared, op)))
     }
@@ -49,7 +49,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Returns whether a change was made for a device other than the connected one.
     fn is_for_other_device(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for a different type of device, provided that this requires a separate permit.
+    /// Returns whether a change was made for another type of device. This is only checked if it requires a separate
+    /// permit.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
         false
     }
@@ -65,13 +66,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Creates the job that executes an approved plan.
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
-    /// Discards all data about the device, because a different device has replied.
+    /// Discards all data about the device, because another device has replied.
     fn forget_device(&mut self);
 
-    /// Prepares for displaying a review.
+    /// Prepares the display of a review.
     fn prepare_review(&mut self) {}
 
-    /// Returns the reason why a change is impossible, as far as this is known without querying the device.
+    /// Returns the reason why a change is impossible, if this is known without asking the device.
     fn change_rejection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
@@ -81,7 +82,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         None
     }
 
-    /// Marks the values that the running plan changes as unread, however the plan ends.
+    /// Marks the values that the running plan changes as not read. Called however the plan ends.
     fn rereads_after_write(&mut self) {}
 
     /// Handles the end of a plan that has been executed.
@@ -123,7 +124,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Requests the plan again with one of its permits toggled.
+    /// Requests the plan again after a permit was given or withdrawn.
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
@@ -133,19 +134,19 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Sets whether to write even though the device has reached its limit of write cycles.
+    /// Sets whether to write although the device has reached its limit of write cycles.
     fn force_wear(&mut self, force: bool) {
         if let Some(review) = self.review_mut() {
             review.force_wear = force;
         }
     }
 
-    /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was
-    /// intended for the previous device.
+    /// Adopts a plan for review. If another device has replied, the plan is discarded, because the change was meant for
+    /// the previous device.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.targets_other_device(&prepared) {
             *self.review_mut() = None;
-            // If there are edits, the other device was reported when it was read.
+            // With edits, the change of the device was reported when it was read.
             if !self.pending().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
@@ -161,7 +162,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Handles an exchange of the device. The edits for the previous device stay on disk if it has a serial number.
+    /// Handles a change of the device. The edits for the previous device stay on disk if it has a serial number.
     fn handle_device_replacement(&mut self, serial: &str, services: &mut Services) {
         if self.pending().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
@@ -183,7 +184,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         }
     }
 
-    /// Approves the displayed plan, which must be the one under review.
+    /// Approves the displayed plan, if it is the plan under review.
     fn agree(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
@@ -224,7 +225,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
-        // A success stays in the review until that is closed.
+        // The review shows a success until it is closed.
         if severity == Severity::Good && stands {
             services.note(severity, texts, Some(&name));
         } else {
@@ -241,8 +242,8 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         self.submit(Self::Device::survey(), services);
     }
 
-    /// Handles the early end of planning or writing. Returns whether the review reports it. A plan cancelled during
-    /// preparation leaves no review.
+    /// Handles the early end of planning or writing. Returns whether the review reports it. A plan that is cancelled
+    /// while it is prepared leaves no review.
     fn handle_interrupted_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
@@ -251,7 +252,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
                 *self.review_mut() = None;
                 return false;
             }
-            // Its progress is not known.
+            // The number of completed operations is not known.
             (EarlyEnd::Lost, ..) => (true, 0),
             (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
                 let done = error.done();

@@ -1,5 +1,5 @@
-//! Parts common to all sessions: source, connection, line, trace, backups and writes. Independent of the kind of
-//! device, which adds its own parts in its folder.
+//! Parts common to all sessions: source, connection, line, trace, backups and writes. Each kind of device adds further
+//! parts in its folder.
 
 mod drafted;
 mod drafts;
@@ -48,9 +48,9 @@ pub enum Source {
     File {
         path: PathBuf,
         key: String,
-        /// The document without the user's edits.
+        /// The document without the edits of the user.
         document: Box<ProfileDocument>,
-        /// Source text of the file. It is kept because comments, order and line endings belong to the user.
+        /// Text of the file. Its comments, order and line endings belong to the user and are preserved.
         text: String,
     },
     /// A new profile that has not been saved yet.
@@ -73,9 +73,9 @@ impl Source {
 pub enum Phase {
     Opening,
     Connected,
-    /// The link is open, but the device does not reply. Holds the reason and what to do.
+    /// The link is open, but the device does not reply. Contains the reason and what to do.
     Silent(Text),
-    /// The connection was lost or could not be opened. Holds the reason and what to do.
+    /// The connection was lost or could not be opened. Contains the reason and what to do.
     Lost(Text),
     /// A profile that is open without a connection.
     Offline,
@@ -83,7 +83,7 @@ pub enum Phase {
 
 pub(crate) struct PendingOpen {
     pub(crate) attempt: Option<u32>,
-    /// Receiver that disconnects when the attempt to open the link has ended.
+    /// Channel that closes when the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub(crate) is_sole_master: bool,
 }
@@ -95,7 +95,7 @@ pub struct Session<D: Kind> {
     pub review: Option<D::Review>,
 }
 
-/// Dereferences to the session's state.
+/// The state of the session can be used directly.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -111,7 +111,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
+    /// Creates a session for a link that is being opened. `kinds` defines which parameters are secret.
     pub fn for_link(id: SessionId, url: LinkUrl, kinds: KindRegistry) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
@@ -122,7 +122,7 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
-    /// Creates a session whose content has not been saved to a file yet.
+    /// Creates a session for a profile that has not been saved.
     pub(crate) fn new_unsaved(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)
     }
@@ -161,7 +161,7 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
 
-    /// Returns whether the device is connected and idle, in which case a job may be started.
+    /// Returns whether the device is connected and idle. A job may then start.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
@@ -195,8 +195,8 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Records that polling has stopped, the reason, and whether the device does not reply at all. Polling that has
-    /// been requested again in the meantime continues.
+    /// Handles the end of polling, with its reason. `is_silent` is set if the device does not reply at all. Polling
+    /// that was requested again in the meantime continues.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -210,7 +210,7 @@ impl<D: Kind> Session<D> {
         self.report(Severity::Error, texts, stands_there, services);
     }
 
-    /// Starts a job. If the job cannot be started, reports the reason and returns `false`.
+    /// Starts a job. If this is impossible, the reason is reported and `false` is returned.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
@@ -225,13 +225,13 @@ impl<D: Kind> Session<D> {
             Err(SubmitError::Busy | SubmitError::Unread) => {
                 services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
             }
-            // The last events tell how the session ended.
+            // The last events of the session state how it ended.
             Err(SubmitError::Ended) => {}
         }
         false
     }
 
-    /// Returns the reason why no plan can be made now, or `None` if one can be made.
+    /// Returns the reason why no plan can be made now, if any.
     pub(crate) fn not_ready_reason(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
@@ -241,7 +241,7 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Stops the running job or cancels the opening of a link.
+    /// Stops the running job, or cancels the opening of a link.
     pub(crate) fn stop(&mut self, services: &mut Services) {
         self.live_due = false;
         if self.phase == Phase::Opening {
@@ -249,7 +249,7 @@ impl<D: Kind> Session<D> {
             services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
             self.phase = Phase::Lost(why);
             if let Some(opening) = &mut self.opening {
-                // Its further results are dropped; the next attempt waits until it has ended.
+                // Results of this attempt are ignored. The next attempt waits until it has ended.
                 opening.attempt = None;
             }
         }
@@ -258,8 +258,8 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Releases the thread and records the end of the running job as `end`. A cancelled write ends on its own and
-    /// reports its own result.
+    /// Releases the thread, and ends the running job with `end`. A write that is cancelled ends later and reports its
+    /// result itself.
     pub(crate) fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
@@ -273,7 +273,7 @@ impl<D: Kind> Session<D> {
     }
 
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
-        // It is displayed where the session is shown.
+        // The message is displayed where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.let_go(JobState::Failed(why.clone()), services);
         self.opening = None;

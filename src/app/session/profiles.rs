@@ -1,4 +1,4 @@
-//! Profiles and backups of an open device as files. Each is read or written in a task.
+//! Profiles and backups of an open device as files. Each one is read or written in a task.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values read in order to save them to a file. `edits` is the number of edits that are not saved, and
+    /// Handles the values that were read to save them to a file. `edits` is the number of edits that are not saved, and
     /// `remarks` name other missing values.
     pub fn save_read_values(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
@@ -35,7 +35,7 @@ impl SessionState {
         self.write_document(path, document_of(body), remarks, services);
     }
 
-    /// Adopts a profile that was read again from its file or saved to another file.
+    /// Adopts a profile that was read again from its file, or was saved to another file.
     pub fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         self.source = file.source(document);
     }
@@ -49,7 +49,7 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile on a thread. `remarks` name the values missing from it.
+    /// Saves a profile in a task. `remarks` name the values that are missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -102,11 +102,11 @@ impl SessionState {
 
 pub struct DeviceHistory {
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Entries about writes, newest first, or the reason why the logbook provides none.
+    /// Writes in the logbook with the newest first, or the reason why there are none.
     pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Total number of write cycles, or `None` if the logbook has no record.
+    /// Total number of write cycles, or `None` if the logbook does not contain it.
     pub cycles: Option<u64>,
-    /// Status codes that were read, newest first. An error reading the logbook is reported in `writes`.
+    /// Status codes that were read, with the newest first. An error of the logbook is reported in `writes`.
     pub statuses: Vec<StatusEntry>,
 }
 

@@ -1,4 +1,4 @@
-//! Memory content as a profile: saving, restoring and backing up.
+//! The content of a memory as a profile: saving, restoring and backing up.
 
 use std::path::{Path, PathBuf};
 
@@ -12,28 +12,28 @@ use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// A profile made from earlier readings with remarks, or a message for each missing part.
+/// A profile of earlier readings with remarks, or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
-/// Returns the remark that a number of edits is not included, or `None` if there are none.
+/// Returns the remark that some edits are not saved, or `None` if there are none.
 pub fn unsaved_edits_remark(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
 pub trait HasProfile: HasMemory {
-    /// Creates the job that reads everything that can be restored.
+    /// Creates the job that reads everything that a profile can restore.
     fn read_all() -> Job<Self>;
 
-    /// Returns the edited profile if the session is a profile.
+    /// Returns the edited profile, or `None` if the session is a device.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// Returns a profile made from earlier readings, with remarks. Returns `None` if nothing was read.
+    /// Returns a profile of earlier readings with remarks, or `None` if nothing was read.
     ///
     /// # Errors
     /// Returns a message for each part of a profile that was not read.
     fn last_read_profile(&self) -> Option<KnownProfile>;
 
-    /// Returns whether earlier readings are saved because the device no longer replies.
+    /// Returns whether a profile would be saved from earlier readings. This is done if the device no longer replies.
     fn saves_what_was_read(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }
@@ -41,7 +41,7 @@ pub trait HasProfile: HasMemory {
     /// Requests a plan for restoring a profile, to be reviewed by the user.
     ///
     /// # Errors
-    /// Returns an error if the profile belongs to a different kind of device.
+    /// Returns an error if the profile belongs to another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
     /// Returns the remarks to show when the edited profile is saved.
@@ -49,8 +49,8 @@ pub trait HasProfile: HasMemory {
         Vec::new()
     }
 
-    /// Saves a profile. A connected device is read again; if it no longer replies, earlier readings are saved.
-    /// An open profile is saved as edited.
+    /// Saves a profile. An open profile is saved as edited. A connected device is read again first; if it no longer
+    /// replies, earlier readings are saved.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = read_only_reason(&self.session().source) {
             self.session().refuse(refusal, services);
@@ -95,7 +95,7 @@ pub trait HasProfile: HasMemory {
         }
     }
 
-    /// Reads the list of backups and writes again, on a thread.
+    /// Starts a task that lists the backups and writes.
     fn list_backups(&self, services: &Services) {
         if let Some(key) = self.key().filter(|_| self.session().phase != Phase::Offline) {
             self.session().list_backups(key, services);
@@ -106,7 +106,7 @@ pub trait HasProfile: HasMemory {
 /// Maximum number of remarks of one kind that are listed.
 const SAID: usize = 3;
 
-/// Lists the first few of several items, followed by the number of remaining items.
+/// Lists the first few items, and the number of the remaining ones.
 pub(crate) fn truncated_list<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));

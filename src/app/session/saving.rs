@@ -1,5 +1,5 @@
-//! Saving a profile to a file. Changes made by others since it was opened are not overwritten without asking, and
-//! comments of the user between the entries are preserved.
+//! Saving of a profile to a file. The user is asked before changes of others are overwritten, and comments between the
+//! entries are preserved.
 
 use std::path::{Path, PathBuf};
 
@@ -26,10 +26,10 @@ impl ProfileFile {
     }
 }
 
-/// Expected state of a file, checked before the file is overwritten.
+/// Expected state of a file. It is checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileSnapshot {
-    /// Key of the file, which does not depend on the path leading to it.
+    /// Key of the file, which is the same for every path to it.
     pub key: String,
     /// Content of the file when it was opened.
     pub text: String,
@@ -41,16 +41,16 @@ pub struct SaveRequest {
     pub path: PathBuf,
     pub document: Box<ProfileDocument>,
     pub remarks: Vec<Text>,
-    /// The open file and its expected state. Any other file is replaced unconditionally.
+    /// Expected state of the open file. Another file is replaced without a check.
     pub opened: Option<FileSnapshot>,
-    /// Whether the user has agreed that comments will be lost.
+    /// Whether the user has agreed to lose comments.
     pub may_lose: bool,
-    /// Whether the edits have been merged with the edits of other users and so no longer count as edits.
+    /// Whether the edits were merged with those of others. They are then no longer edits of this session.
     pub is_merged: bool,
 }
 
 impl SaveRequest {
-    /// Writes the file in a task, or returns the reason why it has not been written yet.
+    /// Writes the file, or returns the reason why it was not written. Runs in a task.
     pub(in crate::app) fn run(mut self, kinds: KindRegistry) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -71,23 +71,24 @@ impl SaveRequest {
             return Action::Done(Done::WouldLose(Box::new(self), lost));
         }
         let result: Result<(), FileError> = overwrite_text(&self.path, &text);
-        // A link may lead elsewhere by now, and a new file has a name only now.
+        // The key is determined after writing. A symbolic link may lead to another file by now, and a new file exists
+        // only now.
         let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };
         Action::Done(Done::Written { saving: Box::new(self), file, result })
     }
 }
 
-/// The content of a file that differs from what was opened.
+/// The content of a file that has changed since it was opened.
 #[derive(Debug)]
 pub(in crate::app) struct DivergedFile {
-    /// File content, or an empty string if the file cannot be read.
+    /// Text of the file. It is empty if the file cannot be read.
     pub(in crate::app) text: String,
-    /// File content parsed as a profile.
+    /// Text of the file parsed as a profile.
     pub(in crate::app) document: Result<Box<ProfileDocument>, ReadError>,
 }
 
-/// Returns the content to be replaced, or the file content if it differs both from what was opened and from what is to
-/// be written. A missing file does not count as different.
+/// Returns the text to be replaced, or the content of the file if others have changed it. A missing file is not a
+/// change.
 fn changed(
     path: &Path,
     opened: &str,
@@ -103,7 +104,7 @@ fn changed(
     };
     let normalized = |text: &str| ProfileDocument::parse(text, formats).ok().map(|document| document.emit());
     let found = normalized(&text);
-    // A change of comments only: they are kept like any others.
+    // Only comments have changed. They are preserved like all others.
     if text == opened || found.is_some() && (found == normalized(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }

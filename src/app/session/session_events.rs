@@ -1,5 +1,5 @@
-//! Events of a line: samples, results of jobs, early ends and loss of the connection. The kind handles results; the end
-//! of a job is reported in the same way for all kinds.
+//! Events of a line: samples, results of jobs, early ends, and loss of the connection. Each kind of device handles its
+//! results. The end of a job is reported in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -28,12 +28,12 @@ pub enum EarlyEnd<'e, E> {
     Lost,
 }
 
-/// A device that receives events from its communication line.
+/// A device that handles the events of its line.
 pub trait SessionEvents: HasSession {
-    /// Records samples; `dropped` samples were lost before them.
+    /// Records samples. `dropped` samples before them were lost.
     fn handle_samples(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns the explanation of a frame for the trace, empty if there is nothing to add to its bytes. Called once per
+    /// Returns the explanation of a frame for the trace. It is empty if the bytes need none. Called once for each
     /// frame, in order.
     fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
         Explained::default()
@@ -45,37 +45,37 @@ pub trait SessionEvents: HasSession {
     /// Handles the result of a finished job.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
-    /// Returns whether the error means that the link is open but the device does not reply.
+    /// Returns whether the error means that the link is open, but the device does not reply.
     fn is_silence(&self, error: &Error<Self>) -> bool;
 
-    /// Discards pending requests whose replies will not arrive.
+    /// Discards pending requests, because their replies will not arrive.
     fn forget_requests(&mut self);
 
-    /// Prepares for releasing the line.
+    /// Prepares the release of the line.
     fn prepare_release(&mut self) {}
 
     /// Handles progress of the running job.
     fn handle_progress(&mut self, _what: JobStep<Self>) {}
 
-    /// Returns whether the result of a job proves that the device has replied.
+    /// Returns whether the result of a job is a reply of the device.
     fn is_device_reply(_output: &Output<Self>) -> bool {
         true
     }
 
-    /// Handles the early end of a request and returns whether the review reports it.
+    /// Handles the early end of a request. Returns whether the review reports it.
     fn handle_early_end(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
-    /// Handles the end of polling where no request is involved.
+    /// Handles the end of polling, if no request was involved.
     fn on_polling_end(&mut self) {}
 
-    /// Starts a job; reports the reason and returns `false` if it cannot be started.
+    /// Starts a job. If this is impossible, the reason is reported and `false` is returned.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         self.session_mut().submit(job, services)
     }
 
-    /// Starts a job, or reports why it cannot be started.
+    /// Starts a job. If this is impossible, the reason is reported.
     fn submit(&mut self, job: Job<Self>, services: &mut Services) {
         self.try_submit(job, services);
     }
@@ -85,9 +85,9 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// Processes the line. Overridden by device kinds that do additional work at this point.
+    /// Handles the line. Kinds of devices that have more to do at this point override it.
     fn poll_line(&mut self, services: &mut Services) {
-        // Samples from before a job come before its result; later ones come the next time.
+        // Samples that precede a job are handled before its result. Later ones are handled in the next call.
         self.take_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
             self.take(event, services);
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.mark_draft_due();
     }
 
-    /// Handles a failed sample, after which polling has stopped.
+    /// Handles a sample that failed. Polling has stopped because of it.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.on_polling_end();
         match Self::Device::connection_error(error) {
@@ -145,7 +145,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a cancelled job. Values written before the cancellation are read again.
+    /// Handles a job that was cancelled. Values that it had written are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.end_job(self.session().id, id, JobState::Cancelled);
         self.session_mut().save_to = None;
@@ -158,7 +158,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a failed job.
+    /// Handles a job that failed.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.end_job(self.session().id, id, JobState::Failed(first(&texts)));
@@ -179,17 +179,17 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles the loss of the connection; known data and edits are kept.
+    /// Handles the loss of the connection. Known data and edits are kept.
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.prepare_release();
-        // The last frames show the cause best.
+        // The last frames are fetched, because they show the cause best.
         self.take_samples_and_frames();
         self.forget_requests();
         self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);
     }
 
-    /// Releases the thread, records the running job as `end` and discards any plan.
+    /// Releases the thread, ends the running job with `end`, and discards any plan.
     fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.prepare_release();
         self.forget_requests();
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the first sentence, for display where there is room for only one.
+/// Returns the first text, for places with room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

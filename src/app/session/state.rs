@@ -10,31 +10,31 @@ use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
 use crate::store::{Backup, Entry, StatusEntry};
 
-/// State common to all sessions: identity, data source and connection.
+/// The part of a session that is the same for all kinds of devices: identity, source of the data, and connection.
 pub struct SessionState {
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,
-    /// Device kinds, which determine the secret link parameters.
+    /// Kinds of devices, which define the secret parameters of links.
     pub(super) kinds: KindRegistry,
     pub(crate) opening: Option<PendingOpen>,
     pub title: Option<String>,
     pub trace: TraceLog,
     /// Backups, or the reason why there are none.
     pub backups: Option<Result<Vec<Backup>, Text>>,
-    /// Writes of this device in the logbook, or the reason why there are none.
+    /// Writes in the logbook, or the reason why there are none.
     pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Write cycles of this device recorded in the logbook, or `None` if there is no record or it was not read.
+    /// Write cycles recorded in the logbook, or `None` if there are none or they have not been read.
     pub cycles: Option<u64>,
-    /// Status codes of this device in the logbook, newest first.
+    /// Status codes in the logbook, with the newest first.
     pub statuses: Vec<StatusEntry>,
     /// Whether nothing has been read since the link was opened.
     pub just_connected: bool,
-    /// Whether live values start automatically as soon as the device has been read and its line is idle.
+    /// Whether live values start automatically once the device has been read and its line is idle.
     pub(in crate::app) live_due: bool,
-    /// File in which to save the profile that is being read.
+    /// File for the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
-    /// Whether a profile is being written to a file. The file content is unknown until the write ends.
+    /// Whether a profile is being written to a file. The content of the file is unknown until the write ends.
     pub(crate) is_saving: bool,
 }
 
@@ -64,7 +64,7 @@ impl SessionState {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
-    /// Returns the source of the data, without secrets.
+    /// Returns the source of the data without secrets.
     pub fn place(&self) -> String {
         match &self.source {
             Source::Link(url) => self.kinds.display_link(url),
@@ -85,7 +85,7 @@ impl SessionState {
         }
     }
 
-    /// Logs the first answer since the link was opened, with facts about the device.
+    /// Logs the first reply since the link was opened, with facts about the device.
     pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
@@ -93,21 +93,23 @@ impl SessionState {
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 
-    /// Records that the device has answered, even if only with a refusal.
+    /// Marks the device as replying, even if it only refuses requests.
     pub(crate) fn answers(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
     }
 
-    /// Records that the link is open but the device does not reply, with the reason and a suggested remedy.
+    /// Marks the device as silent: the link is open, but the device does not reply. `why` contains the reason and what
+    /// to do.
     pub(crate) fn mark_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));
     }
 
-    /// Reports a message about this device. If the message is already shown where it was requested, it is only logged.
+    /// Reports a message about this device. It is only logged if it is already shown where it was requested
+    /// (`stands_there`).
     pub(crate) fn report(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),
@@ -115,7 +117,7 @@ impl SessionState {
         }
     }
 
-    /// Discards all known data about the device because a different device has replied.
+    /// Discards all data about the device, because another device has replied.
     pub(super) fn forget_device(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
         self.statuses.clear();

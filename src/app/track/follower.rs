@@ -1,10 +1,10 @@
-//! Unwrapping of positions that wrap, with their rate of change. Damaged positions are bridged if the shaft cannot have
-//! completed an unnoticed turn.
+//! Tracking of positions across wrap-arounds, with speed and acceleration. Damaged positions are bridged if the shaft
+//! cannot have made an unnoticed turn.
 
 use super::Meaning;
 use crate::analysis::{Motion, MotionRates, PositionUnwrapper, SampleTime, UnwrappedPosition};
 
-/// Nanoseconds over which speed is averaged.
+/// Duration in nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 
 #[derive(Debug)]
@@ -12,11 +12,11 @@ pub(super) struct PositionTracker {
     pub(super) meaning: Meaning,
     unwrap: PositionUnwrapper,
     motion: Motion,
-    /// Last position, unwrapped.
+    /// Last position without wrap-around, with its time.
     last: Option<(SampleTime, i64)>,
-    /// Rate between the last two positions in steps per second, signed by direction.
+    /// Speed between the last two positions in steps per second, without its sign.
     pace: Option<f64>,
-    /// Whether samples without a position have arrived since the last position.
+    /// Whether samples without a position have arrived since then.
     has_missed: bool,
 }
 
@@ -26,8 +26,10 @@ impl PositionTracker {
         PositionTracker { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
     }
 
-    /// Returns whether the next position is joined to the last one. It must arrive soon enough, and across samples
-    /// without a position the shaft must be unable to complete the range unnoticed at its last speed.
+    /// Returns whether the next position is joined to the last one.
+    ///
+    /// It must arrive soon enough. If there were samples without a position in between, the shaft must be too slow to
+    /// have passed the range unnoticed.
     pub(super) fn continues_track(&self, time: SampleTime, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
@@ -41,7 +43,8 @@ impl PositionTracker {
         self.has_missed = true;
     }
 
-    /// Unwraps the next position and calculates its rates, or returns `None` if it is outside the range.
+    /// Returns the next position without wrap-around, with its speed and acceleration. Returns `None` if it is outside
+    /// the range.
     pub(super) fn next(&mut self, time: SampleTime, word: i64) -> Option<(UnwrappedPosition, MotionRates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {

@@ -1,21 +1,21 @@
-//! Meaning of positions: range, step size and units.
+//! Meaning of positions: range, size of a step, and units.
 
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
-    /// Number of positions before they wrap, or `None` for a linear encoder.
+    /// Number of positions in the range after which they wrap, or `None` for a linear encoder.
     pub(in crate::app) range: Option<i64>,
-    /// Units of position, speed and acceleration. The samples are in steps.
+    /// Units of position, speed and acceleration. Samples are in steps.
     pub scales: [Vec<Scale>; 3],
     pub(in crate::app) is_linear: bool,
-    /// Step size in turns or millimetres, if known.
+    /// Size of a step in turns or millimetres, if known.
     step: Option<f64>,
 }
 
 impl Meaning {
-    /// Creates the meaning of steps whose position within a revolution is unknown.
+    /// Creates the meaning of steps whose size is unknown.
     pub fn for_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],
@@ -25,7 +25,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: None }
     }
 
-    /// Creates the meaning of a shaft position with the given number of steps per revolution, which may be fractional.
+    /// Creates the meaning of positions on a shaft. The number of steps per revolution may be fractional.
     pub fn for_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
@@ -48,7 +48,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Creates the meaning of a linear position with the given step length in millimetres.
+    /// Creates the meaning of linear positions, with the length of a step in millimetres.
     pub fn for_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
@@ -65,7 +65,7 @@ impl Meaning {
         Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Returns whether both describe the same positions, possibly in different units.
+    /// Returns whether both describe the same positions. The units may differ.
     pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
         let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

@@ -1,4 +1,4 @@
-//! Values recorded in addition to a position, each as a separate line.
+//! Values that are recorded in addition to the position, each in a separate line.
 
 use std::convert::Infallible;
 
@@ -8,18 +8,18 @@ use crate::app::recorder::{GroupId, Series};
 use crate::units::Moment;
 
 pub trait Watchable: Clone + PartialEq {
-    /// Returns whether the values are whole numbers.
     fn is_whole(&self) -> bool;
 
     fn line(&self, group: GroupId) -> Series;
 
-    /// Returns whether samples of this value continue as samples of `other`, which may be displayed in different units.
+    /// Returns whether the samples of this value can be continued by samples of `other`, which may have different
+    /// units.
     fn can_continue_as(&self, other: &Self) -> bool {
         self == other
     }
 }
 
-/// Placeholder for devices without watched values.
+/// Devices without watched values use this type.
 impl Watchable for Infallible {
     fn is_whole(&self) -> bool {
         match *self {}
@@ -30,12 +30,12 @@ impl Watchable for Infallible {
     }
 }
 
-/// A watched value, if one is currently available.
+/// A reading of a watched value, which may be missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedValue {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,
-    /// Reason why there will never be a value, if that is the case.
+    /// The reason why there will never be a value, if any.
     pub never: Option<Text>,
 }

@@ -1,4 +1,4 @@
-//! Support for the open adapter.
+//! The open adapter, which connects encoders to a PC with the bridge protocol.
 
 pub(crate) mod commands;
 pub mod jobs;

@@ -1,4 +1,4 @@
-//! The virtual adapter served by `simulate`.
+//! The virtual adapter of the command `simulate`.
 
 use crate::buses::bridge::sim::Adapter;
 use crate::cli::simulate::Simulated;

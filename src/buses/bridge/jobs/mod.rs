@@ -1,5 +1,5 @@
-//! An adapter as a source of samples. It is opened, identified, configured and finally stopped on the stream's own
-//! thread, so that nothing waits for it. Damaged or lost samples are reported as missing before the next batch.
+//! An adapter as a source of samples. It is opened, identified, configured and finally stopped on the thread of the
+//! stream, so no other thread waits for it. Damaged or lost samples are reported as missing before the next batch.
 
 mod open;
 
@@ -32,14 +32,14 @@ pub struct SineCosine {
     pub sample_hz: u32,
 }
 
-/// Sine and cosine signals in volts, with equal numbers of samples.
+/// Sine and cosine signals in volts. Both have the same number of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pair {
     pub sine_v: Vec<f64>,
     pub cosine_v: Vec<f64>,
 }
 
-/// The reason why an adapter does not stream, or has stopped streaming.
+/// The reason why an adapter does not stream or has stopped streaming.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     #[error(transparent)]
@@ -61,13 +61,13 @@ pub struct Bridge<S> {
 }
 
 impl<S: Stretch> Bridge<S> {
-    /// Creates a producer for the adapter on the connection opened by `open`. A reply may arrive `margin` later than
-    /// the protocol specifies, and the encoder supply stays off unless `supply` is given.
+    /// Creates a producer for an adapter. `open` opens its connection. A reply may be late by `margin`. The supply of
+    /// the encoder is only switched on if `supply` is given.
     pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }
 
-    /// Returns the adapter and its actual settings, which are available once the adapter is streaming.
+    /// Returns the adapter and its actual settings. They are available while or after it has streamed.
     pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
         self.streaming.clone()
     }
@@ -78,7 +78,7 @@ impl<S: Stretch> Bridge<S> {
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         let streaming = self.tap.begin(ctx, self.stretch.wanted(), self.supply)?;
-        // It begins once.
+        // The value is only set once, since the stream begins once.
         let _ = self.streaming.set(streaming);
         Ok(())
     }
@@ -109,7 +109,7 @@ impl<S: Stretch> Producer for Bridge<S> {
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         if let Err(error) = self.tap.end(ctx) {
-            // Its next HELLO ends the stream.
+            // The stream ends with the next HELLO.
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
     }

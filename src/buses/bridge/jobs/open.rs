@@ -1,4 +1,4 @@
-//! Opening of a streaming adapter from a link URL: `bridge:` for a real one, `sim:` for the virtual one.
+//! Opening of an adapter that streams. A `bridge:` link leads to a real one and a `sim:` link to a virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,24 +13,24 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
 
-/// Link parameter of the virtual adapter, required by sessions but not by streams.
+/// Link parameter that selects the virtual adapter. Streams accept it, since sessions require it.
 const BRIDGE: &str = "bridge";
-/// Character format of an adapter's serial port, which matters only behind a converter.
+/// Character format of the adapter's serial port. It only has an effect behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
     struct LinkParameters: UrlError {
-        /// Additional delay allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
-        /// link.
+        /// Additional time allowed for a reply. `None` selects the default of the link.
         margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN);
     }
 }
 
-/// Returns the margin for late replies, and the function that opens the connection on any thread. `devices` can be
-/// attached to a virtual adapter.
+/// Returns the margin for late replies and the function that opens the connection, which may be called on any thread. A
+/// virtual adapter can have the given devices.
 ///
 /// # Errors
-/// The link does not lead to an adapter, or a parameter is unsupported; nothing has been opened.
+/// Returns an error if the link does not lead to an adapter or a parameter is invalid. Nothing has been opened in this
+/// case.
 pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,

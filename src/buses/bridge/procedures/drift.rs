@@ -1,33 +1,33 @@
-//! Drift of an adapter's clock against the local clock. A packet cannot have been sampled after it arrived: the packet
-//! with the shortest transit reveals the offset of the clocks, and a later one the drift. The offset is tracked slowly,
-//! so that samples stay equidistant and time never runs backwards.
+//! Drift between the clock of an adapter and the local clock. A packet cannot arrive before it was sampled. Therefore,
+//! the packet with the shortest transit reveals the offset of the clocks, and later packets reveal the drift. The
+//! offset is corrected slowly, so samples stay equidistant and time never runs backwards.
 
 use crate::analysis::SampleTime;
 
-/// Tracks the offset between a streaming adapter's clock and the local clock.
+/// Offset between the clock of a streaming adapter and the local clock, which follows the drift.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClockDrift {
-    /// Offset added to the adapter's time, in nanoseconds, or `None` before the first packet.
+    /// Offset in nanoseconds that is added to the time of the adapter. It is `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// Minimum packet offsets of the current section and of the previous one.
+    /// Minimum offset of the present section and of the previous one, in nanoseconds.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
-    /// Time of the previous packet by the adapter's clock, in nanoseconds.
+    /// Time of the previous packet in nanoseconds of the adapter's clock.
     before_ns: i128,
 }
 
-/// Length of a section in nanoseconds, long enough for at least one packet to arrive without delay.
+/// Length of a section in nanoseconds. It is long enough for at least one packet to arrive without delay.
 const STRETCH_NS: i128 = 10_000_000_000;
 /// Variation of transit times over USB, in nanoseconds.
 const SLACK_NS: i128 = 2_000_000;
-/// Reciprocal of the maximum correction rate. The rate is faster than the difference between oscillators, too slow to
-/// affect a speed, and less than one of the 255 samples of a packet.
+/// Reciprocal of the maximum rate of correction. The rate exceeds the difference between oscillators but is too slow to
+/// affect a speed. During a packet, the correction is less than one of its 255 samples.
 const SLOWNESS: i128 = 4000;
-/// Offset change in nanoseconds above which a clock was stopped or set, so the change is not drift.
+/// Change of the offset in nanoseconds above which it is not drift. A clock was then stopped or set.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl ClockDrift {
-    /// Returns the local time for `own_ns` on the adapter's clock, limited to `latest`.
+    /// Returns the local time at `own_ns` of the adapter's clock. It is at most `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: SampleTime) -> SampleTime {
         let most = i128::from(latest.nanoseconds()) - own_ns;
         let lead = self.minimum_lead(own_ns, most);
@@ -45,7 +45,7 @@ impl ClockDrift {
         SampleTime::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the minimum offset of the current and previous sections.
+    /// Returns the minimum offset of the present and the previous section in nanoseconds.
     fn minimum_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {

@@ -1,5 +1,5 @@
-//! Stream data of an adapter: the samples of one stream in order, each batch preceded by the number of missing ones
-//! (reference "bridge", 3), in local time (see `drift`).
+//! The samples of one stream of an adapter in order and in local time. Each batch is preceded by the number of missing
+//! samples. See reference "bridge" 3, and `drift` for the time.
 
 use std::time::Duration;
 
@@ -10,28 +10,28 @@ use crate::buses::bridge::protocol::{Continuity, Message, Packet, PacketGap, Rep
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Kind of stream to start. The clock and sampling must already be configured.
+/// The stream to start. Its clock or sampling must already be configured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Streamed {
-    /// SSI words at the given interval in microseconds.
+    /// SSI words at an interval in microseconds.
     Ssi { period_us: u32 },
-    /// BiSS frames at the given interval in microseconds.
+    /// BiSS frames at an interval in microseconds.
     Biss { period_us: u32 },
-    /// Sine and cosine at the given sampling interval in nanoseconds.
+    /// Sine and cosine at an interval in nanoseconds.
     Analog { period_ns: i64 },
 }
 
 /// Consecutive samples of a stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Portion {
-    /// Index of the first sample, counted from the start of the stream, including missing samples.
+    /// Index of the first sample, counted from the start of the stream. Missing samples count as well.
     pub first: u64,
     /// Local time of the first sample.
     pub time: SampleTime,
     pub period_ns: i64,
     /// Number of samples missing before the first sample.
     pub lost: u64,
-    /// Samples; at least one.
+    /// Samples, of which there is at least one.
     pub data: StreamData,
 }
 
@@ -41,16 +41,16 @@ pub(crate) struct SampleStream {
     period_ns: i64,
     continuity: Continuity,
     next: u64,
-    /// Number of samples missing before the next sample.
+    /// Number of missing samples before the next one.
     missing: u64,
-    /// Earliest possible time of any sample.
+    /// Earliest time that a sample can have.
     not_before: SampleTime,
     heard_at: Moment,
     last: Option<SampleTime>,
     drift: ClockDrift,
 }
 
-/// Silence after which a stream is considered to have ended.
+/// Silence after which the stream counts as ended. A slow stream has more time.
 const SILENT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
@@ -82,10 +82,10 @@ impl Streamed {
 }
 
 impl SampleStream {
-    /// Starts a stream whose samples are later than `after`.
+    /// Starts a stream. All of its samples are later than `after`.
     ///
     /// # Errors
-    /// See [`AdapterError`]; a busy refusal means that the stream is already running.
+    /// Returns a [`Failure`]. If the adapter refuses the request as busy, the stream is already running.
     pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
@@ -95,7 +95,7 @@ impl SampleStream {
         let begun_at = SampleTime::from(adapter.line.now());
         let answered = match adapter.request_once(&request)? {
             Some(answered) => answered,
-            // It may be running regardless: a second request would be refused as busy.
+            // The stream may be running although the reply is lost. A second request would then be refused as busy.
             None => {
                 adapter.ask(&streamed.stop())?;
                 adapter.ask(&request)?
@@ -132,11 +132,11 @@ impl SampleStream {
         self.period_ns
     }
 
-    /// Returns the next samples, or `None` if none have arrived by `until`.
+    /// Returns the next samples, or `None` if no samples have arrived by `until`.
     ///
     /// # Errors
-    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], a connection error, or
-    /// cancellation.
+    /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended.
+    /// Other errors are cancellation and errors of the connection.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
         let mut bytes = Vec::new();
         loop {
@@ -151,7 +151,7 @@ impl SampleStream {
                 }
                 continue;
             }
-            // Reads at least once before it reports that nothing arrives: this computer may have slept.
+            // The line is read at least once before an error, since this computer may have been asleep.
             bytes.clear();
             adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
             if !bytes.is_empty() {
@@ -164,16 +164,16 @@ impl SampleStream {
         }
     }
 
-    /// Ends the adapter's stream and drops data still in transit.
+    /// Ends the stream. Samples that are still in transit are dropped.
     ///
     /// # Errors
-    /// See [`AdapterError`].
+    /// Returns an error if the adapter does not confirm the end of the stream.
     pub(crate) fn end(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 
-    /// Returns whether the adapter has already ended the stream. An adapter that reports no stream was reset and must
-    /// be configured again; other failures must be retried.
+    /// Evaluates the result of [`end`](Self::end). Returns `false` if the adapter has refused, which means that it was
+    /// reset and must be configured again. Other errors are returned, and the caller must retry.
     pub(crate) fn ended(ended: Result<(), Failure>) -> Result<bool, Failure> {
         match ended {
             Ok(()) => Ok(true),
@@ -187,11 +187,11 @@ impl SampleStream {
         SILENT + period.saturating_mul(SILENT_SAMPLES)
     }
 
-    /// Returns the samples of a packet, or `None` if the packet does not belong to this stream.
+    /// Returns the samples of a packet, or `None` if the packet contains no samples of this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.contains_samples(&data) => data,
-            // A late reply, or the end of an earlier stream.
+            // The packet is a late reply or the end of an earlier stream.
             Ok(_) => return Ok(None),
             Err(cause) => return Err(AdapterError::Data { cause }),
         };
@@ -207,26 +207,26 @@ impl SampleStream {
         }
         let lost = std::mem::take(&mut self.missing);
         let first = self.next + lost;
-        // At most 255.
+        // The number of samples is at most 255.
         self.next = first + count as u64;
         let time = self.time(&data, count, now);
         Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// Returns the time of the first sample. The last sample cannot be later than its arrival, and the first sample
-    /// cannot be earlier than the start of the stream.
+    /// Returns the time of the first sample. It is not earlier than the start of the stream, and the last sample is not
+    /// later than its arrival.
     fn time(&mut self, data: &StreamData, count: usize, now: Moment) -> SampleTime {
         let t0_us = match data {
             StreamData::Ssi(data) => data.t0_us,
             StreamData::Biss(data) => data.t0_us,
             StreamData::Analog(data) => data.t0_us,
         };
-        // Microseconds since the adapter started may exceed the range of nanoseconds.
+        // The time since the start of the adapter may exceed the range of nanoseconds.
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
         let latest = SampleTime::from(now).plus(lasts.saturating_neg()).max(self.not_before);
         let estimate = self.drift.time(own, latest);
-        // An adapter may count its samples correctly and its time badly.
+        // The time never runs backwards, even if that of the adapter does.
         let time = self.last.map_or(estimate, |last| estimate.max(last.plus(1)));
         self.last = Some(time.plus(lasts));
         time

@@ -1,6 +1,6 @@
-//! Host side of the open adapter, for any bus behind it (reference "bridge"): a request, the reply with the same
-//! sequence number, and one repetition if none arrives. Stream data are handled by `flow`; between a request and its
-//! reply they are dropped.
+//! Host side of the open adapter, for any bus behind it (reference "bridge"). A request is repeated once if no reply
+//! with its sequence number arrives. Stream data are dropped until the reply has arrived. Otherwise, `flow` handles
+//! them.
 
 mod drift;
 pub(crate) mod flow;
@@ -25,14 +25,14 @@ pub use power::SupplyAfterSession;
 pub(crate) use power::warn_of_supply;
 pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
 
-/// BiSS time-out in microseconds, longer than the 18 µs that an encoder needs to notice the end of a frame (manual,
-/// table 3).
+/// BiSS time-out in microseconds. An encoder needs 18 µs to notice the end of a frame. See manual, table 3.
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
-/// Clock frequencies that can be requested. An adapter uses the nearest supported one.
+/// Clock frequencies that may be requested. An adapter uses the nearest one that it supports.
 pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Time after the reply time during which noise or stream data may still arrive before the reply is considered missing.
+/// Time after the deadline of a reply for which an adapter may still send other data before the reply counts as
+/// missing.
 const ENDLESS: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,7 @@ pub struct AdapterState {
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
-    /// The adapter has not replied to two requests.
+    /// The adapter has not replied to a request and its repetition.
     #[error("the adapter does not answer")]
     Silent,
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
@@ -60,26 +60,26 @@ pub enum AdapterError {
     NoAnalog { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply { name: String },
-    /// The adapter supplies more than the encoder tolerates and was told to switch the supply off.
+    /// The supply voltage exceeds the limit of the encoder. The supply was switched off again.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
         /// Requested voltage in millivolts.
         given: u16,
         measured: u16,
-        /// Highest voltage in millivolts that the encoder tolerates.
+        /// Highest voltage in millivolts that the encoder permits.
         greatest: u16,
     },
     #[error("the adapter no longer sends data")]
     Mute,
-    /// The sample numbers of a stream have restarted.
+    /// The sample numbers of the stream have started again from 0.
     #[error("the adapter has restarted")]
     Restarted,
-    /// Streamed data does not conform to this version.
+    /// Stream data do not conform to this version of the protocol.
     #[error("the data from the adapter cannot be decoded: {cause}")]
     Data { cause: BodyError },
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
     Refused { operation: Operation, code: ErrorCode, text: String },
-    /// The reply does not conform to this version.
+    /// The reply does not conform to this version of the protocol.
     #[error("the reply of the adapter to operation 0x{:02X} cannot be decoded: {cause}", operation.byte())]
     Reply { operation: Operation, cause: BodyError },
     #[error("the adapter answers operation 0x{:02X} with operation 0x{:02X}", requested.byte(), got.byte())]
@@ -93,7 +93,7 @@ pub(crate) enum Failure {
 }
 
 impl AdapterError {
-    /// Returns the error for a reply to an operation other than the requested one.
+    /// Creates the error for a reply to an operation that was not requested.
     pub fn other(requested: Operation, reply: &Reply) -> Self {
         AdapterError::Other { requested, got: reply.operation() }
     }
@@ -111,7 +111,7 @@ impl From<LineError> for Failure {
     }
 }
 
-/// A reply with the interval in which the adapter created it.
+/// A reply and the time interval in which the adapter created it.
 pub(crate) struct TimedReply {
     pub(crate) reply: Reply,
     sent_at: Moment,
@@ -119,23 +119,23 @@ pub(crate) struct TimedReply {
 }
 
 impl AdapterState {
-    /// Returns the identity of the adapter, or `None` if it has not been read yet.
+    /// Returns the identity of the adapter, or `None` if it was not read yet.
     pub const fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
 
-    /// Sets how the encoder's supply is left at the end of the session.
+    /// Sets the state of the encoder supply after the session.
     pub fn leave_supply(&mut self, after: SupplyAfterSession) {
         self.power.after = after;
     }
 
-    /// Discards the identity, so that it is read again. The known state of the encoder supply is kept, since HELLO does
-    /// not change it.
+    /// Discards the identity, which is read again before the next use. The state of the encoder supply is kept, since
+    /// HELLO does not change it.
     pub(crate) fn forget(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
 
-    /// Returns whether the encoder was supplied before the session, or `None` if unknown.
+    /// Returns whether the encoder had power before the session, or `None` if this is unknown.
     pub(crate) const fn was_supplied_at_start(&self) -> Option<bool> {
         self.power.found
     }
@@ -145,23 +145,23 @@ impl AdapterState {
         self.power.found = Some(is_supplied);
     }
 
-    /// Returns whether the supply must be switched off at the end of the session.
+    /// Returns whether the end of the session must switch the supply off.
     pub(crate) fn switches_supply_off(&self) -> bool {
         self.power.should_switch_off()
     }
 
-    /// Returns whether anything has been received from the adapter, even if damaged.
+    /// Returns whether the adapter has sent any bytes, including damaged ones.
     pub(crate) const fn has_received(&self) -> bool {
         self.has_spoken
     }
 
-    /// Returns the local time at which the adapter's clock was at `t_us`, based on the timing of the given reply.
+    /// Returns the local time at time `t_us` of the adapter's clock. The reply `answered` must contain this time.
     pub(crate) fn local_time_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.local_time_of(t_us, answered.sent_at, answered.received_at)
     }
 }
 
-/// Host side of an adapter for a single exchange.
+/// Host side of an adapter for one exchange.
 pub(crate) struct Adapter<'m, 'a> {
     pub(crate) line: &'m mut SerialLine<'a>,
     pub(crate) state: &'m mut LineState,
@@ -169,18 +169,19 @@ pub(crate) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Identifies the adapter once per session, because HELLO ends streams. The supply is not switched.
+    /// Reads the identity of the adapter. This is done once per session, since it ends streams. The supply is not
+    /// switched.
     ///
     /// # Errors
-    /// Includes [`AdapterError::Version`].
+    /// Returns [`AdapterError::Version`] if the adapter uses another version of the protocol, or another [`Failure`].
     pub(crate) fn hello(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
-            // The empty packet before it ends anything that the adapter may have received from another host.
+            // The empty packet completes a packet that the adapter may have received partly from another host.
             let answered = self.repeat(&Request::Hello, &[0])?;
             let Reply::Hello(hello) = answered.reply else {
                 return Err(AdapterError::other(Operation::Hello, &answered.reply).into());
             };
-            // Adapters that do not report it have this bit clear.
+            // Adapters that do not report the state of the supply leave this bit clear.
             if self.adapter.power.found.is_none() && hello.capabilities.has(Capabilities::SUPPLIED) {
                 self.adapter.power.found = Some(true);
             }
@@ -189,17 +190,17 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Switches the encoder supply on and returns the measured millivolts and milliamperes. If the voltage exceeds what
-    /// the encoder tolerates, the supply is switched off again.
+    /// Switches the encoder supply on. Returns the measured voltage in millivolts and the current in milliamperes. If
+    /// the voltage is too high for the encoder, the supply is switched off again.
     ///
     /// # Errors
-    /// Includes [`AdapterError::NoSupply`] and [`AdapterError::Overvoltage`].
+    /// Returns [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] or another [`Failure`].
     pub(crate) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
         if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
         let SupplyVoltage { given, greatest, .. } = voltage;
-        // Even if its reply is lost.
+        // The supply may be on even if the reply is lost.
         self.adapter.power.given = true;
         let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
@@ -212,10 +213,10 @@ impl Adapter<'_, '_> {
         Ok((measured, milliampere))
     }
 
-    /// Switches the encoder supply off at the end of a session, unless it is to remain on.
+    /// Switches the encoder supply off at the end of a session unless it has to stay on.
     ///
     /// # Errors
-    /// See [`AdapterError`].
+    /// Returns an error if the adapter does not switch the supply off.
     pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
         if self.adapter.switches_supply_off() { self.switch_off() } else { Ok(()) }
     }
@@ -226,10 +227,11 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Sends a request, and repeats it once if no reply arrives. Only for requests that may be repeated.
+    /// Sends a request and repeats it once if there is no reply. The request must have the same effect if it is
+    /// repeated.
     ///
     /// # Errors
-    /// See [`AdapterError`].
+    /// Returns an error if there is no reply, or not the expected one.
     pub(crate) fn ask(&mut self, request: &Request) -> Result<TimedReply, Failure> {
         self.repeat(request, &[])
     }
@@ -243,10 +245,10 @@ impl Adapter<'_, '_> {
         Err(AdapterError::Silent.into())
     }
 
-    /// Sends a request once. Returns `None` if no reply arrives.
+    /// Sends a request once. Returns `None` if there is no reply.
     ///
     /// # Errors
-    /// See [`AdapterError`].
+    /// Returns an error if the reply is not the expected one.
     pub(crate) fn request_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
         self.exchange(request, &[])
     }
@@ -293,7 +295,8 @@ impl Adapter<'_, '_> {
         }
     }
 
-    /// Returns the reply in a packet if it answers this request. Late replies have a different sequence number.
+    /// Returns the reply in a packet, or `None` if the packet does not answer the request. Late replies have another
+    /// sequence number.
     fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
         let operation = request.operation();
         let parsed = Message::parse(packet);
@@ -313,8 +316,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Bounds in nanoseconds of the offset between the adapter's clock and the local clock. An adapter samples after the
-/// request was sent and before the reply arrived.
+/// Limits of the offset between the adapter's clock and the local clock in nanoseconds. They follow from the fact that
+/// an adapter samples between a request and its reply.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clocks {
     bounds: Option<(i128, i128)>,
@@ -327,7 +330,7 @@ impl Clocks {
         let (least, most) = (nanoseconds(sent_at) - own, nanoseconds(received_at) - own);
         let narrowed =
             self.bounds.map(|(low, high)| (low.max(least), high.min(most))).filter(|(low, high)| low <= high);
-        // Clocks drift and adapters restart: then only the last exchange counts.
+        // If a clock drifts or the adapter restarts, only the last exchange counts.
         let (low, high) = narrowed.unwrap_or((least, most));
         self.bounds = Some((low, high));
         let moment = u64::try_from(own + (low + high) / 2).unwrap_or(0);

@@ -1,19 +1,19 @@
-//! Encoder supply of an adapter that can switch it: the state at the start and at the end of a session.
+//! Encoder supply of an adapter that can switch it, at the start and at the end of a session.
 
 use crate::parameter::Words;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfterSession {
-    /// Restore the previous state: a supply switched on by this session is switched off.
+    /// The supply returns to its previous state. If the session has switched it on, it is switched off.
     #[default]
     AsFound,
     On,
-    /// Switch the supply off, even if it was on before the session.
+    /// The supply is switched off, even if it was on before the session.
     Off,
 }
 
 impl SupplyAfterSession {
-    /// Link parameter with the value that leaves the supply on after the session.
+    /// Link parameter and value that leave the supply on after the session.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
     pub const WORDS: Words<SupplyAfterSession> = Words(&[
         ("as-found", SupplyAfterSession::AsFound),
@@ -25,13 +25,13 @@ impl SupplyAfterSession {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
     pub(super) after: SupplyAfterSession,
-    /// Whether the encoder was supplied before the session, if known.
+    /// Whether the encoder had power before the session, or `None` if unknown.
     pub(super) found: Option<bool>,
     pub(super) given: bool,
 }
 
 impl Power {
-    /// Returns whether the supply must be switched off at the end of the session.
+    /// Returns whether the end of the session must switch the supply off.
     pub(super) fn should_switch_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {
@@ -42,7 +42,7 @@ impl Power {
     }
 }
 
-/// Logs that the supply could not be left as requested, because an ended session can no longer report results.
+/// Logs that the supply could not be switched off. A session that has ended cannot return the error.
 pub(crate) fn warn_of_supply(left: Result<(), impl std::fmt::Display>) {
     if let Err(error) = left {
         tracing::warn!("the encoder's supply could not be switched off: {error}");

@@ -1,4 +1,4 @@
-//! An adapter that only provides a stream: its identity, its capabilities, its configuration and its data.
+//! An adapter that is only used for a stream.
 
 use std::time::Duration;
 
@@ -9,12 +9,12 @@ use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 
-/// A stream to start, with the sampling of its signals.
+/// The stream to start and the parameters of its sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
     Biss {
         clock_hz: u32,
-        /// Number of bits for position, error and warning, excluding the CRC.
+        /// Number of bits for position, error and warning. The CRC is not included.
         data_bits: u8,
         crc_bits: u8,
         /// Sampling interval in microseconds.
@@ -25,7 +25,8 @@ pub enum StreamRequest {
     },
 }
 
-/// Time until the signals of an encoder are valid; HIPERFACE encoders need up to 900 ms (figure 38).
+/// Time from power-on until the signals of an encoder are valid. HIPERFACE encoders need up to 900 ms. See HIPERFACE,
+/// figure 38.
 const POWER_UP: Duration = Duration::from_secs(1);
 
 /// A streaming adapter and its actual settings.
@@ -33,9 +34,9 @@ const POWER_UP: Duration = Duration::from_secs(1);
 pub struct Streaming {
     pub hello: Hello,
     pub period_ns: i64,
-    /// Full scale of sine and cosine, as the voltage in microvolts of the value 32 767; 0 for other streams.
+    /// Full scale of sine and cosine, which is the voltage in microvolts at the value 32 767. Other streams have 0.
     pub full_scale_microvolt: u32,
-    /// Measured encoder supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
+    /// Measured supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,
 }
 
@@ -49,7 +50,7 @@ pub enum AdapterStreamError {
     Adapter(#[from] AdapterError),
 }
 
-/// Host side of a streaming adapter.
+/// Host side of an adapter that is only used for a stream.
 #[derive(Clone, Debug)]
 pub struct Tap {
     line: LineState,
@@ -63,24 +64,25 @@ impl From<Failure> for AdapterStreamError {
             Failure::Adapter(error) => AdapterStreamError::Adapter(error),
             Failure::Line(LineError::Cancelled) => AdapterStreamError::Cancelled,
             Failure::Line(LineError::Link(error)) => AdapterStreamError::Link(error),
-            // Packets need no silence between them.
+            // This does not occur, since packets require no silence between them.
             Failure::Line(LineError::NeverSilent) => AdapterStreamError::Adapter(AdapterError::Silent),
         }
     }
 }
 
 impl Tap {
-    /// Creates a tap for an adapter that is not identified yet. `margin` is added to the reply times of the protocol.
+    /// Creates a tap for an adapter that was not identified yet. Its replies may be late by `margin`.
     pub fn new(margin: Duration) -> Self {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
-    /// Identifies the adapter, switches the encoder supply on if requested, configures the adapter and starts the
-    /// stream.
+    /// Identifies and configures the adapter and starts the stream. The encoder supply is switched on if `supply` is
+    /// given.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
-    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), a refusal, or a connection error.
+    /// Returns [`AdapterError::Version`], [`NoBiss`](AdapterError::NoBiss), [`NoAnalog`](AdapterError::NoAnalog) or
+    /// [`NoSupply`](AdapterError::NoSupply) if the adapter is not suitable. Other errors are a refusal or come from the
+    /// connection.
     pub fn begin(
         &mut self,
         ctx: Ctx<'_>,
@@ -127,7 +129,7 @@ impl Tap {
         Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
     }
 
-    /// Returns the next samples, or `None` if none have arrived by `until` or no stream is running.
+    /// Returns the next samples, or `None` if no samples have arrived by `until` or no stream is running.
     ///
     /// # Errors
     /// Returns the reason why the stream has ended.
@@ -138,10 +140,10 @@ impl Tap {
         Ok(flow.next(&mut adapter, until)?)
     }
 
-    /// Ends the stream, even after cancellation, and restores the encoder supply to its original state.
+    /// Ends the stream and returns the encoder supply to its previous state. Cancellation is ignored.
     ///
     /// # Errors
-    /// Returns errors of the adapter or the connection.
+    /// Returns an error of the adapter or the connection.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), AdapterStreamError> {
         let mut line = SerialLine::new(ctx);
         line.ignore_cancellation(true);
@@ -153,7 +155,7 @@ impl Tap {
 }
 
 impl StreamRequest {
-    /// Returns the configuration request, limited to the speeds that the adapter supports.
+    /// Returns the request that configures the adapter. Its speed is limited to what the adapter supports.
     fn configure(self, hello: &Hello) -> Request {
         match self {
             StreamRequest::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
@@ -169,7 +171,7 @@ impl StreamRequest {
     }
 }
 
-/// Rounds to whole nanoseconds.
+/// Returns the interval of a sample rate, rounded to whole nanoseconds.
 fn period_ns(sample_hz: u32) -> i64 {
     let hz = i64::from(sample_hz.max(1));
     (1_000_000_000 + hz / 2) / hz

@@ -1,5 +1,5 @@
-//! Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999). Encoded bytes
-//! contain no 00, which therefore can terminate a packet.
+//! Consistent overhead byte stuffing (COBS). The encoded bytes contain no 00, so a 00 can end each packet. See Cheshire
+//! & Baker, IEEE/ACM Transactions on Networking 7, 1999.
 
 /// Maximum number of bytes that follow a code byte.
 const BLOCK: usize = 254;
@@ -7,22 +7,22 @@ const BLOCK: usize = 254;
 /// The reason why bytes are not valid COBS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
-    /// The byte 00 occurs at this index, although it only terminates packets.
+    /// A byte within the packet is 00, which is only allowed at its end. The value is the index of the byte.
     #[error("00 stands within the packet, at byte {0}")]
     Zero(usize),
-    /// The code byte at this index requires more bytes than remain.
+    /// The packet ends before the block of its last code byte. The value is the number of missing bytes.
     #[error("the packet ends {0} bytes too early")]
     Short(usize),
 }
 
-/// Encodes bytes, without the terminating 00.
+/// Encodes bytes. The result does not contain the 00 at the end of a packet.
 pub fn encode(bytes: &[u8]) -> Vec<u8> {
     let mut stuffed = Vec::with_capacity(bytes.len() + bytes.len() / BLOCK + 1);
-    // A last block of full length needs no empty one after it.
+    // A full block at the end is not followed by an empty one.
     let mut open = true;
     for (at, run) in bytes.split(|byte| *byte == 0).enumerate() {
         if at > 0 && !open {
-            // The 00 before this run follows a full block: an empty block represents it.
+            // The 00 before this run follows a full block, so an empty block represents it.
             stuffed.push(1);
         }
         open = true;
@@ -33,7 +33,7 @@ pub fn encode(bytes: &[u8]) -> Vec<u8> {
             (rest, open) = (more, !more.is_empty());
         }
         if open {
-            // Below 255.
+            // The length is below 255.
             stuffed.push(rest.len() as u8 + 1);
             stuffed.extend(rest);
         }
@@ -41,10 +41,10 @@ pub fn encode(bytes: &[u8]) -> Vec<u8> {
     stuffed
 }
 
-/// Decodes bytes that do not include the terminating 00.
+/// Decodes bytes, which must not include the 00 at the end of a packet.
 ///
 /// # Errors
-/// [`CobsError`].
+/// Returns a [`CobsError`] if the bytes are not valid COBS.
 pub fn decode(stuffed: &[u8]) -> Result<Vec<u8>, CobsError> {
     if let Some(at) = stuffed.iter().position(|byte| *byte == 0) {
         return Err(CobsError::Zero(at));

@@ -1,31 +1,31 @@
-//! Continuity check of stream packets. A gap is never bridged silently (reference 3).
+//! Check of stream packets for gaps. Every gap is reported (reference 3).
 
 use super::data::StreamData;
 
-/// A tracker for the expected position in a stream.
+/// Position in a stream at which the next packet should start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Continuity {
     next: u32,
 }
 
-/// The gap in front of a packet.
+/// The gap before a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketGap {
-    /// The packet follows without a gap.
+    /// The packet follows the previous one without a gap.
     None,
     /// The given number of samples is missing.
     Missing(u32),
-    /// The samples precede earlier ones, because the stream was restarted or the packet is late.
+    /// The packet starts before the end of the previous one. The stream was restarted, or the packet is late.
     Backwards,
 }
 
 impl Continuity {
-    /// Creates the tracker for the start of a stream, where the first sample has the number 0.
+    /// Creates the state at the start of a stream, whose first sample has the number 0.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }
 
-    /// Returns the gap before the samples in `data` and advances the expected position past them.
+    /// Returns the gap before a packet. The end of the packet becomes the next expected position.
     pub fn follow(&mut self, data: &StreamData) -> PacketGap {
         let (first, count, lost) = data.extent();
         let ahead = first.wrapping_sub(self.next);

@@ -1,4 +1,4 @@
-//! Stream packets, which are sent without a request (reference 3).
+//! Stream packets, which an adapter sends without a request (reference 3).
 
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
@@ -22,13 +22,13 @@ pub struct SsiData {
     pub first_index: u32,
     /// Time of the first word, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Interval in microseconds.
+    /// Interval between two words in microseconds.
     pub period_us: u32,
-    /// Number of samples that the adapter has lost since its previous packet.
+    /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Width of a value on the wire, 1…8 bytes.
+    /// Width of a value in the packet in bytes, 1 to 8.
     pub width: u8,
-    /// Right-justified values, at most 255 of them.
+    /// Right-justified words, at most 255.
     pub values: Vec<u64>,
 }
 
@@ -39,26 +39,26 @@ pub struct BissData {
     pub first_index: u32,
     /// Time of the first frame, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Interval in microseconds.
+    /// Interval between two frames in microseconds.
     pub period_us: u32,
-    /// Number of samples that the adapter has lost since its previous packet.
+    /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Width of a value on the wire without its status, 1…8 bytes.
+    /// Width of the data and CRC of a frame in the packet in bytes, 1 to 8.
     pub width: u8,
-    /// Status and right-justified data and CRC of each frame, at most 255 frames.
+    /// Status, and right-justified data and CRC, of each frame. There are at most 255 frames.
     pub values: Vec<(BissStatus, u64)>,
 }
 
-/// Analogue samples at the configured interval.
+/// Analogue samples at equal intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AnalogData {
     /// Number of the first sample, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
     /// Time of the first sample, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Number of samples that the adapter has lost since its previous packet.
+    /// Number of samples that the adapter has lost since the previous packet.
     pub lost: u16,
-    /// Pairs of sine and cosine as fractions of full scale, at most 255 pairs.
+    /// Sine and cosine of each sample as fractions of full scale. There are at most 255 samples.
     pub samples: Vec<(i16, i16)>,
 }
 
@@ -67,7 +67,7 @@ impl StreamData {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Returns the number of the first sample, the sample count, and the number of samples lost before the first.
+    /// Returns the number of the first sample, the number of samples, and the number of lost samples before the first.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
             StreamData::Ssi(data) => (data.first_index, data.values.len(), data.lost),

@@ -1,9 +1,9 @@
-//! Encoding of packet bodies field by field: little-endian integers, strings prefixed with their length.
+//! Encoding of the fields in a packet body. Integers are little-endian, and strings are preceded by their length.
 
-/// The reason why a body does not match its operation.
+/// The reason why a body is not valid for its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
-    /// The body length does not match the operation.
+    /// The length of the body does not match the operation.
     #[error("operation 0x{op:02X}: a body of {got} bytes has the wrong length")]
     Length {
         /// Operation code.
@@ -40,7 +40,7 @@ pub enum BodyError {
     },
 }
 
-/// The remaining bytes of a body to be parsed.
+/// The bytes of a body that have not been parsed yet.
 pub(super) struct Fields<'a> {
     op: u8,
     whole: usize,
@@ -72,7 +72,7 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// Reads 0 or 1.
+    /// Parses a switch, which is 0 or 1.
     pub(super) fn switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
@@ -81,7 +81,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Parses a number of `width` bytes, at most eight.
+    /// Parses a number of `width` bytes. The width is at most 8.
     pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
@@ -98,7 +98,7 @@ impl<'a> Fields<'a> {
         std::mem::take(&mut self.rest)
     }
 
-    /// Returns `value` if no bytes remain.
+    /// Returns `value` if all bytes have been parsed.
     pub(super) fn end<T>(self, value: T) -> Result<T, BodyError> {
         if self.rest.is_empty() { Ok(value) } else { Err(self.length()) }
     }
@@ -120,10 +120,10 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a string of at most 255 bytes with its length. Longer strings are truncated at a character boundary.
+/// Appends the length of a string and the string. Strings of more than 255 bytes are truncated at a character boundary.
 pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
     let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
-    // At most 255.
+    // The length is at most 255.
     body.push(end as u8);
     body.extend(text.bytes().take(end));
 }

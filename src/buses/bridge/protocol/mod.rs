@@ -1,6 +1,5 @@
-//! The bridge protocol, version 1, through which a small open adapter gives a PC access to the clocked buses SSI and
-//! BiSS, to analogue signals and to a serial line (the project's own reference, `protocol/bridge.md`). Integers are
-//! little-endian.
+//! The bridge protocol, version 1. It connects a PC to a small open adapter for the clocked buses SSI and BiSS,
+//! analogue signals and a serial line. Integers are little-endian. See the project's reference `protocol/bridge.md`.
 //!
 //! ```text
 //! COBS( seq  op  body…  crc16 ) 00
@@ -30,7 +29,7 @@ pub use receiver::Receiver;
 pub use reply::{BissStatus, Capabilities, ErrorCode, Hello, Message, Reply};
 pub use request::{Operation, Request, SsiFlags};
 
-/// Version of the protocol used by this program.
+/// Version of the protocol that this program uses.
 pub const VERSION: u8 = 1;
-/// Time after which an unanswered request is repeated once. The request is given up after the same time again.
+/// Time without a reply after which a request is repeated once. After the same time again, it has failed.
 pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

@@ -1,4 +1,4 @@
-//! Packets: sequence number, operation, body and checksum (reference 1).
+//! Packets, which consist of a sequence number, an operation, a body and a checksum (reference 1).
 
 use super::cobs::{self, CobsError};
 
@@ -8,9 +8,10 @@ pub const MAX_BODY: usize = 512;
 /// A packet with a valid checksum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Sequence number, chosen by the host and repeated in the reply. Unsolicited packets are counted separately.
+    /// Sequence number. The host chooses it, and the reply contains the same number. Unsolicited packets are counted
+    /// separately.
     pub seq: u8,
-    /// Operation code, in which bit 7 is set for a reply.
+    /// Operation code. Bit 7 is set in replies.
     pub op: u8,
     /// Body of at most [`MAX_BODY`] bytes.
     pub body: Vec<u8>,
@@ -22,29 +23,29 @@ pub enum PacketError {
     /// The byte stuffing is invalid.
     #[error(transparent)]
     Cobs(#[from] CobsError),
-    /// The packet is shorter than four bytes or longer than the maximum.
+    /// The length is below four bytes or above the maximum. The value is the length.
     #[error("{0} bytes are not the length of a packet")]
     Length(usize),
     /// The checksum does not match.
     #[error("CRC {got:04X} where {expected:04X} was expected")]
     Crc {
-        /// Checksum calculated over the received bytes.
+        /// Checksum of the received bytes.
         expected: u16,
-        /// Received checksum.
+        /// Checksum in the packet.
         got: u16,
     },
 }
 
 impl Packet {
-    /// Bytes around the body.
+    /// Number of bytes in addition to the body.
     const OVERHEAD: usize = 4;
     /// Maximum length of a stuffed packet in bytes.
     pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
-    /// Parses the bytes between two terminators.
+    /// Parses the bytes between two 00.
     ///
     /// # Errors
-    /// [`PacketError`].
+    /// Returns a [`PacketError`] if the bytes are not a valid packet.
     pub fn parse(stuffed: &[u8]) -> Result<Self, PacketError> {
         let mut bytes = cobs::decode(stuffed)?;
         let length = bytes.len();
@@ -65,7 +66,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// Returns the stuffed bytes, including the terminating 00.
+    /// Returns the stuffed bytes and the 00 at the end.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);
@@ -77,7 +78,8 @@ impl Packet {
     }
 }
 
-/// Calculates CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1, initial value FFFFh, most significant bit first.
+/// Calculates CRC-16/IBM-3740 of bytes. Its polynomial is x¹⁶ + x¹² + x⁵ + 1, and its initial value is FFFFh. The most
+/// significant bit is first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();
@@ -85,7 +87,7 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// CRC remainders for all values of the upper eight register bits.
+/// CRC remainders of all values that the upper eight bits of the register may have.
 const TABLE: [u16; 256] = table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]

@@ -1,17 +1,17 @@
-//! Packet reassembly from a stream of bytes. Damaged packets are dropped and counted (reference 1).
+//! Assembly of packets from received bytes. Damaged packets are dropped and counted (reference 1).
 
 use super::packet::{Packet, PacketError};
 
-/// A buffer of received bytes that do not yet form a complete packet.
+/// Received bytes that do not form a complete packet yet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
-    /// Index at which the search for the next 00 starts.
+    /// Index at which the search for the next 00 continues.
     searched: usize,
-    /// Whether the current packet is too long, in which case its bytes are dropped until the packet ends.
+    /// Whether the packet in progress is too long. Its bytes are then dropped until the next 00.
     overlong: bool,
     dropped: u64,
-    /// Last damaged packet that has not been taken yet.
+    /// Latest damaged packet, or `None` if it has already been taken.
     broken: Option<Vec<u8>>,
 }
 
@@ -21,7 +21,7 @@ impl Receiver {
         self.bytes.extend(bytes);
     }
 
-    /// Returns the next complete packet.
+    /// Returns the next valid packet, or `None` if more bytes are required.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
             let behind = self.bytes.get(self.searched..).unwrap_or_default();
@@ -47,13 +47,13 @@ impl Receiver {
                     self.dropped += 1;
                     self.broken = Some(packet);
                 }
-                // Nothing between two 00.
+                // There is nothing between two adjacent 00.
                 None => {}
             }
         }
     }
 
-    /// Returns the bytes of the last damaged packet since the previous call, if any.
+    /// Returns the bytes of the latest damaged packet. Later calls return `None` until another packet is damaged.
     pub const fn take_damaged(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }

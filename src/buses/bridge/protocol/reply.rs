@@ -1,4 +1,4 @@
-//! Messages from an adapter: replies and unsolicited packets (reference 2 and 3).
+//! Messages of an adapter, which are replies and unsolicited packets (reference 2 and 3).
 
 use super::VERSION;
 use super::data::StreamData;
@@ -38,16 +38,16 @@ pub enum Reply {
         /// Measured current in milliamperes.
         milliampere: u16,
     },
-    /// Actual SSI clock.
+    /// The SSI clock has been configured.
     SsiConfig {
-        /// Clock in hertz.
+        /// Actual clock in hertz.
         clock_hz: u32,
     },
     /// An SSI word.
     SsiRead {
-        /// Time in microseconds of the adapter's clock.
+        /// Time of the word in microseconds of the adapter's clock.
         t_us: u64,
-        /// Right-justified word with the last received bit in bit 0.
+        /// Right-justified word. Bit 0 is the bit that was received last.
         raw: u64,
     },
     /// The stream of SSI words has started.
@@ -55,28 +55,28 @@ pub enum Reply {
         /// Actual interval in microseconds.
         period_us: u32,
     },
-    /// Actual BiSS clock.
+    /// The BiSS clock has been configured.
     BissConfig {
-        /// Clock in hertz.
+        /// Actual clock in hertz.
         clock_hz: u32,
     },
     /// A BiSS frame.
     BissRead {
-        /// Time in microseconds of the adapter's clock.
+        /// Time of the frame in microseconds of the adapter's clock.
         t_us: u64,
-        /// Frame status.
+        /// Status of the frame.
         status: BissStatus,
-        /// Right-justified data and CRC. The CRC has not been checked.
+        /// Right-justified data and CRC. The adapter does not check the CRC.
         raw: u64,
     },
-    /// Value of a register.
+    /// Value of a BiSS register.
     BissRegisterRead {
         /// Register value.
         value: u8,
     },
-    /// A register has been written.
+    /// A BiSS register has been written.
     BissRegisterWrite {
-        /// Value returned by the encoder.
+        /// Value that the encoder has returned.
         value: u8,
     },
     /// The stream of BiSS frames has started.
@@ -84,11 +84,11 @@ pub enum Reply {
         /// Actual interval in microseconds.
         period_us: u32,
     },
-    /// Actual analogue sampling.
+    /// Analogue sampling has been configured.
     AnalogConfig {
-        /// Sample rate in hertz.
+        /// Actual sample rate in hertz.
         sample_hz: u32,
-        /// Full-scale voltage in microvolts, corresponding to the value 32 767.
+        /// Full-scale voltage in microvolts, which corresponds to the value 32 767.
         full_scale_microvolt: u32,
         /// Resolution of the converter in bits.
         bits: u8,
@@ -98,14 +98,14 @@ pub enum Reply {
         /// Whether the stream is running.
         on: bool,
     },
-    /// Actual settings of the serial line.
+    /// The serial line has been configured.
     UartConfig {
-        /// Baud rate.
+        /// Actual baud rate.
         baud: u32,
     },
-    /// Bytes received on the serial line.
+    /// Bytes have been received on the serial line.
     UartTransfer {
-        /// Start of the first start bit of the reply in microseconds, by the clock of the analogue samples.
+        /// Time of the first start bit in microseconds. It has the same clock as the analogue samples.
         t_us: u64,
         /// Received bytes.
         rx: Vec<u8>,
@@ -117,9 +117,9 @@ pub enum Reply {
 pub struct Hello {
     /// Capabilities of the adapter.
     pub capabilities: Capabilities,
-    /// Maximum clock in hertz.
+    /// Maximum clock of the buses in hertz.
     pub max_clock_hz: u32,
-    /// Maximum sample rate in hertz.
+    /// Maximum sample rate of analogue signals in hertz.
     pub max_sample_hz: u32,
     /// Name of the adapter.
     pub name: String,
@@ -129,51 +129,51 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// The capabilities of an adapter. Unknown bits are preserved.
+/// The capabilities of an adapter as a set of bits. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// The status of reading a BiSS frame. Unknown values are preserved.
+/// The status of a BiSS frame. Unknown values are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// The code of a refusal. Unknown codes are preserved.
+/// The reason for a refusal as a code. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
 impl Capabilities {
-    /// SSI words.
+    /// The adapter reads SSI words.
     pub const SSI: Capabilities = Capabilities(1 << 0);
-    /// BiSS position data.
+    /// The adapter reads BiSS frames.
     pub const BISS: Capabilities = Capabilities(1 << 1);
-    /// BiSS register access.
+    /// The adapter reads and writes BiSS registers.
     pub const BISS_REGISTERS: Capabilities = Capabilities(1 << 2);
-    /// Analogue sampling.
+    /// The adapter samples analogue signals.
     pub const ANALOG: Capabilities = Capabilities(1 << 3);
-    /// RS-485 serial line.
+    /// The adapter has an RS-485 line.
     pub const UART: Capabilities = Capabilities(1 << 4);
-    /// Switchable encoder supply.
+    /// The adapter can switch the encoder supply.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// State bit rather than a capability, set while the encoder supply is on. Adapters that do not report the state
-    /// leave this bit clear.
+    /// The encoder supply is on. This bit is a state and not a capability. Adapters that do not report the state leave
+    /// it clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
-    /// Creates a set of capabilities from its word. Every value is valid.
+    /// Creates capabilities from their bits. Every value is valid.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
 
-    /// Returns the capabilities as a word.
+    /// Returns the capabilities as bits.
     pub const fn word(self) -> u32 {
         self.0
     }
 
-    /// Returns whether this set includes all of `others`.
+    /// Returns whether this set contains all of `others`.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
 
-    /// Returns the union of both sets.
+    /// Returns the union of two sets.
     #[must_use]
     pub const fn and(self, others: Capabilities) -> Self {
         Capabilities(self.0 | others.0)
@@ -183,14 +183,14 @@ impl Capabilities {
 impl BissStatus {
     /// The frame was read.
     pub const OK: BissStatus = BissStatus(0);
-    /// The encoder did not acknowledge.
+    /// The encoder did not acknowledge the frame.
     pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
     /// The data line is stuck at 0.
     pub const STUCK_LOW: BissStatus = BissStatus(2);
     /// The data line is stuck at 1.
     pub const STUCK_HIGH: BissStatus = BissStatus(3);
 
-    /// Creates a status from its byte; every value is valid.
+    /// Creates a status from its byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         BissStatus(byte)
     }
@@ -204,18 +204,18 @@ impl BissStatus {
 impl ErrorCode {
     /// The adapter does not support the operation.
     pub const NOT_SUPPORTED: ErrorCode = ErrorCode(1);
-    /// The adapter does not accept a value in the request.
+    /// The adapter does not accept a value of the request.
     pub const BAD_ARGUMENT: ErrorCode = ErrorCode(2);
-    /// A stream is running.
+    /// The adapter is busy with a stream.
     pub const BUSY: ErrorCode = ErrorCode(3);
     /// The encoder does not reply.
     pub const NO_ANSWER: ErrorCode = ErrorCode(4);
-    /// The reply of the encoder is invalid: CRC error in the control frame.
+    /// The control frame of the encoder has a CRC error.
     pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
     /// The adapter was too slow.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
-    /// Creates an error code from its byte; every value is valid.
+    /// Creates an error code from its byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         ErrorCode(byte)
     }
@@ -227,14 +227,14 @@ impl ErrorCode {
 }
 
 impl Message {
-    /// Operation code of a reply that refuses a request.
+    /// Operation code of a refusal.
     const ERROR: u8 = 0xFF;
 
     /// Parses a packet from an adapter.
     ///
     /// # Errors
-    /// [`BodyError`] if the operation is unknown or its body is invalid; [`BodyError::Version`] for a HELLO with a
-    /// different version, whatever else it contains.
+    /// Returns [`BodyError::Version`] for a HELLO of another protocol version, regardless of its other content.
+    /// Otherwise, returns a [`BodyError`] if the operation is unknown or its body is invalid.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
             let mut fields = Fields::new(packet.op, &packet.body);
@@ -247,7 +247,7 @@ impl Message {
         Reply::parse(packet).map(Message::Reply)
     }
 
-    /// Returns the packet to send to the host.
+    /// Returns the packet that an adapter sends. `seq` is the sequence number of the request.
     pub fn emit(&self, seq: u8) -> Packet {
         match self {
             Message::Reply(reply) => reply.emit(seq),

@@ -3,143 +3,143 @@
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
 
-/// Operations of the protocol, with their request codes.
+/// An operation of the protocol. Its value is the code in a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Operation {
-    /// Request the identity.
+    /// Reads the identity of the adapter.
     Hello = 0x01,
-    /// Switch the encoder supply, or read its state.
+    /// Switches the encoder supply and reads its state.
     Supply = 0x02,
-    /// Configure the SSI clock.
+    /// Configures the SSI clock.
     SsiConfig = 0x10,
-    /// Read an SSI word.
+    /// Reads an SSI word.
     SsiRead = 0x11,
-    /// Start or end a stream of SSI words.
+    /// Starts or ends a stream of SSI words.
     SsiStream = 0x12,
-    /// Configure the BiSS clock.
+    /// Configures the BiSS clock.
     BissConfig = 0x20,
-    /// Read a BiSS frame.
+    /// Reads a BiSS frame.
     BissRead = 0x21,
-    /// Read a BiSS register.
+    /// Reads a BiSS register.
     BissRegisterRead = 0x22,
-    /// Write a BiSS register.
+    /// Writes a BiSS register.
     BissRegisterWrite = 0x23,
-    /// Start or end a stream of BiSS frames.
+    /// Starts or ends a stream of BiSS frames.
     BissStream = 0x24,
-    /// Configure analogue sampling.
+    /// Configures analogue sampling.
     AnalogConfig = 0x30,
-    /// Start or end a stream of analogue samples.
+    /// Starts or ends a stream of analogue samples.
     AnalogStream = 0x31,
-    /// Configure the serial line.
+    /// Configures the serial line.
     UartConfig = 0x40,
-    /// Send and receive bytes on the serial line.
+    /// Sends and receives bytes on the serial line.
     UartTransfer = 0x41,
 }
 
 /// A request to an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Request the identity.
+    /// Reads the identity of the adapter.
     Hello,
-    /// Switch the encoder supply. HELLO does not change it.
+    /// Switches the encoder supply. [`Request::Hello`] does not change it.
     Supply {
         /// Whether to switch the supply on.
         on: bool,
-        /// Voltage in millivolts. Request only a voltage that the encoder's description allows.
+        /// Voltage in millivolts. It must be one that the description of the encoder allows.
         millivolt: u16,
     },
-    /// Configure the SSI clock.
+    /// Configures the SSI clock.
     SsiConfig {
-        /// Number of bits in a word, 1…64.
+        /// Number of bits in a word, 1 to 64.
         clocks: u8,
         /// Clock in hertz.
         clock_hz: u32,
-        /// Pause between two words, in microseconds.
+        /// Pause between two words in microseconds.
         pause_us: u16,
-        /// Flags that select the clock edge at which the data line is sampled.
+        /// Clock edge at which the data line is sampled.
         flags: SsiFlags,
     },
-    /// Read an SSI word.
+    /// Reads an SSI word.
     SsiRead,
-    /// Start or end a stream of SSI words.
+    /// Starts or ends a stream of SSI words.
     SsiStream {
-        /// Interval in microseconds; 0 ends the stream.
+        /// Interval in microseconds. 0 ends the stream.
         period_us: u32,
     },
-    /// Configure the BiSS clock.
+    /// Configures the BiSS clock.
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
-        /// Number of bits for position, error and warning, excluding the CRC.
+        /// Number of bits for position, error and warning. The CRC is not included.
         data_bits: u8,
         /// Width of the CRC in bits.
         crc_bits: u8,
-        /// Time-out in microseconds.
+        /// Time-out of the frame in microseconds.
         timeout_us: u16,
     },
-    /// Read a BiSS frame.
+    /// Reads a BiSS frame.
     BissRead,
-    /// Read a BiSS register.
+    /// Reads a BiSS register.
     BissRegisterRead {
         /// Number of the encoder on the line.
         slave: u8,
-        /// Register address, 00h…7Fh.
+        /// Register address, 00h to 7Fh.
         address: u8,
     },
-    /// Write a BiSS register.
+    /// Writes a BiSS register.
     BissRegisterWrite {
         /// Number of the encoder on the line.
         slave: u8,
-        /// Register address, 00h…7Fh.
+        /// Register address, 00h to 7Fh.
         address: u8,
         /// New value of the register.
         value: u8,
     },
-    /// Start or end a stream of BiSS frames.
+    /// Starts or ends a stream of BiSS frames.
     BissStream {
-        /// Interval in microseconds; 0 ends the stream.
+        /// Interval in microseconds. 0 ends the stream.
         period_us: u32,
     },
-    /// Configure analogue sampling.
+    /// Configures analogue sampling.
     AnalogConfig {
         /// Sample rate in hertz.
         sample_hz: u32,
     },
-    /// Start or end a stream of analogue samples.
+    /// Starts or ends a stream of analogue samples.
     AnalogStream {
         /// Whether to start the stream.
         on: bool,
     },
-    /// Configure the serial line.
+    /// Configures the serial line.
     UartConfig {
         /// Baud rate.
         baud: u32,
-        /// Parity: 0 none, 1 odd, 2 even; other values are preserved.
+        /// Parity: 0 is none, 1 is odd and 2 is even. Other values are preserved.
         parity: u8,
-        /// Time in microseconds before the line may be driven in the other direction.
+        /// Minimum time in microseconds before the direction of the line changes.
         turnaround_us: u16,
     },
-    /// Send and receive bytes on the serial line.
+    /// Sends and receives bytes on the serial line.
     UartTransfer {
-        /// Time-out for the first byte, in microseconds.
+        /// Maximum time in microseconds until the first byte of the reply.
         timeout_us: u32,
-        /// Silence that ends the reply, in microseconds.
+        /// Silence in microseconds that ends the reply.
         idle_us: u32,
         /// Bytes to send.
         tx: Vec<u8>,
     },
 }
 
-/// Flags for sampling the SSI data line; unknown bits are preserved.
+/// Flags for sampling the SSI data line. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiFlags(u8);
 
 impl SsiFlags {
-    /// Bit 0: the data line is sampled at the falling clock edge, as usual.
+    /// Bit 0: the data line is sampled at the falling clock edge, which is usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
-    /// Creates a set of flags from its byte; every value is valid.
+    /// Creates flags from their byte. Every value is valid.
     pub const fn new(byte: u8) -> Self {
         SsiFlags(byte)
     }
@@ -177,7 +177,7 @@ impl Operation {
     /// Bit that is set in the operation code of a reply.
     pub const REPLY_BIT: u8 = 0x80;
 
-    /// Returns the operation code of a request.
+    /// Returns the code of the operation in a request.
     pub const fn byte(self) -> u8 {
         self as u8
     }
@@ -209,7 +209,7 @@ impl Request {
         }
     }
 
-    /// Returns the packet to send to the adapter.
+    /// Returns the packet that a host sends. `seq` is its sequence number.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {
@@ -253,7 +253,7 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// [`BodyError`] if the operation is unknown or its body is invalid.
+    /// Returns a [`BodyError`] if the operation is unknown or its body is invalid.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         let operation = Operation::from_byte(packet.op).ok_or(BodyError::Operation(packet.op))?;
         let mut fields = Fields::new(packet.op, &packet.body);

@@ -1,7 +1,7 @@
-//! The virtual adapter: requests, replies and streams byte by byte, with injected faults. Where the reference is
-//! silent, this adapter replies a quarter of a millisecond after a request, or after the 47 cycles of a control frame
-//! if the request needs one; HELLO ends all streams and leaves the supply unchanged; SSI and BiSS share their wires, so
-//! a stream on one occupies both.
+//! The virtual adapter with its requests, replies and streams, byte by byte and with simulated faults. The reference
+//! leaves some facts open. This adapter replies a quarter of a millisecond after a request, or after the 47 cycles of a
+//! control frame if the request needs one. HELLO ends all streams and leaves the supply unchanged. SSI and BiSS share
+//! their wires, so a stream of one occupies both.
 
 use std::any::Any;
 use std::time::Duration;
@@ -39,14 +39,14 @@ pub struct Adapter {
     requests: u32,
     pushed: u8,
     now: Moment,
-    /// Time at which transmission of the last reply ends.
+    /// Time at which the last reply has been transmitted completely.
     replied: Moment,
-    /// Bytes for the host, ordered by time of arrival.
+    /// Bytes for the host in the order of their arrival.
     to_host: TransitQueue<Vec<u8>>,
     inbox: Vec<u8>,
 }
 
-/// Reason why a request is refused.
+/// Error code and message of a refused request.
 type Refusal = (ErrorCode, &'static str);
 
 const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
@@ -59,14 +59,14 @@ impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
-    /// Maximum number of pending replies, limited by the memory of a small controller. Further requests are lost.
+    /// Maximum number of pending replies, which is the memory of a small controller. Further requests are lost.
     const WAITING: usize = 16;
-    /// Range of the encoder's supply voltage in millivolts (manual, chapter 2).
+    /// Range of the encoder's supply voltage in millivolts. See manual, chapter 2.
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// Creates the virtual adapter from `config` with the given devices. If several devices use one connector, the last
-    /// one is used.
+    /// Creates the virtual adapter with the given devices. If several of them use one connector, the last one is
+    /// connected.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<AttachedDevice>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
@@ -104,7 +104,8 @@ impl Adapter {
         adapter
     }
 
-    /// Returns the BiSS device if it has type `T`, so that tests can inspect it and set its temperature or errors.
+    /// Returns the BiSS device if its type is `T`. Tests use it to inspect the device and to set its temperature or
+    /// errors.
     pub fn device<T: BissDevice>(&self) -> Option<&T> {
         let device: &dyn Any = &**self.bus.biss.as_ref()?;
         device.downcast_ref()
@@ -119,7 +120,7 @@ impl Adapter {
         self.bus.motor()
     }
 
-    /// Changes the speed of the adapter's own shaft from `now` on.
+    /// Changes the speed of the shaft from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.advance(now);
         self.bus.set_rpm(self.now, rpm);
@@ -141,7 +142,7 @@ impl Adapter {
         }
     }
 
-    /// Replaces the configured faults and keeps the counts of requests and stores.
+    /// Replaces the simulated faults. The numbers of requests and stores are kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
@@ -188,7 +189,7 @@ impl Adapter {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
-            // It does nothing any more: streams have ended, too.
+            // A silent adapter does nothing, so its streams end too.
             (self.clocked, self.sampled) = (None, None);
             return;
         }
@@ -209,7 +210,7 @@ impl Adapter {
         self.send(self.replied, &reply);
     }
 
-    /// Returns how long the adapter works on a request, excluding transmission.
+    /// Returns the time for which the adapter processes a request. Transmission is not included.
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
         match request.operation() {
@@ -275,7 +276,7 @@ impl Adapter {
                 let checked = self.analog.clone().with(Quantity::Rate, f64::from(sample_hz)).checked();
                 self.analog = checked.map_err(|_| OUT_OF_RANGE)?.settings().clone();
                 let period_ns = self.analog.period_ns().unsigned_abs().max(1);
-                // At most a million.
+                // The rate is at most a million.
                 let sample_hz = u32::try_from(1_000_000_000 / period_ns).unwrap_or(Self::MAX_SAMPLE_HZ);
                 let full_scale_microvolt = SampledStream::FULL_SCALE_MICROVOLT;
                 Ok(Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits: 16 })
@@ -351,7 +352,7 @@ impl Adapter {
         Ok(Reply::Supply { on, millivolt, milliampere })
     }
 
-    /// Reads a register, or writes it and reads it back.
+    /// Reads a register. If a value is given, it is written first.
     fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, Refusal> {
         self.biss.ok_or(NOT_CONFIGURED)?;
         let has_address = self.bus.biss.as_ref().is_none_or(|device| device.has_address(address));
@@ -366,14 +367,14 @@ impl Adapter {
                 return Err(SILENT);
             }
             if accepted && !device.answers(now) {
-                // It has returned the value before it restarted or began to calibrate.
+                // The encoder returned the value before it restarted or began to calibrate.
                 return Ok(value);
             }
         }
         device.read_register(now, address).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
     }
 
-    /// Starts or ends a stream and returns its period.
+    /// Starts or ends a stream. Returns the actual period in microseconds.
     fn stream(&mut self, kind: Kind, period_us: u32, least_us: u32, bits: u8) -> u32 {
         if period_us == 0 {
             self.clocked = self.clocked.take().filter(|stream| stream.kind != kind);
@@ -386,7 +387,7 @@ impl Adapter {
     }
 }
 
-/// Returns the time of the adapter's clock in microseconds.
+/// Returns a time in microseconds of the adapter's clock.
 fn microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }
@@ -422,7 +423,7 @@ impl ByteDevice for Adapter {
         [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
     }
 
-    /// Does nothing: a serial port over USB has no baud rate.
+    /// Ignores the format, since a serial port over USB has no baud rate.
     fn set_host_format(&mut self, now: Moment, _format: CharacterFormat) {
         self.advance(now);
     }

@@ -1,22 +1,22 @@
-//! Devices attached to the clocked buses and the serial line of the adapter. The adapter names none of them; each
-//! parses its own settings of a `sim:` link.
+//! Devices on the clocked buses and the serial line of the adapter. The adapter does not depend on any of them. Each
+//! device parses its settings in a `sim:` link.
 
 use std::any::Any;
 
 use crate::sim::{ByteDevice, ConfigError, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// A BiSS device with a position and registers. Its motor turns the shaft shared by all encoders of an adapter, and the
-/// device determines their supply.
+/// A BiSS device with a position and registers. Its motor turns the shaft that all encoders of an adapter share. It
+/// also determines whether they have power.
 pub trait BissDevice: Any + Send {
-    /// Creates another device with the same settings.
+    /// Creates a copy of the device with separate state.
     fn duplicate(&self) -> Box<dyn BissDevice>;
 
-    /// Returns the bits that follow the control bit of the frame latched at `at`, and their number, or `None` while the
-    /// device does not acknowledge.
+    /// Returns the bits after the control bit of the frame that is latched at `at`, and their number. The result is
+    /// `None` while the device does not acknowledge.
     fn frame(&mut self, at: Moment) -> Option<(u64, u8)>;
 
-    /// Returns the shaft position in steps and the number of steps per revolution, or `None` without power.
+    /// Returns the shaft position in steps and the number of steps per revolution, or `None` if the power is off.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)>;
 
     fn motor(&self) -> Motor;
@@ -27,36 +27,36 @@ pub trait BissDevice: Any + Send {
 
     fn disconnect(&mut self);
 
-    /// Restores power to a device that has lost it.
+    /// Switches the power of the device on again.
     fn connect(&mut self, now: Moment);
 
-    /// Returns whether the device has power; it may still be starting up.
+    /// Returns whether the power is on. The device may still be starting.
     fn has_power(&self) -> bool;
 
-    /// Returns whether the registers are readable at `now`.
+    /// Returns whether the registers can be read at `now`.
     fn answers(&mut self, now: Moment) -> bool;
 
-    /// Returns whether a control frame can use this address.
+    /// Returns whether the device has a register with this address.
     fn has_address(&self, address: u8) -> bool;
 
     /// Reads a register at `now`, or returns `None` if the device refuses.
     fn read_register(&mut self, now: Moment, address: u8) -> Option<u8>;
 
-    /// Writes a register at `now`; returns `false` without changes if the device refuses.
+    /// Writes a register at `now`. Returns `false` if the device refuses.
     fn write_register(&mut self, now: Moment, address: u8, value: u8) -> bool;
 }
 
-/// An encoder that is read by clocking out its position word.
+/// An encoder whose position word is clocked out.
 pub trait SsiDevice: Send {
     /// Creates another device with the same settings.
     fn duplicate(&self) -> Box<dyn SsiDevice>;
 
-    /// Returns the word latched at `at` and its number of bits, for a shaft position in steps and the number of steps
-    /// per revolution.
+    /// Returns the word that is latched at `at`, and its number of bits. `place` contains the shaft position in steps
+    /// and the number of steps per revolution.
     fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
 }
 
-/// The device at the end of the serial line.
+/// The device on the serial line.
 pub trait SerialDevice: ByteDevice {
     /// Creates another device with the same settings.
     fn duplicate(&self) -> Box<dyn SerialDevice>;
@@ -82,7 +82,7 @@ impl Clone for Box<dyn SerialDevice> {
     }
 }
 
-/// A device attached to an adapter, grouped by connector.
+/// A device that is attached to one connector of an adapter.
 pub enum AttachedDevice {
     Biss(Box<dyn BissDevice>),
     Ssi(Box<dyn SsiDevice>),
@@ -91,12 +91,12 @@ pub enum AttachedDevice {
 
 /// A kind of device that can be attached to an adapter.
 pub trait AttachableKind: Sync {
-    /// Returns the keys of the device's settings in a `sim:` link.
+    /// Returns the names of the device's settings in a `sim:` link.
     fn keys(&self) -> &'static [&'static str];
 
-    /// Creates the device from its settings, or returns `None` if they do not request a device.
+    /// Creates the device from its settings. Returns `None` if the settings do not select a device.
     ///
     /// # Errors
-    /// Names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a setting is invalid.
     fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError>;
 }

@@ -1,5 +1,5 @@
-//! The bits of one BiSS or SSI frame as the adapter clocks them out of the encoder, independent of their meaning. Wire
-//! damage and noise are applied here.
+//! The bits of a BiSS or SSI frame that the adapter clocks out of the encoder. Damage of the wires and noise are also
+//! simulated here.
 
 use fastrand::Rng;
 
@@ -14,7 +14,7 @@ use crate::units::Moment;
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
     pub(super) ssi: Option<Box<dyn SsiDevice>>,
-    /// Shaft that turns while no device is attached to the BiSS connector.
+    /// Shaft of an adapter whose BiSS connector has no device.
     shaft: Shaft,
     pub(super) is_supplied: bool,
     line: EncoderWiring,
@@ -39,7 +39,7 @@ impl Bus {
         self.biss.as_ref().map_or_else(|| self.shaft.motor().clone(), |device| device.motor())
     }
 
-    /// Changes the speed of the adapter's own shaft from `now` on.
+    /// Changes the speed of the shaft from `now` on.
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
         match &mut self.biss {
             Some(device) => device.set_rpm(now, rpm),
@@ -48,12 +48,13 @@ impl Bus {
         self.follow_motor(now);
     }
 
-    /// Lets the adapter's own shaft follow its motor from `now` on. An attached device follows at its next access.
+    /// Changes the speed of the adapter's shaft to that of its motor from `now` on. An attached device does this at its
+    /// next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
         self.shaft.follow(now);
     }
 
-    /// Returns the shaft position in steps and the number of steps per revolution, or `None` without power.
+    /// Returns the shaft position in steps and the number of steps per revolution, or `None` if the power is off.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
         match &mut self.biss {
             Some(device) => device.place(at),
@@ -61,14 +62,14 @@ impl Bus {
         }
     }
 
-    /// Returns the device whose registers can be read at `now`.
+    /// Returns the device if its registers can be read at `now`.
     pub(super) fn answering_device(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
         let is_good = self.line == EncoderWiring::Good;
         self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
         self.biss.as_mut()
     }
 
-    /// Returns the `bits` bits that follow the control bit of a BiSS frame latched at `at`.
+    /// Returns the given number of bits after the control bit of the BiSS frame that is latched at `at`.
     pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
         match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
             (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
@@ -80,9 +81,9 @@ impl Bus {
         }
     }
 
-    /// Returns the first `bits` bits of an SSI word latched at `at`.
+    /// Returns the given number of bits of the SSI word that is latched at `at`.
     pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
-        // Without power neither encoder sends.
+        // Without power, neither of the encoders sends.
         let place = self.place(at);
         match (self.line, place, &mut self.ssi) {
             (EncoderWiring::Low, _, _) => 0,
@@ -94,13 +95,13 @@ impl Bus {
         }
     }
 
-    /// Inverts one bit in some frames, as configured.
+    /// Inverts one bit in the configured share of frames.
     fn corrupt_frame(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }
 }
 
-/// Returns `wanted` bits of a frame of `bits` bits in transmission order. The line is low after the end of the frame.
+/// Returns the first `wanted` bits of a frame with `bits` bits. After the end of the frame, the line is low.
 fn clock_out_bits(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };

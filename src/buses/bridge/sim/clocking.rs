@@ -1,12 +1,12 @@
-//! Clocking of the buses: available clock frequencies and frame durations.
+//! Clock frequencies of the buses, and the durations of their frames.
 
 use std::time::Duration;
 
 pub(super) const MAX_CLOCK_HZ: u32 = 10_000_000;
 const MIN_CLOCK_HZ: u32 = 80_000;
-/// Crystal frequency in hertz; all available clocks are integer fractions of it.
+/// Frequency of the crystal in hertz. All available clocks are integer fractions of it.
 const CRYSTAL_HZ: u32 = 60_000_000;
-/// Longest time in microseconds that the encoder takes to acknowledge a frame.
+/// Maximum time in microseconds that the encoder takes to acknowledge a frame.
 const ACKNOWLEDGE_US: u32 = 7;
 
 #[derive(Clone, Copy)]
@@ -17,7 +17,7 @@ pub(super) struct BissSetting {
 }
 
 impl BissSetting {
-    /// Returns the total duration of acknowledge, start and control bit, frame, and time-out.
+    /// Returns the duration of a frame with acknowledgement, start bit, control bit and time-out.
     pub(super) fn frame(self) -> Duration {
         let clocks = u64::from(self.bits) + 2;
         let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
@@ -39,15 +39,15 @@ impl SsiSetting {
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
-    /// Returns the minimum period of a word and its pause, in whole microseconds.
+    /// Returns the minimum period of a word and its pause in whole microseconds.
     pub(super) fn least_period_us(self) -> u32 {
         let microseconds = self.burst_duration().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }
 }
 
-/// Returns the fastest available clock not above the requested one, or `None` if the request is below the slowest
-/// clock.
+/// Returns the fastest available clock that does not exceed the requested one. The result is `None` if the request is
+/// below the slowest clock.
 pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);
     (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))

@@ -1,4 +1,4 @@
-//! The adapter's own settings in the query of a `sim:` link. Attached devices have their own.
+//! Settings of the adapter in the query of a `sim:` link. The settings of attached devices are not included.
 
 use crate::buses::bridge::protocol::VERSION;
 use crate::expected::Quantity;
@@ -7,20 +7,20 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults};
 
 parameters! {
-    /// Settings of a virtual adapter. By default, there are no faults and the encoder is supplied externally.
+    /// Settings of a virtual adapter. By default, there are no faults, and the encoder has an external supply.
     pub(super) struct Config: ConfigError {
         pub(super) line: EncoderWiring = EncoderWiring::Good,
             "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
-        /// Share of frames in which a bit is inverted.
+        /// Share of frames with an inverted bit.
         pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
         pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
-        /// Version of the bridge protocol as reported by the adapter.
+        /// Version of the bridge protocol that the adapter reports.
         pub(super) version: u8 = VERSION, "version" => Whole(Quantity::Version, 0..=255);
     }
 }
 
 parameters! {
-    /// Settings that attached devices may share: the noise seed and the faults of line and device.
+    /// Settings that attached devices may share, which are the seed of the noise and the faults.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -28,7 +28,7 @@ parameters! {
 }
 
 parameters! {
-    /// Shaft settings, used if no attached device has its own.
+    /// Settings of the shaft. They apply if no attached device has a shaft.
     pub(super) struct Shaft: ConfigError {
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }
@@ -37,7 +37,7 @@ parameters! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EncoderWiring {
     Good,
-    /// No encoder acknowledges.
+    /// The wires are open, so no encoder acknowledges.
     Open,
     /// The data line stays at 0.
     Low,

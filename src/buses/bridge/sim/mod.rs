@@ -1,13 +1,13 @@
-//! A virtual adapter for the bridge protocol (the project's own reference, `protocol/bridge.md`), with a sine/cosine
-//! encoder on the shaft of the attached devices. Without a device on the serial line, requests for the line are refused
-//! as not supported.
+//! A virtual adapter for the bridge protocol, with a sine/cosine encoder on the shaft of the attached devices. Without
+//! a device on the serial line, requests for the line are refused as not supported. See the project's reference
+//! `protocol/bridge.md`.
 //!
 //! | file | content |
 //! |---|---|
-//! | `attached` | devices that can be attached, as the adapter sees them |
-//! | `config` | the adapter's own settings in a `sim:` link |
-//! | `settings` | all settings of such a link, and the adapter built from them |
-//! | `shaft` | the shaft if no device is attached to BiSS |
+//! | `attached` | interface of the devices that can be attached |
+//! | `config` | settings of the adapter in a `sim:` link |
+//! | `settings` | all settings of a link, and the adapter built from them |
+//! | `shaft` | the shaft if BiSS has no device |
 //! | `bus` | the bits of one BiSS or SSI frame |
 //! | `clocking` | clock frequencies and frame durations |
 //! | `stream` | equidistant samples in packets |

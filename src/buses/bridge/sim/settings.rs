@@ -1,4 +1,4 @@
-//! Construction of a virtual adapter with its attached devices from the query of a `sim:` link.
+//! Construction of a virtual adapter and its attached devices from the query of a `sim:` link.
 
 use super::adapter::Adapter;
 use super::attached::{AttachableKind, AttachedDevice};
@@ -6,8 +6,8 @@ use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, Parameters};
 use crate::sim::{ConfigError, VirtualDevice};
 
-/// Returns the setting keys of an adapter with these devices: first those of the adapter and of devices with few
-/// settings in alphabetical order, then those of the last device.
+/// Returns the names of all settings. The settings of the adapter and of devices with few settings come first in
+/// alphabetical order. Those of the last device follow.
 pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
@@ -20,22 +20,23 @@ pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     keys
 }
 
-/// Returns the form entries of an adapter: its faults and the shaft speed, regardless of which device owns the shaft.
+/// Returns the form entries of an adapter, which are its faults and the speed of the shaft. A device may also own the
+/// shaft.
 pub fn entries() -> Vec<Entry> {
     [Shaft::entries(), Shared::entries()].concat()
 }
 
-/// Returns whether the adapter owns the shaft, because no attached device has a speed setting.
+/// Returns whether the adapter owns the shaft. This is the case if no attached device has a setting for the speed.
 fn owns_shaft(devices: &[&dyn AttachableKind]) -> bool {
     devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.keys().contains(key)))
 }
 
 impl Adapter {
-    /// Creates the adapter with these devices from percent-decoded keys and values. If a key occurs twice, its last
-    /// value counts.
+    /// Creates an adapter with the given devices from percent-decoded keys and values. The last value of a repeated key
+    /// applies.
     ///
     /// # Errors
-    /// Names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn AttachableKind]) -> Result<Self, ConfigError> {
         let known = keys(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {

@@ -1,4 +1,4 @@
-//! The shaft of an adapter without a BiSS device: its position as an exact function of time.
+//! The shaft of an adapter without a BiSS device. Its position is an exact function of time.
 
 use crate::sim::Motor;
 use crate::units::Moment;
@@ -7,10 +7,10 @@ use crate::units::Moment;
 #[derive(Debug)]
 pub(super) struct Shaft {
     motor: Motor,
-    /// Motor speed in revolutions per minute since the last change.
+    /// Speed in revolutions per minute since its last change.
     rpm: f64,
     since: Moment,
-    /// Revolutions from the shaft's zero at the time of the last change.
+    /// Position in revolutions at the last change of the speed.
     revolutions: f64,
 }
 
@@ -34,7 +34,7 @@ impl Shaft {
         &self.motor
     }
 
-    /// Makes the shaft follow its motor from `now` on.
+    /// Changes the speed to that of the motor from `now` on.
     pub(super) fn follow(&mut self, now: Moment) {
         let rpm = self.motor.rpm();
         if rpm != self.rpm {
@@ -45,14 +45,14 @@ impl Shaft {
     /// Returns the position in steps and the number of steps per revolution.
     pub(super) fn place(&mut self, at: Moment) -> (u64, u64) {
         self.follow(at);
-        // Not negative, below 2^41.
+        // The result is not negative and below 2^41.
         ((self.revolutions(at) * Self::PER_TURN as f64) as u64, Self::PER_TURN)
     }
 
     fn revolutions(&self, at: Moment) -> f64 {
         let revolutions = self.revolutions + at.since(self.since).as_secs_f64() * self.rpm / 60.0;
         let revolutions = revolutions.rem_euclid(Self::TURNS);
-        // rem_euclid may round up to the divisor itself.
+        // `rem_euclid` may round up to the divisor.
         if revolutions < Self::TURNS { revolutions } else { 0.0 }
     }
 }

@@ -1,5 +1,5 @@
-//! Equidistant samples in packets of five milliseconds, or as many samples as fit. Samples that the host does not fetch
-//! within a second are lost and reported as such.
+//! Equidistant samples in packets. A packet contains the samples of five milliseconds or as many as fit. Samples that
+//! the host does not fetch within a second are lost and counted in the next packet.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 /// Maximum time to wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// Duration of data that the adapter buffers for a host that does not fetch it.
+/// Duration of the samples that the adapter keeps until the host fetches them.
 const BACKLOG: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,11 +30,11 @@ struct Pace {
 }
 
 impl Pace {
-    /// Creates a stream with the given numbers of bytes before the samples (`head`) and per sample (`size`).
+    /// Creates a stream. A packet has `head` bytes before the samples, and each sample has `size` bytes.
     fn new(start: Moment, period: Duration, head: usize, size: usize) -> Self {
         let fit = (MAX_BODY - head) / size.max(1);
         let in_time = FLUSH.as_nanos() / period.as_nanos().max(1);
-        // Neither is above 255 then.
+        // The smaller of both is at most 255.
         let capacity = in_time.clamp(1, fit.min(255) as u128) as u64;
         Pace { start, period, capacity, first: 0, lost: 0 }
     }
@@ -48,7 +48,7 @@ impl Pace {
         self.moment(self.first + self.capacity - 1)
     }
 
-    /// Drops samples older than the backlog.
+    /// Drops samples that are too old to be kept.
     fn skip(&mut self, to: Moment) {
         let behind = to.since(self.due());
         if behind > BACKLOG {
@@ -60,8 +60,8 @@ impl Pace {
         }
     }
 
-    /// Returns the number and time of the first sample in the next packet, and the number of samples lost before it.
-    /// Then advances to the following packet.
+    /// Returns the number and the time of the first sample in the next packet, and the number of lost samples before
+    /// it. Then advances to the following packet.
     fn next(&mut self) -> (u32, u64, u16) {
         let first = (self.first % (1 << 32)) as u32;
         let t0_us = u64::try_from(self.moment(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
@@ -83,7 +83,7 @@ pub(super) struct ClockedStream {
 impl ClockedStream {
     const HEAD: usize = 20;
 
-    /// Creates a stream of values with `bits` bits each.
+    /// Creates a stream whose values have the given number of bits.
     pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
         let width = bits.div_ceil(8).clamp(1, 8);
         let size = usize::from(width) + usize::from(kind == Kind::Biss);
@@ -94,7 +94,8 @@ impl ClockedStream {
         self.pace.due()
     }
 
-    /// Takes the samples due up to `to`, before later changes apply, and returns the complete packets with their times.
+    /// Takes the samples up to `to` and returns the completed packets with their times. It must be called before a
+    /// later change applies.
     pub(super) fn run(
         &mut self,
         to: Moment,
@@ -139,7 +140,7 @@ pub(super) struct SampledStream {
 }
 
 impl SampledStream {
-    /// Voltage in microvolts that corresponds to a raw value of 32 767.
+    /// Voltage in microvolts at the value 32 767.
     pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
     const HEAD: usize = 15;
 
@@ -161,14 +162,14 @@ impl SampledStream {
         self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
-    /// Returns the packets completed up to `to`, each with its time. An encoder without supply has no signals.
+    /// Returns the packets that are complete at `to`, each with its time. An encoder without power sends no signals.
     pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, StreamData)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
         while self.pace.due() <= to {
             let at = self.pace.due();
             let count = usize::try_from(self.pace.capacity).unwrap_or(0);
-            // Changes that are forgotten leave an empty packet: the gap is visible.
+            // A change in the past may have been forgotten. The packet is then empty, so the gap is visible.
             let samples = self.source.samples(self.pace.first, count).map_or(Vec::new(), |wires| {
                 wires
                     .sine_v()
@@ -184,8 +185,8 @@ impl SampledStream {
     }
 }
 
-/// Converts a voltage to a raw fraction of full scale; values beyond full scale are clamped.
+/// Converts a voltage to a fraction of full scale. Values beyond full scale are clamped.
 fn raw(volts: f64) -> i16 {
-    // Saturates like the converter.
+    // The conversion saturates like the converter of the adapter.
     (volts * 1e6 / f64::from(SampledStream::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
 }

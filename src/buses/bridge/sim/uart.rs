@@ -1,5 +1,5 @@
-//! The serial line of the adapter with its device. An assumption of this implementation: the time-out starts when
-//! sending ends.
+//! The serial line of the adapter and its device. It is an assumption that the time-out starts when all bytes have been
+//! sent.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ pub(super) struct Uart {
 }
 
 pub(super) struct Transfer {
-    /// Start of the first start bit, or the end of the wait if there was no reply.
+    /// Time of the first start bit. Without a reply, this is the end of the wait.
     pub(super) start: Moment,
     pub(super) rx: Vec<u8>,
     /// Time at which the adapter stopped waiting.
@@ -22,7 +22,7 @@ pub(super) struct Transfer {
 }
 
 impl Uart {
-    /// Maximum number of received bytes in a reply, not counting its time stamp.
+    /// Maximum number of bytes in a reply. The time stamp is not included.
     const MAX_RX: usize = MAX_BODY - 8;
 
     pub(super) fn new(line: Box<dyn SerialDevice>) -> Self {
@@ -33,7 +33,7 @@ impl Uart {
         self.line.turn(now, rpm);
     }
 
-    /// Sets baud rate and parity. Returns `false` if they are not supported.
+    /// Sets the baud rate and the parity. Returns `false` if they are not supported.
     pub(super) fn configure(&mut self, now: Moment, baud: u32, parity: u8) -> bool {
         let parity = match parity {
             0 => Some(Parity::None),
@@ -48,8 +48,8 @@ impl Uart {
         true
     }
 
-    /// Sends and receives bytes, or returns `None` before the line is configured. The simulated line runs ahead of the
-    /// adapter's time until the reply is complete.
+    /// Sends and receives bytes. Returns `None` if the line is not configured. The simulation of the line runs ahead of
+    /// the adapter until the reply is complete.
     pub(super) fn transfer(&mut self, now: Moment, timeout: Duration, idle: Duration, tx: &[u8]) -> Option<Transfer> {
         let character = self.format?.character_time();
         self.line.poll(now);

@@ -1,4 +1,4 @@
-//! Texts for messages and errors of an adapter, for any bus behind it.
+//! Messages of an adapter for any bus behind it.
 
 mod error;
 mod texts;

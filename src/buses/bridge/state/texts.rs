@@ -1,6 +1,6 @@
-//! Text catalogue of the adapter.
+//! Message catalogue of the adapter.
 
 use crate::app::Catalogue;
 
-/// Text catalogue of the adapter. Names that it does not define are looked up in the common texts.
+/// Message catalogue of the adapter. The common catalogue provides all other IDs.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/bridge.ron"));

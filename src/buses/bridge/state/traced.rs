@@ -1,17 +1,17 @@
-//! Descriptions of the traffic to an adapter, for any bus behind it.
+//! Descriptions of the packets to and from an adapter, for any bus behind it.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
-/// Parses the packet contained in transmitted bytes, or returns `None` if they do not contain one.
+/// Parses the first packet in transmitted bytes, or returns `None` if they contain no packet.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
-/// Explains a received packet that is damaged or a refusal, or returns `None` for other packets.
+/// Explains a received packet if it is damaged or a refusal. For other packets, the result is `None`.
 pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
@@ -32,7 +32,7 @@ pub fn request_text(request: &Request) -> Text {
     }
 }
 
-/// Describes a packet from an adapter, or returns `None` if it is not a message.
+/// Describes a packet of an adapter, or returns `None` if it is not a valid message.
 pub fn message_text(packet: &Packet) -> Option<Text> {
     Some(match Message::parse(packet).ok()? {
         Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),

@@ -1,4 +1,4 @@
-//! The frame (manual 5.1).
+//! The frames of UBICOM (manual 5.1).
 
 /// First byte of every frame.
 pub const SYNC: u8 = 0x80;
@@ -43,14 +43,14 @@ pub enum FrameError {
 }
 
 impl<'a> Frame<'a> {
-    /// Number of bytes in addition to the payload, of which five precede the payload and one follows.
+    /// Number of bytes in addition to the payload. Five precede the payload and one follows.
     pub const OVERHEAD: usize = 6;
 
-    /// Parses a frame that occupies the whole slice. The length is taken from the header, regardless of the examples in
-    /// the manual.
+    /// Parses a frame that occupies the whole slice. The header gives the length, even where examples in the manual
+    /// differ.
     ///
     /// # Errors
-    /// [`FrameError`].
+    /// Returns a [`FrameError`] if the bytes are not a valid frame.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
         if let Some(first) = bytes.first().filter(|first| **first != SYNC) {
             return Err(FrameError::Sync(*first));

@@ -1,5 +1,5 @@
-//! Requests of the host and replies of the encoder (manual 5.2). Registers are numbered globally: see
-//! `RegisterAddress::global` of BiSS.
+//! Requests of the host and replies of the encoder (manual 5.2). Registers have the global numbers that
+//! `RegisterAddress::global` of BiSS returns.
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;
@@ -8,30 +8,30 @@ use crate::bits::ByteOrder;
 /// The three commands of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// 01h: read a register.
+    /// Reads a register (01h).
     Read,
-    /// 02h: write a register.
+    /// Writes a register (02h).
     Write,
-    /// 03h: read the position.
+    /// Reads the position (03h).
     Position,
 }
 
 /// A request without the address of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// 01h: read a register.
+    /// Reads a register (01h).
     Read {
         /// Global register address.
         register: u16,
     },
-    /// 02h: write a register.
+    /// Writes a register (02h).
     Write {
         /// Global register address.
         register: u16,
         /// New value of the register.
         value: u8,
     },
-    /// 03h: read the position. The manual defines only the argument 01h, but others are preserved.
+    /// Reads the position (03h). The manual defines only the argument 01h, but others are preserved.
     Position {
         /// Argument byte after the command.
         argument: u8,
@@ -57,9 +57,9 @@ pub enum RequestError {
 /// The reply to a write request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// 90h: acknowledged.
+    /// The write was acknowledged (90h).
     Acknowledged,
-    /// A0h: refused.
+    /// The write was refused (A0h).
     Refused,
     /// A value that the manual does not define.
     Unknown(u8),
@@ -115,7 +115,7 @@ impl Command {
         }
     }
 
-    /// Returns the command with this code.
+    /// Returns the command with this code, or `None` if the code is unknown.
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {
             0x01 => Some(Command::Read),
@@ -142,10 +142,10 @@ impl Command {
 }
 
 impl Request {
-    /// Position request as defined in the manual.
+    /// Position request with the argument that the manual defines.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// Request whose reply reveals the byte order of register numbers (see [`byte_order_from_reply`]). The register
-    /// number is sent low byte first.
+    /// Read request whose reply reveals the byte order of register numbers. Its own register number is sent low byte
+    /// first. See [`byte_order_from_reply`].
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
     /// Register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
@@ -159,7 +159,7 @@ impl Request {
         }
     }
 
-    /// Returns the encoded frame. The byte order of the register number is not documented (`U`).
+    /// Returns the encoded frame. The manual does not define the byte order of the register number (`U`).
     pub fn emit(self, order: ByteOrder) -> Vec<u8> {
         let number = |register: u16| match order {
             ByteOrder::LowFirst => register.to_le_bytes(),
@@ -179,7 +179,7 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// An unknown command is reported before a wrong length.
+    /// Returns a [`RequestError`]. An unknown command is reported before a wrong length.
     pub fn parse(frame: &Frame<'_>, order: ByteOrder) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command).ok_or(RequestError::Command(frame.command))?;
         let number = |bytes: [u8; 2]| match order {
@@ -198,7 +198,7 @@ impl Request {
 }
 
 /// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]. The value 02h is the data
-/// sheet bank in register 0001h, 01h is the profile version in register 0100h, and any other value yields `None`.
+/// sheet bank in register 0001h, and 01h is the profile version in register 0100h. Any other value yields `None`.
 pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),
@@ -208,7 +208,7 @@ pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
 }
 
 impl Written {
-    /// Converts a byte from a reply.
+    /// Decodes the byte of a reply.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x90 => Written::Acknowledged,
@@ -250,7 +250,7 @@ impl Reply {
     /// Parses the reply to a command.
     ///
     /// # Errors
-    /// [`ReplyError`] if the frame is not the reply.
+    /// Returns a [`ReplyError`] if the frame is not the reply.
     pub fn parse(frame: &Frame<'_>, command: Command) -> Result<Self, ReplyError> {
         if frame.address != NODE {
             return Err(ReplyError::Address { expected: NODE, got: frame.address });

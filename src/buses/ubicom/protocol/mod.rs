@@ -1,5 +1,6 @@
-//! UBICOM, the serial protocol on the configuration pin of POSITAL kit encoders (manual IXARC kit encoders with BiSS C
-//! v4.6, chapter 5; "reference" refers to the project's reference). Anything that the manual leaves open is marked `U`.
+//! UBICOM, the serial protocol on the configuration pin of POSITAL kit encoders. The manual is chapter 5 of *IXARC kit
+//! encoders with BiSS C* v4.6, and "reference" refers to the project's reference. Anything that the manual leaves open
+//! is marked `U`.
 //!
 //! ```text
 //! 80 ADDRESS COMMAND LEN-low LEN-high payload… CHK        CHK = NOT(sum of all bytes before it)
@@ -25,8 +26,8 @@ const BAUD: Baud = Baud::B115200;
 
 /// Character format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Returns the number of bits in a character, including the start bit, eight data bits, the parity bit if enabled, and
-/// the stop bit.
+/// Returns the number of bits in a character. It consists of the start bit, eight data bits, the parity bit if enabled,
+/// and the stop bit.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
     match format.parity {
         Parity::None => 10,

@@ -5,10 +5,10 @@
 pub struct PositionWord(u64);
 
 impl PositionWord {
-    /// Length in bytes.
+    /// Length of a position word in bytes.
     pub const BYTES: usize = 5;
 
-    /// Creates a position word, or returns `None` beyond 40 bits.
+    /// Creates a position word, or returns `None` if it exceeds 40 bits.
     pub const fn new(word: u64) -> Option<Self> {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }
@@ -25,7 +25,7 @@ impl PositionWord {
         [b0, b1, b2, b3, b4]
     }
 
-    /// Returns all 40 bits.
+    /// Returns the word as a number of 40 bits.
     pub const fn word(self) -> u64 {
         self.0
     }

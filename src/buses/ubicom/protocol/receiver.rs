@@ -1,6 +1,6 @@
-//! Frame reassembly from a byte stream. 80h may occur within a payload, so it starts a frame only if none is in
-//! progress: after a complete frame, a damaged one, or silence (reference 2). The caller measures the silence: see
-//! [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT).
+//! Frame reassembly from a byte stream. The byte 80h may also occur within a payload, so it starts a frame only if none
+//! is in progress. This is the case after a complete frame, a damaged one, or silence. The caller measures the silence
+//! with [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT). See reference 2.
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
@@ -44,8 +44,8 @@ impl Receiver {
         }
     }
 
-    /// Handles silence on the line, after which a started frame will not be completed. A frame contained in its bytes
-    /// is still found.
+    /// Handles silence on the line, which means that an incomplete frame will not be completed. Returns a frame if the
+    /// remaining bytes contain one.
     pub fn handle_silence(&mut self) -> Option<Vec<u8>> {
         loop {
             if let Some(frame) = self.next_frame() {
@@ -87,7 +87,7 @@ impl Receiver {
     }
 
     fn skip(&mut self) {
-        // At least one byte; then up to a possible start of a frame.
+        // Skips at least one byte, up to a possible start of a frame.
         let rest = self.bytes.get(1..).unwrap_or_default();
         let count = 1 + rest.iter().position(|byte| *byte == SYNC).unwrap_or(rest.len());
         self.bytes.drain(..count);

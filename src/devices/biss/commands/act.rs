@@ -1,5 +1,5 @@
-//! `do`: filter, preset, and the guided procedures at the motor. Without a terminal the program cannot ask which drive
-//! turns the motor; `--yes` then states that the motor does not depend on this encoder.
+//! The command `do`: filter, preset, and the guided procedures at the motor. Without a terminal, the program cannot ask
+//! which drive turns the motor. In this case, `--yes` states that the motor does not depend on this encoder.
 
 use std::path::Path;
 use std::time::Duration;
@@ -68,8 +68,8 @@ fn check_device(common: &CommonArgs, output: &Output) -> Result {
 }
 
 fn lead_back(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
-    // Nothing is stored by it, so it needs no consent without a terminal; a user there may have entered what it
-    // discards.
+    // Returning to operation stores nothing, so no consent is needed without a terminal. On a terminal, the user may
+    // have entered values that will be discarded.
     if !act.consent.yes
         && can_prompt()
         && !ask("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
@@ -137,7 +137,7 @@ fn change(
     }
 }
 
-/// Returns whether an operation is complete and its result, if any, is good.
+/// Returns whether an operation is complete and has no bad result.
 fn passes(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.passes(),
@@ -150,8 +150,8 @@ fn passes(outcome: &Outcome) -> bool {
     }
 }
 
-/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration
-/// nor test is given, both are run.
+/// Parses the arguments of the action `mounting`, which are `calibrate wiegand-test save preset=ST,MT data=FILE`. If
+/// neither calibration nor test is given, both are run.
 fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
     let mut run = MountingSteps::default();
     let (mut tests, mut saves) = (false, false);
@@ -190,7 +190,7 @@ fn place(text: &str) -> Result<PresetValue> {
     }
 }
 
-/// Parses a value that fits into the registers; the field widths of the encoder may be smaller.
+/// Parses a value that fits into the registers. The field widths of the encoder may be smaller.
 fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     let part = |name: &str, text: &str| {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{name}: {text:?} is not a number")))?;
@@ -200,7 +200,8 @@ fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     PresetValue::new(steps, turns).ok_or_else(|| out_of_range("singleturn", singleturn, 0, 0xFF_FFFF))
 }
 
-/// `[ST [MT]] [singleturn|multiturn]`.
+/// The arguments of a preset in the form `[ST [MT]] [singleturn
+/// multiturn]`.
 struct PresetArguments<'a> {
     singleturn: Option<&'a str>,
     multiturn: Option<&'a str>,
@@ -223,13 +224,13 @@ impl<'a> PresetArguments<'a> {
                 return Err(Failure::Usage(form.to_owned()));
             }
         };
-        // Invalid numbers are found before the link is opened.
+        // Invalid numbers are reported before the link is opened.
         value(singleturn.unwrap_or("0"), multiturn.unwrap_or("0"))?;
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// Returns the change. A missing multiturn value is 0, except that the stored multiturn is kept if only the
-    /// singleturn is preset.
+    /// Returns the change. A missing multiturn value is 0, unless only the singleturn is preset. In that case, the
+    /// stored multiturn is kept.
     fn change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

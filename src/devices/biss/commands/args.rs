@@ -17,7 +17,7 @@ pub(super) enum BissAction {
     Check,
     /// calibrate the singleturn while the motor turns at 500 ± 2 rpm, first counterclockwise, then clockwise
     Calibrate,
-    // Brackets in what rustdoc reads would be links.
+    // Rustdoc would read brackets in a doc comment as links.
     #[value(
         help = "[save]: test the Wiegand sensor while the motor turns at 500 to 2000 rpm, first clockwise, then counterclockwise"
     )]

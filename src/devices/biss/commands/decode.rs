@@ -1,6 +1,6 @@
-//! `decode`: explains captured UBICOM frames, bridge packets, position frames and position words offline. The format is
-//! detected by a matching checksum. A position word has none, so it is written as `position` prints it: `0x024698000`,
-//! nine digits, or `raw=610893824`.
+//! The command `decode`, which explains captured UBICOM frames, bridge packets, position frames and position words
+//! offline. The format is detected by a matching checksum. A position word has no checksum, so it must be written as
+//! `position` prints it. Examples are `0x024698000` with nine digits, and `raw=610893824`.
 
 mod bridge;
 mod position;
@@ -36,8 +36,8 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Parses the arguments. Nine hex digits with 0x, a `raw=` prefix or a final h form a position word; 11 hex digits, or
-/// others with 0x, form the bits of a frame; all others are bytes.
+/// Parses the arguments. Nine hexadecimal digits with 0x, digits with a final h, and numbers after `raw=` are position
+/// words. 11 digits, or another number of digits with 0x, are the bits of a frame. Everything else is bytes.
 fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
@@ -72,8 +72,7 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Refuses an argument with an odd number of digits, which does not consist of bytes. It may be a position word, which
-/// must be marked.
+/// Refuses an argument with an odd number of digits, which cannot be bytes. It may be a position word without its mark.
 fn ensure_no_argument(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
@@ -92,7 +91,7 @@ fn digits(word: &str) -> (bool, &str) {
     }
 }
 
-/// Explains bytes by the protocol whose checksum matches, or else by their form.
+/// Explains bytes by the protocol whose checksum matches. If there is none, explains them by their form.
 fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);

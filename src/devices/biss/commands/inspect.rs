@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// Time without a valid frame after which the line is considered to carry only noise.
+/// Time without a valid frame after which the line is considered to carry nothing but noise.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
@@ -45,7 +45,7 @@ pub(super) fn identify(common: &CommonArgs, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the manufacturer as text, or as hex bytes if the text is not printable.
+/// Returns the manufacturer as text. If the text is not printable, returns it as hexadecimal bytes.
 fn manufacturer_text(identity: &Identity) -> String {
     let bytes = &identity.kind.manufacturer;
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));
@@ -89,7 +89,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines.text()
 }
 
-/// Returns the serial number with its bytes, since no manual defines the byte order.
+/// Returns the serial number together with its bytes, because no manual defines their order.
 fn serial(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }
@@ -192,7 +192,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     ended
 }
 
-/// Returns whether frames arrived, all with a wrong checksum.
+/// Returns whether frames arrived, but all of them with a wrong checksum.
 fn is_noise(error: &JobError) -> bool {
     matches!(error, JobError::Device(Error::Damaged { cause: Damage::Frame(_), .. }))
 }

@@ -21,7 +21,7 @@ use crate::devices::biss::state::explain as explained;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Manual 6.4.
+/// Description of the calibration (manual 6.4).
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
@@ -29,8 +29,8 @@ pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent if required, and executes the plan. An empty plan sends nothing. A run starts as soon as the
-/// measurement allows it, within the time limit `patience`.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing. A run starts as soon as the motor
+/// meets the conditions. The time limit for this is `patience`.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -55,18 +55,18 @@ pub(super) fn commit(
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
-/// Describes the plan as text and JSON: each operation old → new, and the cost.
+/// Describes the plan as text and JSON, with the old and new value of each operation, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// Returns the operations as JSON; registers that are saved together have no separate cost.
+/// Returns the operations as JSON. Registers that are saved together have no separate cost.
 pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-/// Returns the operations with old and new values, a line each.
+/// Returns the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &BissPlan) -> String {
     plan::lines(plan.ops.iter().flat_map(steps)).text()
 }
@@ -153,7 +153,7 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
     outcomes.iter().map(one).collect()
 }
 
-/// Returns the results of the operations, a line each.
+/// Returns the results of the operations, one per line.
 pub(super) fn results_text(outcomes: &[Outcome]) -> String {
     let texts = outcomes.iter().flat_map(explained::outcome);
     texts.map(|text| text.terminal_text() + "\n").collect()

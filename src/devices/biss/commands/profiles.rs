@@ -53,12 +53,12 @@ impl ProfileCommands for BissCommands {
         })
     }
 
-    /// Reads the encoder for a comparison; refused if its registers show values that were never saved.
+    /// Reads the encoder for a comparison. This is refused if its registers may show values that were never saved.
     fn present(&self, common: &CommonArgs, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
     }
 
-    /// Returns the remark that a profile was read in a device mode.
+    /// Returns the message that a profile was read in a device mode.
     fn remark(&self, profile: &Body) -> Option<Text> {
         words::profile_unsaved(profile.get()?)
     }

@@ -26,7 +26,7 @@ impl Runs for Biss {
 
     fn print_message(remark: &DeviceMessage) {
         match remark {
-            // They are counted, and reported at the end.
+            // These messages are counted and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
             remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal_text()))),
         }
@@ -49,7 +49,7 @@ impl Runs for Biss {
     }
 }
 
-/// Describes the details of a step: what prevents its start, or how long it takes.
+/// Describes the details of a step, such as its duration or the reasons why it cannot start.
 fn detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         StepDetail::Begins => String::new(),
@@ -70,7 +70,8 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Returns the number of frames with a wrong checksum in the last job, except those already included in its reading.
+/// Returns the number of frames with a wrong checksum in the last job. Frames that are already included in its reading
+/// are not counted.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),
@@ -83,7 +84,7 @@ pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec
     read_registers(runner, range).map(|read| read.bytes)
 }
 
-/// Reads consecutive registers; returns also whether they may show values that were never saved.
+/// Reads consecutive registers. The result also shows whether their values may never have been saved.
 pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
     match runner.run(BissJob::Read(range))? {
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),

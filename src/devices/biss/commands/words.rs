@@ -19,7 +19,7 @@ pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
-/// Describes the bytes at an address, if they form a complete register with a meaning beyond its number.
+/// Describes the bytes at an address. They must form a complete register whose number needs an explanation.
 pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     words(register, bytes)
@@ -47,7 +47,7 @@ pub(super) fn filter(filter: PositionFilter) -> String {
     }
 }
 
-/// Describes the bytes of a register, or returns `None` for a code without a meaning.
+/// Describes the bytes of a register. Returns `None` for a code without a meaning.
 fn words(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {

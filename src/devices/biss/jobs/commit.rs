@@ -74,7 +74,7 @@ impl Planned for Prepared {
         let mut document = backup_of(Body::new(profile));
         let note = document.note.get_or_insert_default();
         for (address, value) in &base.registers {
-            // A profile cannot contain them.
+            // A profile cannot contain these registers.
             note.push_str(&format!("; {address} was 0x{value:02X}"));
         }
         document.emit()

@@ -4,8 +4,8 @@ use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the encoder descriptions, with user-defined ones first, and an error for each unusable file (a
-/// `DescriptionError` each).
+/// Returns the encoder descriptions, with user-defined ones first. Also returns a `DescriptionError` for each unusable
+/// file.
 pub fn load_descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::Layout;
 #[derive(Clone, Debug)]
 pub struct BissFrames {
     pub layout: Layout,
-    /// Clock in hertz.
+    /// Clock frequency in hertz.
     pub clock_hz: u32,
     /// Sampling interval in microseconds.
     pub period_us: u32,

@@ -31,7 +31,7 @@ pub enum BissJob {
     Identify,
     /// Reads mode, errors, warnings, temperature and filter.
     Status,
-    /// Checks the encoder against its description, its data sheet and the line, with a verdict for each item.
+    /// Checks the encoder against its description, its data sheet and the line. Each item receives a verdict.
     Check,
     Position,
     /// Reads consecutive registers. Registers of a data area are read only at standstill.
@@ -43,7 +43,7 @@ pub enum BissJob {
     ReadArea(Area),
     /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
     Save,
-    /// Reads the encoder for a comparison, which is refused if some values may never have been saved.
+    /// Reads the encoder for a comparison. The job is refused if some values may never have been saved.
     SaveToCompare,
     /// Prepares a plan without writing.
     Prepare(Change),
@@ -61,7 +61,7 @@ pub enum Change {
     /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(PositionFilter),
-    /// Stores the preset value, if given; then sets the given parts of the position at the present shaft angle to the
+    /// Stores the preset value, if given. Then sets the given parts of the position at the current shaft angle to the
     /// stored value.
     Preset {
         value: Option<PresetValue>,
@@ -114,18 +114,18 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values of the mounting that differ and are not written.
+    /// Values that differ but are not written, because they are only valid for another encoder on its motor.
     pub mounting_left: Vec<RegisterRange>,
     /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
     /// encoder.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<OtherType>,
-    /// Written values that belong to the mounting of another encoder and must be adjusted for this one.
+    /// Written values that are only valid for another encoder on its motor. They must be adjusted for this one.
     pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {
-    /// Returns the minimum number of flash write cycles already used, if the user should be warned.
+    /// Returns the minimum number of flash write cycles used so far, or `None` if no warning is necessary.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -212,7 +212,7 @@ pub enum BissOutput {
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// With the mode before.
+    /// Contains the previous device mode.
     LedBack(DeviceMode),
 }
 
@@ -224,8 +224,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of an encoder for backups and the logbook: serial numbers are unique within a manufacturer's device
-/// id.
+/// Returns the key of an encoder for backups and the logbook. It contains manufacturer and device ID, because serial
+/// numbers are only unique within these.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
     DeviceKey::of(KIND, &format!("{manufacturer}-{device}"), &identity.serial_number, is_virtual)

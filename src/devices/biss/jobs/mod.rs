@@ -37,14 +37,14 @@ pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<Descriptions>,
-    /// Errors of unusable user-defined descriptions, which are reported once.
+    /// Errors in user-defined descriptions that cannot be used. They are reported once.
     broken: Vec<StoreError>,
     motor: Option<Motor>,
-    /// Interval between streamed frames in microseconds, if shorter than single requests allow.
+    /// Interval between streamed frames in microseconds. `None` if single requests are fast enough.
     streamed_us: Option<u32>,
 }
 
-/// Interval below which positions are streamed, if there is an adapter.
+/// Interval below which an adapter streams positions.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
@@ -70,7 +70,7 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// Creates a session on an open connection, with the descriptions of `store`. With a motor, the encoder is
+    /// Creates a session on an open connection, with the descriptions of `store`. If a motor is given, the encoder is
     /// simulated in this process and its writes are counted separately.
     pub fn over(
         wire: Box<dyn ByteLink>,

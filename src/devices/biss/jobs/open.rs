@@ -19,16 +19,16 @@ const BRIDGE: &str = "bridge";
 /// Checks a link to a BiSS encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to a BiSS encoder: `serial:` and `tcp:` to its configuration pin, `bridge:` to an adapter on its bus,
-/// `sim:` and `replay:` to the pin or, with `bridge=on`, to the adapter.
+/// Opens a link to a BiSS encoder. `serial:` and `tcp:` lead to its configuration pin, and `bridge:` to an adapter on
+/// its bus. `sim:` and `replay:` lead to the pin or, with `bridge=on`, to the adapter.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// See [`OpenError`]. Nothing has been sent in that case.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     let (station, simulated) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
@@ -57,7 +57,8 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     if !is_virtual {
         return Ok((station, Simulated::new(way, &[])?));
     }
-    // Echo and order are the virtual encoder's: they are detected as with a real one.
+    // The parameters for echo and byte order configure the virtual encoder. The line detects both as with a real
+    // encoder.
     (station.line.echo, station.order) = (Echo::Unknown, None);
     let line = [Transport::ConfigPin, Transport::Adapter].map(Transport::parameters).concat();
     let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));

@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. Only reads; the device mode is left unchanged.
+//! Preparation of a plan for a change. The encoder is only read, and its device mode is left unchanged.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ pub(super) fn prepare(
     let description = identity.description.clone();
     let plan = match change {
         Change::Restore { profile, options } => {
-            // Known before the banks are read.
+            // This can be checked before the banks are read.
             check_allowed(profile, &identity.profile(), *options)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let state = state(&mut master, &identity, &banks_needed(profile, &areas), tell)?;
@@ -39,7 +39,7 @@ pub(super) fn prepare(
             restore_from_plan(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
         }
         Change::Guided { run, motor } => {
-            // Refusals come before anything else is read.
+            // A refusal is reported before anything else is read.
             run.check(*motor)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let banks = run.data.as_ref().map(|profile| banks_needed(profile, &areas)).unwrap_or_default();

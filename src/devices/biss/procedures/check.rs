@@ -1,5 +1,5 @@
-//! Device check: the values of an encoder compared with its description, its data sheet and the line, with a verdict
-//! for each item. Nothing is written except the bank selection.
+//! Device check. The values of an encoder are compared with its description, its data sheet and the line, and each item
+//! receives a verdict. Nothing is written except the bank selection.
 
 use super::survey::{FlagRegister, Status, survey};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
@@ -24,7 +24,7 @@ pub enum CheckStep {
     /// Compares temperature and supply with the limits in the data sheet.
     Limits,
     Wiegand,
-    /// Counts position readings and damaged ones.
+    /// Counts position readings, and damaged frames or replies.
     Readings,
     Wear,
 }
@@ -38,7 +38,7 @@ pub enum CheckFinding {
     Mismatch(Mismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// The encoder does not report errors and warnings, or not with this firmware.
+    /// The encoder does not report errors and warnings, at least not with this firmware.
     NotTold,
     Mode(DeviceMode),
     Open,
@@ -47,11 +47,11 @@ pub enum CheckFinding {
     WarningBit,
     NoPosition,
     SumsFit,
-    /// A bank of the data sheet, or the combination of both banks, is unreliable.
+    /// A bank of the data sheet is invalid, or the two banks do not match.
     Sheet(EdsError),
-    /// The encoder has no data sheet that this program knows.
+    /// The encoder has no data sheet, or its profile is not supported.
     NoSheet,
-    /// The frames of the data sheet and the description differ in the widths of multiturn and singleturn.
+    /// The data sheet and the description define different widths of multiturn and singleturn.
     OtherFrame {
         sheet: (u8, u8),
         description: (u8, u8),
@@ -62,13 +62,13 @@ pub enum CheckFinding {
         low: i32,
         high: i32,
     },
-    /// Supply voltage in millivolts, measured by the adapter when it was switched on, and the limits of the data sheet.
+    /// Supply voltage in millivolts and the limits in the data sheet. The adapter measured the voltage at switch-on.
     Supply {
         millivolt: u16,
         low: u32,
         high: u32,
     },
-    /// Current in milliamperes, measured by the adapter, and the limit in the data sheet.
+    /// Current in milliamperes, as measured by the adapter, and the limit in the data sheet.
     Current {
         milliampere: u16,
         high: u32,
@@ -76,7 +76,7 @@ pub enum CheckFinding {
     Wiegand(WiegandResult),
     /// No test result is saved in the encoder.
     NotTested,
-    /// Number of position readings, and of damaged frames or replies.
+    /// Number of position readings and of damaged frames or replies.
     Readings {
         requested: u32,
         damaged: u64,
@@ -92,10 +92,10 @@ pub enum CheckFinding {
 /// Number of position readings used to assess the line.
 const READINGS: u32 = 50;
 
-/// Runs the check, which ends early only if the line fails. `wear` is called once the encoder has been identified.
+/// Runs the check, which ends early only if the line fails. `wear` is called once the encoder is identified.
 ///
 /// # Errors
-/// Errors of the exchange, or cancellation.
+/// Returns an error if the exchange fails or the job is cancelled.
 pub fn check(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -193,7 +193,7 @@ mod offset {
     pub(super) const MOST_CURRENT: u8 = 0x38;
 }
 
-/// Compares measured values with the limits in the data sheet. Returns `None` if nothing can be compared.
+/// Compares measured values with the limits in the data sheet. Returns `None` if there is nothing to compare.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
@@ -223,11 +223,11 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
     sheet.values().find(|(field, _)| field.offset == offset).map(|(_, value)| value)
 }
 
-/// Checks the saved result of the Wiegand test. Returns `None` if the encoder has none.
+/// Checks the saved result of the Wiegand test. Returns `None` if the encoder has no such result.
 fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
-        // Factory state: this is no error, but nothing proves that the sensor works.
+        // The encoder is in factory state. This is no error, but nothing proves that the sensor works.
         [0, 0, 0, 0] => (Verdict::Skipped, CheckFinding::NotTested),
         _ if saved.passes() => (Verdict::Good, CheckFinding::Wiegand(saved)),
         _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),
@@ -243,7 +243,7 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     for _ in 0..READINGS {
         match master.position() {
             Ok(reading) => damaged += u64::from(reading.crc_errors),
-            // The line counts each attempt.
+            // The line already counts each damaged attempt.
             Err(Error::Damaged { .. }) if told_by_line => {}
             Err(Error::Damaged { .. } | Error::WrongWidths { .. } | Error::TooWide { .. }) => damaged += 1,
             Err(error) => return Err(error),

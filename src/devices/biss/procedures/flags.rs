@@ -1,5 +1,5 @@
-//! Errors and warnings of positions that do not include them. On the configuration pin they are read from registers in
-//! addition (reference UBICOM 4).
+//! Errors and warnings for positions that do not include them. Over the configuration pin, they are read from separate
+//! registers. See reference UBICOM 4.
 
 use std::time::Duration;
 
@@ -17,14 +17,14 @@ pub(super) struct Flags {
     errors_last: bool,
 }
 
-/// Interval at which one of the two registers is read during position polling, short enough to cost hardly any
+/// Interval at which one of the two registers is read during position polling. It is long enough to cost hardly any
 /// position.
 const EVERY: Duration = Duration::from_millis(500);
 
 /// Reads the position once, together with the encoder's current errors and warnings.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> {
     let reading = master.position()?;
     if reading.frame.is_some() {
@@ -34,7 +34,7 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
     with_flags(master, reading)
 }
 
-/// Adds the last known flags to the position, after reading one of the registers if it is due.
+/// Adds the last known flags to the position. One of the registers is read first if it is due.
 pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {

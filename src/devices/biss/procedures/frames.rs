@@ -1,4 +1,4 @@
-//! Frames of a stream with verified checksums: each as a reading, or the reason why there is none.
+//! Frames of a stream. Each yields a position with a verified checksum, or the reason why there is none.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,7 +16,6 @@ pub enum FrameReadingError {
     /// The bits are not a valid frame, because the checksum is wrong or the line does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The adapter reports an unknown status.
     #[error("the adapter has no frame, status {}", .0.byte())]
     Status(BissStatus),
 }
@@ -26,16 +25,16 @@ pub type Frame = Result<PositionData, FrameReadingError>;
 /// A run of consecutive stream frames at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRun {
-    /// Number of the first frame, counted from the start of the stream. Missing frames are counted as well.
+    /// Number of the first frame since the start of the stream. Missing frames are included.
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
     /// Number of frames missing before the first one.
     pub lost: u64,
-    /// Frames; at least one.
+    /// Frames of the run, at least one.
     pub frames: Vec<Frame>,
     pub layout: Arc<Layout>,
-    /// Whether the width of the multiturn is known.
+    /// Whether the multiturn width is known.
     pub is_split_known: bool,
     pub clock_hz: u32,
     /// Whether the adapter cannot send frames at the requested interval.
@@ -43,7 +42,6 @@ pub struct FrameRun {
 }
 
 impl FrameRun {
-    /// Creates the run from the frames of a packet, which were requested at the given interval.
     pub(super) fn new(
         portion: &Portion,
         frames: Vec<Frame>,
@@ -53,7 +51,7 @@ impl FrameRun {
     ) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         let is_limited = period_ns > i64::from(wished_us) * 1000;
-        // Not before the start of the stream.
+        // A time before the start of the stream is replaced by the start.
         let at = Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
         FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }

@@ -1,5 +1,5 @@
-//! Identification: the direct registers common to all BiSS C encoders, the matching description, and the data sheet,
-//! which defines the frame.
+//! Identification of an encoder. It is based on the direct registers common to all BiSS C encoders, the matching
+//! description, and the data sheet, which defines the frame.
 
 use std::sync::Arc;
 
@@ -19,16 +19,17 @@ use crate::profile::Unknown;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub kind: Kind,
-    /// Serial number in decimal, assuming big-endian bytes (`U`), or empty if the encoder has no register for it.
+    /// Serial number in decimal, with the bytes taken as big-endian (`U`). Empty if the encoder has no register for it.
     pub serial_number: String,
     /// Bytes of the serial number as received.
     pub serial_bytes: Vec<u8>,
     /// Firmware version, or `None` if the encoder has no registers for it.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// Difference from a description of the same manufacturer for another device ID, if there is such a description.
+    /// Difference from a description of the same manufacturer for another device ID. `None` if there is no such
+    /// description.
     pub mismatch: Option<Mismatch>,
-    /// Data sheet, or `None` if the encoder has none that this program knows.
+    /// Data sheet, or `None` if the encoder has none or its profile is not supported.
     pub data_sheet: Option<DataSheet>,
     pub layout: Layout,
     pub source: FrameSource,
@@ -63,14 +64,14 @@ impl FrameSource {
 pub struct DataSheet {
     pub common: DataSheetBank,
     pub encoder: DataSheetBank,
-    /// Frame according to both banks, or the reason why there is none.
+    /// Frame layout according to both banks, or the reason why it is invalid.
     pub layout: Result<Layout, EdsError>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheetBank {
     pub bank: u8,
-    /// Registers as received.
+    /// Register values as received.
     pub bytes: [u8; 64],
     /// Parsed content, if the checksum is correct.
     pub eds: Result<Eds, EdsError>,
@@ -106,13 +107,13 @@ impl Identity {
     }
 }
 
-/// Offset, in the common bank, of the number of the encoder bank.
+/// Offset of the encoder bank's number within the common bank.
 const ENCODER_BANK: usize = 0x14;
 
-/// Identifies the encoder and its frame, both of which are known to the session from then on.
+/// Identifies the encoder and its frame layout, and stores the result in the session's [`Station`].
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identity, Error> {
     identify_with(master, types, &mut Registers::default())
 }
@@ -164,8 +165,8 @@ pub(super) fn identify_with(
     })
 }
 
-/// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches, otherwise the
-/// result of a search. Frames cannot be observed over the configuration pin.
+/// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches. Otherwise, the
+/// layout is searched for. Frames cannot be observed over the configuration pin.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
@@ -215,7 +216,7 @@ fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmw
     }
 }
 
-/// Reads both banks of the data sheet, provided that the program supports the data sheet of this profile.
+/// Reads both banks of the data sheet. Returns `None` if the profile has no supported data sheet.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,

@@ -1,7 +1,7 @@
-//! Host side of the line: repeated requests, reading back and reading twice. Single exchanges are implemented in
-//! [`ubicom`] and [`bus`].
+//! Host side of the line. Requests are repeated, written values are read back, and values are read twice if necessary.
+//! Single exchanges are implemented in [`ubicom`] and [`bus`].
 //!
-//! A read is repeated at most five times within at most eight seconds; a write is never repeated without checking its
+//! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
 
 mod bus;
@@ -23,8 +23,8 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// Number of missing replies after which a register is considered missing, provided that another register replies. A
-/// bad line may lose single replies.
+/// Number of missing replies after which a register is considered missing, if another register replies. A single reply
+/// may be lost on a bad line.
 const SILENCES: u32 = 3;
 
 /// Host side of the line to a BiSS encoder, over either transport.
@@ -33,18 +33,17 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-/// The reason why an exchange yielded no answer.
+/// The reason why an exchange yielded no reply.
 enum ExchangeError {
     /// No reply arrived, except possibly the echo.
     Silence {
         echo_heard: bool,
     },
     Damage(Damage),
-    /// The bus delivered no frame.
     NoFrame(NoFrame),
 }
 
-/// Result of an exchange. The outer error is final; the inner one may be retried.
+/// Result of an exchange. The outer error is final, and the inner one may be retried.
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
@@ -54,7 +53,7 @@ enum WriteReaction {
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job with the full time limit.
+    /// Creates the host side of the line for one job, with the full time limit.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         // The encoder may have restarted since the last job.
@@ -69,7 +68,7 @@ impl<'a> Master<'a> {
     /// Returns the description of the encoder's registers.
     ///
     /// # Errors
-    /// [`Error::NotIdentified`] before the encoder is identified.
+    /// Returns [`Error::NotIdentified`] before the encoder is identified.
     pub fn description(&self) -> Result<Arc<Description>, Error> {
         self.station.description.clone().ok_or(Error::NotIdentified)
     }
@@ -81,12 +80,12 @@ impl<'a> Master<'a> {
     /// Waits for the given duration, or until the job is cancelled.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// Returns [`Error::Cancelled`] if the job is cancelled.
     pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Runs `work`, which returns the device to a safe state, and ignores cancellation until it is done.
+    /// Runs `work` and ignores cancellation meanwhile, so that the device is returned to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.ignore_cancellation(true);
         let result = work(self);
@@ -94,12 +93,13 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sets whether cancellation is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored, and returns the previous setting.
     pub(super) fn ignore_cancellation(&mut self, shielded: bool) -> bool {
         self.line.ignore_cancellation(shielded)
     }
 
-    /// Runs `work`, during which the encoder may not reply for up to `patience`. Reads are repeated for this time.
+    /// Runs `work` with a reply time limit of `patience`. Reads are repeated for this time, because the encoder may be
+    /// silent.
     pub fn with_reply_timeout<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -107,7 +107,8 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, which reads values to be stored. Every register must yield the same value twice.
+    /// Runs `work`, in which every register must yield the same value twice. This is required for values that will be
+    /// stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -115,11 +116,11 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a register. If the line has damaged anything in this session, the register must yield the same value
+    /// Reads a register. If the line has damaged any data in this session, the register must yield the same value
     /// twice.
     ///
     /// # Errors
-    /// Every attempt failed, the register does not exist, or the user cancelled.
+    /// Returns an error if every attempt fails, the register does not exist, or the user cancels.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.ensure_ready()?;
         let requested = RequestedItem::Read(address);
@@ -133,7 +134,8 @@ impl<'a> Master<'a> {
     /// Reads consecutive registers by their global addresses, across bank boundaries.
     ///
     /// # Errors
-    /// As for [`read`](Self::read); [`Error::OutOfRange`] after the last address.
+    /// Returns [`Error::OutOfRange`] if the range extends beyond the last address, and the errors of
+    /// [`read`](Self::read).
     pub fn read_consecutive(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
@@ -143,12 +145,13 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply confirms the value, the register is read back where that shows the value, and is
-    /// written again only if the value was not accepted.
+    /// Writes a register. If no reply confirms the value, the register is read back, provided that this shows the
+    /// value. The write is repeated only if the value was not accepted.
     ///
     /// # Errors
-    /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether the value was accepted, as with a command, or it
-    /// was not accepted after five attempts. After [`Error::Cancelled`] nothing was written.
+    /// Returns [`Error::Refused`] if the encoder refuses the value. Returns [`Error::Unclear`] if it remains unknown
+    /// whether the value was accepted, for example in a command register. Returns other errors if the value was not
+    /// accepted after five attempts. After [`Error::Cancelled`], nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.ensure_ready()?;
         let requested = RequestedItem::Write(address, value);
@@ -181,7 +184,7 @@ impl<'a> Master<'a> {
             if !self.station.is_readback_conclusive(address) {
                 return Err(unclear(failed));
             }
-            // From here on the result must be determined, even after cancellation.
+            // After this point, the result must be determined even after a cancellation.
             match self.run_uncancellable(|master| master.read(address)) {
                 Ok(reads) if reads == value => return Ok(()),
                 Ok(_) => failure?,
@@ -193,7 +196,8 @@ impl<'a> Master<'a> {
     /// Reads the position.
     ///
     /// # Errors
-    /// Every attempt failed, or the user cancelled; [`Error::TooWide`] if the position does not fit the widths.
+    /// Returns [`Error::TooWide`] if the position does not fit the widths. Returns other errors if every attempt fails
+    /// or the user cancels.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
             return self.ask(RequestedItem::Position, |master| master.read_pin_position_once());
@@ -226,7 +230,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the first access, by determining the byte order of register numbers or configuring the bus.
+    /// Prepares the first access. This determines the byte order of register numbers, or configures the bus.
     fn ensure_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
             Transport::Adapter => self.ensure_bus_ready(),
@@ -282,7 +286,6 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { requested, tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    /// Returns the error of the last failed attempt.
     fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
@@ -307,7 +310,7 @@ impl<'a> Master<'a> {
             return Err(failed);
         }
         match trouble {
-            // Frames follow in sequence, good or bad, and late packets are recognised by their number.
+            // No pause is needed, because late packets are recognised by their number.
             ExchangeError::Damage(Damage::Frame(_)) => {}
             _ if self.station.transport == Transport::Adapter => self.pause()?,
             ExchangeError::Silence { .. } => {
@@ -319,7 +322,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether a register that gave no reply is the only one, because another register replies repeatedly. The
+    /// Returns whether only the given register does not reply. Another register is read repeatedly for comparison. The
     /// check is skipped if the encoder may be silent for long.
     fn is_silent_only_at(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {

@@ -1,5 +1,5 @@
 //! Memory of the encoder: banks, data areas, and everything that can be restored. Data areas are not accessed while the
-//! shaft turns (manual 6.5).
+//! shaft turns. See manual 6.5.
 
 use std::time::Duration;
 
@@ -16,11 +16,10 @@ use crate::profile::Unknown;
 /// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(100);
-/// Minimum multiturn width in bits for measuring a speed. A motor cannot complete this range unnoticed between
-/// readings, since at 12,000 rpm it turns forty times.
+/// Minimum multiturn width in bits for measuring a speed. During the readings, a motor at 12,000 rpm turns forty times,
+/// which is less than this range.
 const COUNTED: u8 = 7;
-/// Reciprocal of the largest movement, in revolutions, of a shaft that is still considered at rest despite jitter
-/// (`U`).
+/// Reciprocal of the maximum jitter of a shaft at rest, in revolutions (`U`).
 const TREMBLE: u64 = 8192;
 
 /// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
@@ -28,7 +27,7 @@ const TREMBLE: u64 = 8192;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
     Marked,
-    /// Values are refused, because a comparison would treat them as the contents of the encoder.
+    /// Refuses the values, because a comparison would treat them as stored.
     Refused,
 }
 
@@ -41,7 +40,7 @@ pub enum ReadStep {
 /// Reads the position three times, a tenth of a second apart, and returns the last one if the shaft is at rest.
 ///
 /// # Errors
-/// [`Error::Moving`], or errors of reading.
+/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
 pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Error> {
     let first = master.position()?;
     let mut readings = vec![first];
@@ -60,8 +59,8 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
     }
 }
 
-/// Returns the speed in revolutions per minute between the first and the last reading, positive clockwise, or `None` if
-/// the shaft could have completed the range unnoticed between two of them.
+/// Returns the mean speed of the readings in revolutions per minute, positive clockwise. Returns `None` if the
+/// multiturn is too narrow to count the turns, or its width is unknown.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
     if first.multiturn_bits < COUNTED || !first.is_split_known {
@@ -69,24 +68,23 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
     let steps = last.position() as i64 - first.position() as i64;
-    // The shorter way round.
+    // The shorter way is used.
     let steps = (steps + range / 2).rem_euclid(range) - range / 2;
     let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
     let minutes = last.at.since(first.at).as_secs_f64() / 60.0;
     (minutes > 0.0).then(|| turns / minutes)
 }
 
-/// Returns the number of steps between two positions along the shorter way, since a shaft at rest may jitter across
-/// zero.
+/// Returns the number of steps between two positions along the shorter way. A shaft at rest may jitter across zero.
 fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
 }
 
-/// Reads consecutive registers; those of a data area only at standstill.
+/// Reads consecutive registers. Registers of a data area are read only at standstill.
 ///
 /// # Errors
-/// [`Error::Moving`], or errors of reading.
+/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
 pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8) -> Result<Vec<u8>, Error> {
     let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(start).is_some());
     if in_area {
@@ -95,10 +93,10 @@ pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8
     read_reliably(master, |master| master.read_consecutive(start, count.into()))
 }
 
-/// Reads a data area; the shaft must be at rest.
+/// Reads a data area. The shaft must be at rest.
 ///
 /// # Errors
-/// Errors of reading.
+/// Returns an error if a reading fails.
 pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
     let mut banks = Vec::new();
     for number in area.banks() {
@@ -112,7 +110,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
 /// Reads a data area after checking that the shaft is at rest.
 ///
 /// # Errors
-/// [`Error::Moving`], or errors of reading.
+/// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
 pub fn read_area_verified(
     master: &mut Master<'_>,
     area: &Area,
@@ -122,11 +120,12 @@ pub fn read_area_verified(
     read_reliably(master, |master| read_area(master, area, progress))
 }
 
-/// Reads the identity and everything that can be restored. The device mode is left unchanged, since returning to
+/// Reads the identity and everything that can be restored. The device mode is left unchanged, because returning to
 /// operation would discard entered values.
 ///
 /// # Errors
-/// Errors of the exchange, [`Error::Moving`], or [`Error::NotInOperation`] if unsaved values are refused.
+/// Returns [`Error::NotInOperation`] if unsaved values are refused, and [`Error::Moving`] if the shaft moves. Returns
+/// other errors if the exchange fails.
 pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -167,8 +166,8 @@ pub fn save(
     })
 }
 
-/// Repeats the reading if the line has damaged any data in the meantime, because more damage may have gone unnoticed.
-/// In that case, everything must be read twice with the same result.
+/// Runs `read`. If the line has damaged any data meanwhile, more damage may have gone unnoticed. In that case,
+/// everything is read again, twice with the same result.
 fn read_reliably<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
@@ -178,7 +177,7 @@ fn read_reliably<T>(
     if was_sure || !master.station().needs_double_read() { Ok(value) } else { master.run_double_checked(read) }
 }
 
-/// Creates the profile of an encoder from a reading, with the device mode of the reading if it was not operation.
+/// Creates the profile of an encoder. `unsaved` is the device mode during the reading, or `None` in operation.
 pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);

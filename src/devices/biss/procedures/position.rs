@@ -1,4 +1,4 @@
-//! Positions for display and plotting, and registers watched at the same time.
+//! Positions for display and plotting, and watched registers.
 
 use super::flags::with_flags;
 use super::{Damage, Error, FrameRun, Master};
@@ -13,10 +13,11 @@ pub struct PositionReading {
     pub at: Moment,
     /// Number of revolutions, limited by the multiturn width.
     pub turns: u32,
-    /// Position within the revolution, in fractions of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
+    /// Position within the revolution in steps. A revolution has 2 to the power of
+    /// [`singleturn_bits`](Self::singleturn_bits) steps.
     pub steps: u32,
-    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, the bit
-    /// is read from a register in addition to the position.
+    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, a
+    /// separate register provides the bit.
     pub error: Option<bool>,
     /// Whether the warning bit is set, or `None` if unknown.
     pub warning: Option<bool>,
@@ -26,15 +27,15 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Width of the position within a revolution in bits, 0…32.
     pub singleturn_bits: u8,
-    /// Whether the width of the multiturn is known; otherwise turns and steps are merely the upper and lower part of
-    /// the position.
+    /// Whether the multiturn width is known. If it is not, turns and steps are only the upper and lower part of the
+    /// position.
     pub is_split_known: bool,
     /// Complete frame with flags and CRC, or `None` over the configuration pin.
     pub frame: Option<Word>,
 }
 
 impl PositionReading {
-    /// Creates a reading without the data that is available over one transport only.
+    /// Creates a reading without error and warning bits, CRC errors and frame, which not every transport provides.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -50,7 +51,7 @@ impl PositionReading {
         }
     }
 
-    /// Creates a reading from a frame with a right checksum.
+    /// Creates a reading from a frame with a correct checksum.
     pub fn from_frame(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             error: layout.has_error_bit().then_some(reading.error),
@@ -60,7 +61,7 @@ impl PositionReading {
         }
     }
 
-    /// Returns the position word as received: the multiturn bits above the singleturn bits, without flags and CRC.
+    /// Returns the position word, which has the multiturn bits above the singleturn bits. It has no flags and no CRC.
     pub const fn raw(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
@@ -70,18 +71,18 @@ impl PositionReading {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
     }
 
-    /// Returns the angle within the revolution in degrees, from 0 up to 360, or `None` if the steps per revolution are
-    /// unknown.
+    /// Returns the angle within the revolution in degrees, at least 0 and less than 360. Returns `None` if the number
+    /// of steps per revolution is unknown.
     pub fn angle(&self) -> Option<f64> {
         self.is_split_known.then(|| self.degrees())
     }
 
-    /// Returns the angle within the revolution in degrees, from 0 up to 360.
+    /// Returns the angle within the revolution in degrees, at least 0 and less than 360.
     pub fn degrees(&self) -> f64 {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns whether there is no indication that the position is wrong.
+    /// Returns `false` if the error bit marks the position as invalid.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
@@ -90,7 +91,7 @@ impl PositionReading {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
-    /// Frames have arrived, none with a correct checksum.
+    /// Frames have arrived, but none with a correct checksum.
     Missed {
         /// Time of the last frame.
         at: Moment,
@@ -98,7 +99,6 @@ pub enum Sample {
         crc_errors: u32,
     },
     Frames(FrameRun),
-    /// Values of watched registers.
     Watched(WatchedReading),
 }
 
@@ -106,15 +106,15 @@ pub enum Sample {
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Values in address order, or the reason for their absence. The register may not exist or may belong to a data
-    /// area.
+    /// Values in ascending order of address, or the reason why they were not read. The register may not exist or may
+    /// belong to a data area.
     pub value: Result<Vec<u8>, Error>,
 }
 
 /// Reads the position once. Damaged frames are a valid result if good ones have been received before.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     match master.position() {
         Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
@@ -126,15 +126,15 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     }
 }
 
-/// Reads watched registers once. If registers are missing or belong to a data area, this is a valid result.
+/// Reads watched registers once. It is not an error if registers are missing or belong to a data area.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_watched_value(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
     let value = match what.addresses().find(|address| of_area(*address)) {
-        // Manual 6.5: not while the shaft turns, and the user does not stop it for this.
+        // Data is not read while the shaft turns (manual 6.5), and the user does not stop the shaft for this.
         Some(address) => Err(Error::NotWatched { address }),
         None => match master.read_consecutive(what.start(), what.count().into()) {
             Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),

@@ -1,4 +1,4 @@
-//! Register values as read, byte by byte, and reading the registers of a description.
+//! The register values read from an encoder, byte by byte, and functions that read described registers.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ impl Registers {
         self.0.get(&address).copied()
     }
 
-    /// Returns consecutive registers by global address, or `None` unless all of them have been read.
+    /// Returns the bytes of consecutive registers by global address. Returns `None` if some of them have not been read.
     pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
         let first = start.global();
         (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
     }
 
-    /// Returns the bytes of a described register, or `None` unless all of them have been read.
+    /// Returns the bytes of a described register. Returns `None` if some of them have not been read.
     pub fn bytes(&self, register: &Register) -> Option<Vec<u8>> {
         self.run(register.address, register.width)
     }
@@ -38,21 +38,21 @@ impl Registers {
         }
     }
 
-    /// Returns all registers by ascending address.
+    /// Returns all registers in ascending order of address.
     pub fn iter(&self) -> impl Iterator<Item = (RegisterAddress, u8)> {
         self.0.iter().map(|(address, value)| (*address, *value))
     }
 
-    /// Stores a run of bytes that was read.
+    /// Stores consecutive bytes that were read.
     pub(super) fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
         let places = (start.global()..).map_while(RegisterAddress::from_global);
         self.0.extend(places.zip(bytes.iter().copied()));
     }
 
-    /// Reads a run of registers and stores it.
+    /// Reads consecutive registers and stores their values.
     ///
     /// # Errors
-    /// As for [`Master::read_consecutive`].
+    /// Returns the errors of [`Master::read_consecutive`].
     pub(super) fn read(
         &mut self,
         master: &mut Master<'_>,
@@ -68,11 +68,11 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all registers of a description that this firmware has and that have not been read yet. Returns the
-    /// addresses that the encoder nevertheless lacks.
+    /// Reads all described registers that exist in this firmware and have not been read yet. Returns the addresses of
+    /// registers that the encoder does not have.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub(super) fn read_described(
         &mut self,
         master: &mut Master<'_>,
@@ -97,10 +97,10 @@ impl Registers {
         Ok(missing)
     }
 
-    /// Reads the registers with the given roles, skipping those that the encoder lacks.
+    /// Reads the registers with the given roles. Registers that the encoder does not have are skipped.
     ///
     /// # Errors
-    /// If the exchange fails.
+    /// Returns an error if the exchange fails.
     pub(super) fn read_roles(
         &mut self,
         master: &mut Master<'_>,

@@ -19,14 +19,14 @@ use crate::parameter::{Checked, Milliseconds, Millivolts, OptionalValue, Paramet
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Words for the byte order of a register number, where `None` means detection.
+/// Words for the byte order of register numbers. `None` means that the order is detected.
 pub const ORDERS: Words<Option<ByteOrder>> =
     Words(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
 parameters! {
     /// Link parameters of the configuration pin.
     pub struct PinParameters: UrlError {
-        /// Baud rate of the serial port; the port itself may support fewer rates.
+        /// Baud rate of the serial port. The port may support fewer rates.
         pub baud: Baud = FORMAT.baud, "baud" => Checked(AllowedValues::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
@@ -41,7 +41,7 @@ parameters! {
 parameters! {
     /// Link parameters that set limits for late replies.
     pub struct LineParameters: UrlError {
-        /// Additional delay allowed for a reply; `None` for the link's default.
+        /// Additional delay allowed for a reply, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
     }
 }
@@ -49,20 +49,20 @@ parameters! {
 parameters! {
     /// Link parameters of the bus behind an adapter.
     pub struct BusParameters: UrlError {
-        /// BiSS clock frequency in hertz; the default is slow enough for long cables.
+        /// BiSS clock frequency in hertz. The default is slow enough for long cables.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
-        /// Supply voltage that the adapter provides to the encoder, in millivolts; `None` for no supply.
+        /// Supply voltage that the adapter provides to the encoder, in millivolts, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE));
         pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
     }
 }
 
 parameters! {
-    /// Link parameters describing the frame of an encoder that does not report it.
+    /// Link parameters for the frame of an encoder that does not report its layout.
     pub struct FrameParameters: UrlError {
         pub multiturn: Option<u8> = None, "mt" => OptionalValue(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
         pub singleturn: Option<u8> = None, "st" => OptionalValue(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
-        /// Checksum of the frames, if given; `Some(None)` means that frames carry no checksum.
+        /// Checksum of the frames, if given. `Some(None)` means that frames have no checksum.
         pub crc: Option<Option<Crc>> = None,
             "crc" => OptionalValue(Checked(AllowedValues::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
     }
@@ -89,36 +89,37 @@ impl Transport {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub transport: Transport,
-    /// Baud rate and parity on the configuration pin. The encoder uses 115200 8N1 only; a converter or a radio link in
+    /// Baud rate and parity on the configuration pin. The encoder uses 115200 8N1 only. A converter or a radio link in
     /// between may use another format.
     pub format: CharacterFormat,
     pub line: LineState,
-    /// Byte order of register numbers over the configuration pin; `None` until detected.
+    /// Byte order of register numbers over the configuration pin, or `None` until it is detected.
     pub order: Option<ByteOrder>,
     /// Reply time-out, not counting transmission time and the margin.
     pub timeout: Duration,
-    /// Requested BiSS clock frequency in hertz; the adapter uses the nearest supported one.
+    /// Requested BiSS clock frequency in hertz. The adapter uses the nearest supported one.
     pub clock_hz: u32,
     /// BiSS clock frequency set by the adapter in hertz, or `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
-    /// Encoder supply, if the adapter is to switch it.
+    /// Supply of the encoder, if the adapter is to switch it.
     pub supply: Option<Supply>,
     pub adapter: AdapterState,
     /// Register description of the encoder, or `None` before identification.
     pub description: Option<Arc<Description>>,
     /// Firmware version found during identification.
     pub firmware: Option<Firmware>,
-    /// Frame layout from the encoder's data sheet, or its substitute.
+    /// Frame layout from the encoder's data sheet or from the link, if either provides one.
     pub layout: Option<Layout>,
     /// Frame layout given by the user, for an encoder that does not report it.
     pub given: Option<Layout>,
     /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Whether values to be stored are being read. If so, each must be read twice, even on a line without errors.
+    /// Whether each value must be read twice, even on a line without errors. This is the case for values that will be
+    /// stored.
     pub(super) thorough: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
-    /// The bank selected over BiSS, and when the selection was last certain.
+    /// The bank selected over BiSS, and the time at which the selection was last certain.
     pub(super) bank: Option<(u8, Moment)>,
     /// Number of frames with a wrong checksum since the last reading.
     pub(super) crc_errors: u32,
@@ -130,8 +131,8 @@ pub struct Station {
     /// Time of the last frame of any earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
     pub(super) written_at: Option<Moment>,
-    /// Whether a write ended early and the encoder could not be returned to operation: a store, a calibration or a
-    /// restart may still be running.
+    /// Whether a store, a calibration or a restart may still be running. The reason is a write that ended early without
+    /// returning the encoder to operation.
     pub unfinished: bool,
 }
 
@@ -139,17 +140,18 @@ pub struct Station {
 pub struct Supply {
     /// Requested voltage in millivolts.
     pub millivolt: u16,
-    /// Supply voltage in millivolts and current in milliamperes, measured at switch-on; `None` before that.
+    /// Supply voltage in millivolts and current in milliamperes at switch-on. `None` until they are measured.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
     /// Time from power-up until registers can be read (data sheet, 02:0Eh).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Supply voltage in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
+    /// Range of supply voltages in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to
+    /// 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
-    /// Returns the supply voltage, limited to the range of the kit encoder.
+    /// Returns the requested supply voltage together with the range of the kit encoder.
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
@@ -193,10 +195,10 @@ impl Station {
         }
     }
 
-    /// Creates the station from its link parameters. Parameters that do not concern the line are ignored.
+    /// Creates the station from link parameters. Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// If a value cannot be used; the error lists the allowed ones.
+    /// Returns an error with the allowed values if a value is invalid.
     pub fn from_query(query: &UrlQuery, way: Transport, margin: Duration) -> Result<Self, UrlError> {
         let pairs = query.pairs();
         let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
@@ -210,8 +212,8 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the position frame layout from the encoder's data sheet, falling back to its description and then to the
-    /// layout of the kit encoder.
+    /// Returns the position frame layout. A layout from the data sheet or the link has priority over the one in the
+    /// description. The default is the layout of the kit encoder.
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
@@ -241,13 +243,13 @@ impl Station {
         self.source.is_none_or(FrameSource::is_known)
     }
 
-    /// Returns whether values must be read twice, because a checksum misses some pairs of flipped bits.
+    /// Returns whether values must be read twice. A checksum misses some pairs of flipped bits.
     pub(super) fn needs_double_read(&self) -> bool {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that the write succeeded. This is not the case for command
-    /// registers, which may still hold the same value from an earlier command.
+    /// Returns whether reading a register back proves that a write succeeded. It proves nothing for a command register,
+    /// which may still hold the same value from an earlier command.
     pub(super) fn is_readback_conclusive(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -275,7 +277,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame layout given in the link, with the usual checksum unless another is given.
+    /// Returns the frame layout given in the link. The usual checksum is used unless another is given.
     fn layout(self, query: &UrlQuery) -> Result<Option<Layout>, Refused> {
         let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
@@ -289,7 +291,7 @@ impl FrameParameters {
     }
 }
 
-/// Parses a checksum; `Some(None)` means that frames carry no checksum.
+/// Parses a checksum. Returns `Some(None)` if frames have no checksum.
 fn read_crc(text: &str) -> Option<Option<Crc>> {
     if text == "none" {
         return Some(None);

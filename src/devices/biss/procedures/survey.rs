@@ -1,4 +1,4 @@
-//! Reads an encoder's status, and everything else that can be displayed.
+//! The status of an encoder, and a survey of everything else that can be displayed.
 
 use super::identify::identify_with;
 use super::registers::Registers;
@@ -15,10 +15,9 @@ pub struct Status {
     pub protection: Option<u8>,
     pub errors: Option<FlagRegister>,
     pub warnings: Option<FlagRegister>,
-    /// Temperature in degrees Celsius.
     pub celsius: Option<f64>,
     pub filter: Option<PositionFilter>,
-    /// Position with its error and warning bits, if available; `None` if no position could be read.
+    /// Position, or `None` if it could not be read. It includes the error and warning bits if available.
     pub position: Option<PositionReading>,
 }
 
@@ -46,23 +45,23 @@ pub struct Survey {
     /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
     pub wiegand_production: Option<WiegandResult>,
-    /// Result of the Wiegand test saved in the encoder, as of power-up.
+    /// Result of the Wiegand test that was saved in the encoder at power-up.
     pub wiegand_saved: Option<WiegandResult>,
     pub preset: Option<PresetValue>,
-    /// Values of all registers that were read, byte by byte.
     pub registers: Registers,
-    /// Registers in the description that the encoder does not have.
+    /// Described registers that the encoder does not have.
     pub missing: Vec<RegisterAddress>,
 }
 
 const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
-/// Offset from the error code of a Wiegand test to its results, in the order last, factory, saved.
+/// Offset of the Wiegand test results from the error code. The last result is followed by the factory result and the
+/// saved one.
 const WIEGAND_RESULTS: u8 = 1;
 
 /// Reads the status of an identified encoder.
 ///
 /// # Errors
-/// If the exchange fails, or if the encoder has not been identified.
+/// Returns an error if the exchange fails or the encoder has not been identified.
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     let description = master.description()?;
     let firmware = master.station().firmware;
@@ -75,7 +74,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
 /// Reads every register in the encoder's description, and the position.
 ///
 /// # Errors
-/// If the exchange fails.
+/// Returns an error if the exchange fails.
 pub fn survey(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -86,7 +85,7 @@ pub fn survey(
     read_survey(master, identity, registers, progress)
 }
 
-/// Reads everything except the identity; `registers` contains the values already read for the identity.
+/// Reads everything except the identity. `registers` contains the values that were already read for the identity.
 pub(super) fn read_survey(
     master: &mut Master<'_>,
     identity: Identity,
@@ -110,7 +109,7 @@ pub(super) fn read_survey(
     })
 }
 
-/// Reads the position, or returns `None` if the encoder has no readable frame, so that the survey can continue.
+/// Reads the position. Returns `None` if the encoder has no readable frame, so that the survey can continue.
 fn position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),

@@ -13,12 +13,13 @@ const BETWEEN: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.
 const MOST: u8 = 32;
 
-/// Finds the frame layout by its checksum while the shaft turns. The checksum is assumed to be CRC6 43h inverted, with
-/// an error and a warning bit after the position, as usual for BiSS encoders (`U`). The multiturn width cannot be
-/// observed: as many bits as fit into 32 are taken as one turn.
+/// Finds the frame layout by its checksum while the shaft turns. It is assumed that an error and a warning bit follow
+/// the position, and that the checksum is CRC6 43h inverted, as usual for BiSS encoders (`U`). The multiturn width
+/// cannot be observed. Therefore, up to 32 bits of the position are taken as the singleturn.
 ///
 /// # Errors
-/// [`Error::WidthsUnknown`] if no length fits or the shaft stands still; otherwise if the exchange fails.
+/// Returns [`Error::WidthsUnknown`] if no length fits or the shaft stands still. Returns other errors if the exchange
+/// fails.
 pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);

@@ -1,5 +1,6 @@
-//! Writes a plan to an encoder: reads its base again, performs each operation and reads the result back, with an
-//! operator at the motor if required, and returns the encoder to operation after each.
+//! Writing of a plan to an encoder. The values on which the plan is based are read again first. Each operation is then
+//! performed, if required with an operator at the motor, and its result is read back. The encoder is returned to
+//! operation after each operation.
 
 use super::error::to_register_array;
 use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
@@ -37,14 +38,14 @@ pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndStat
 pub struct EndState {
     /// The step reached in the running operation.
     pub at: ProcedureStep,
-    /// Known state of an encoder that could not be returned to operation; `None` if it is in operation with the
-    /// password cleared. Losing power also returns the encoder to operation.
+    /// State of an encoder that could not be returned to operation, as far as it is known. `None` if the encoder is in
+    /// operation with the password cleared. A loss of power also returns the encoder to operation.
     pub standing: Option<LeftState>,
 }
 
 impl Interrupted {
-    /// Returns the individually written register whose write has an unknown result, if any. A value that was refused or
-    /// not sent was not accepted.
+    /// Returns the register whose individual write has an unknown result, if any. The result is known if the value was
+    /// refused or not sent.
     pub fn uncertain_write(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -62,10 +63,10 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// Creates the writer for the encoder with the given identity; `tell` is called at every step.
+    /// Creates the writer for the encoder with the given identity. Every step is reported to `tell`.
     ///
     /// # Errors
-    /// If the encoder has not been identified.
+    /// Returns an error if the encoder has not been identified.
     pub fn new(
         master: &'w mut Master<'m>,
         identity: &'w Identity,
@@ -88,8 +89,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that the connected encoder is the one that the plan was made for. The memory is compared as well, because
-    /// two new encoders have the same identity.
+    /// Checks that the plan was made for the connected encoder. The memory is compared as well, because two new
+    /// encoders have the same identity.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -126,8 +127,8 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Applies an operation, and then returns the encoder to operation regardless of the result. Cancellation is
-    /// checked between exchanges, unless stopping would leave something incomplete.
+    /// Performs an operation and then returns the encoder to operation, even after a failure. Cancellation is checked
+    /// between exchanges, unless stopping would leave something incomplete.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin(done.outcomes.len());
@@ -150,7 +151,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 }
 
-/// Returns the encoder to operation, provided that the line still works.
+/// Returns the encoder to operation if the line still works.
 fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
@@ -158,7 +159,7 @@ fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), E
     }
 }
 
-/// Returns whether the connection itself is lost, so that nothing more can be sent.
+/// Returns whether the connection is lost and nothing more can be sent.
 fn is_gone(error: &Error) -> bool {
     match error {
         Error::Link(_) => true,
@@ -171,7 +172,8 @@ fn count(done: &mut Written, op: &Op, outcome: Outcome) {
     if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
         done.written += op.weight();
-        // The result of a calibration, or one that only shows after a restart, is known only from the encoder's status.
+        // The result of a calibration is known only from the encoder's status. The same applies to a result that shows
+        // only after a restart.
         let is_unverifiable =
             matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
         done.verified += if is_unverifiable { 0 } else { op.weight() };
@@ -197,10 +199,10 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Refuses an encoder in a device mode, where values entered but not saved would be mistaken for its content.
+/// Refuses an encoder in a device mode. Its registers could show values that were entered but not saved.
 ///
 /// # Errors
-/// [`Error::NotInOperation`]; otherwise if the exchange fails.
+/// Returns [`Error::NotInOperation`] in a device mode. Returns other errors if the exchange fails.
 pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
     match unsaved_mode(master, description)? {
         None => Ok(()),
@@ -208,22 +210,23 @@ pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description)
     }
 }
 
-/// Returns the device mode in which registers may show values that were never saved; `None` in operation, or if the
-/// encoder has no device modes.
+/// Returns the device mode, in which registers may show values that were never saved. Returns `None` in operation, or
+/// if the encoder has no device modes.
 ///
 /// # Errors
-/// If the exchange fails.
+/// Returns an error if the exchange fails.
 pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
     let Some(lock) = description.lock() else { return Ok(None) };
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
-/// Reads the encoder state that a plan needs: identity, settings, and the given banks.
+/// Reads the state of an encoder on which a plan is based. It consists of the identity, the settings and the given
+/// banks.
 ///
 /// # Errors
-/// [`Error::Moving`] if banks are read while the shaft turns; [`Error::NotInOperation`]; otherwise if the exchange
-/// fails.
+/// Returns [`Error::Moving`] if banks are read while the shaft turns, and [`Error::NotInOperation`] in a device mode.
+/// Returns other errors if the exchange fails.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
@@ -246,17 +249,17 @@ pub fn read_state(
     Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
 }
 
-/// Reads a bank while the shaft stands still, twice if the line has damaged any data.
+/// Reads a bank, which requires that the shaft stands still. The bank is read twice if the line has damaged any data.
 ///
 /// # Errors
-/// If the exchange fails.
+/// Returns an error if the exchange fails.
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_consecutive(start, Bank::SIZE)?;
     Ok(Bank { number, bytes: to_register_array(start, bytes)? })
 }
 
-/// Reads the filter in use, or `None` if the firmware offers no choice.
+/// Reads the active filter, or returns `None` if the firmware offers no choice.
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<PositionFilter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
@@ -266,7 +269,7 @@ fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Opt
     Ok(Some(PositionFilter::from_byte(master.read(register.address)?)))
 }
 
-/// Reads the stored preset value, or `None` if the firmware has none.
+/// Reads the stored preset value, or returns `None` if the firmware has none.
 fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Option<PresetValue>, Error> {
     let firmware = master.station().firmware;
     let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);

@@ -1,4 +1,4 @@
-//! Compares two encoders, or an encoder and a profile, with one item for each run of differing registers.
+//! Comparison of two encoders, or of an encoder with a profile. Consecutive registers that differ are one item.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::bits::hex_compact;
@@ -6,7 +6,7 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
-/// Compares filter, preset value and plain data. Recorded values are not compared.
+/// Compares the filter, the preset value and the data areas. Recorded values are not compared.
 pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     let mut comparison = Comparison::default();
     let filter = |profile: &BissProfile| profile.filter.map(|filter| vec![filter.byte()]);
@@ -25,7 +25,7 @@ pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     comparison
 }
 
-/// Compares the registers named by `item`. A side passes `None` if it does not have the registers.
+/// Compares the bytes of the registers `item`. The bytes are `None` for a side that does not have the registers.
 fn compare_bytes(item: &str, left: Option<Vec<u8>>, right: Option<Vec<u8>>, comparison: &mut Comparison) {
     let (left, right) = match (left, right) {
         (Some(left), Some(right)) => (left, right),

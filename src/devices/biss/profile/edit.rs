@@ -1,4 +1,5 @@
-//! Plans single changes and guided procedures, each checked against the encoder's own rules before anything is sent.
+//! Planning of single changes and guided procedures. Each is checked against the rules of the encoder before anything
+//! is sent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,41 +12,42 @@ use crate::devices::biss::protocol::{
     Area, Description, Firmware, PositionFilter, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// First firmware that can preset the singleturn or multiturn part separately (manual 6.7).
+/// Oldest firmware that can preset singleturn and multiturn separately (manual 6.7).
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
 /// The motor that turns the shaft during a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
-    /// A motor that does not depend on this encoder: a separate motor, open-loop control, or another feedback device.
+    /// A motor that does not depend on this encoder, such as a separate motor, open-loop control, or another feedback
+    /// device.
     Other,
-    /// A drive that closes its loop on this encoder, which provides no position during the procedure.
+    /// A drive that closes its loop on this encoder. The encoder provides no position during the procedure.
     ThisEncoder,
 }
 
-/// The steps of mounting an encoder, performed in field order.
+/// The steps for an encoder that was mounted on a motor. They are performed in field order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingSteps {
     /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
-    /// Whether to save the result of the Wiegand test; `None` to skip the test.
+    /// Whether to save the result of the Wiegand test. `None` skips the test.
     pub wiegand: Option<bool>,
     /// Value to set at the current shaft position, and the parts of the position to set.
     pub preset: Option<(PresetValue, PresetParts)>,
-    /// Profile whose plain data is written, if any.
+    /// Profile from which the data areas are written, if any.
     pub data: Option<Box<BissProfile>>,
 }
 
 impl MountingSteps {
-    /// Returns whether any step of the run needs a motor.
+    /// Returns whether any of the steps needs a motor.
     pub fn needs_motor(&self) -> bool {
         self.calibrate || self.wiegand.is_some()
     }
 
-    /// Refuses a motor that depends on this encoder if the run needs a motor.
+    /// Checks that the motor does not depend on this encoder, if a step needs a motor.
     ///
     /// # Errors
-    /// [`PlanError::DrivenByThisEncoder`].
+    /// Returns [`PlanError::DrivenByThisEncoder`] for such a motor.
     pub fn check(&self, motor: MotorSource) -> Result<(), PlanError> {
         if self.needs_motor() && motor == MotorSource::ThisEncoder {
             return Err(PlanError::DrivenByThisEncoder);
@@ -59,14 +61,14 @@ impl MountingSteps {
 pub enum RegisterKind<'d> {
     /// The register is part of a data area, which is opened and saved as a whole.
     Data(&'d Area),
-    /// Written individually.
+    /// The register is written individually.
     Register,
 }
 
 /// Returns the way in which a register has to be written.
 ///
 /// # Errors
-/// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for registers that only the procedures write.
+/// Returns [`PlanError::ReadOnly`], or [`PlanError::Guarded`] for a register that only the procedures write.
 pub fn place(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_protected_register(description, address) {
         return Err(PlanError::Guarded { address });
@@ -78,8 +80,8 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Returns whether a register holds the device mode or the password, or belongs to a procedure. Plain data is never
-/// guarded.
+/// Returns whether a register holds the device mode or the password, or belongs to a procedure. Registers of a data
+/// area are never protected.
 fn is_protected_register(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {
@@ -93,7 +95,7 @@ fn is_protected_register(description: &Description, address: RegisterAddress) ->
 /// Returns the encoder's procedure of the given kind.
 ///
 /// # Errors
-/// [`PlanError::NoProcedure`], [`PlanError::FirmwareTooOld`].
+/// Returns [`PlanError::NoProcedure`] or [`PlanError::FirmwareTooOld`].
 pub fn procedure(
     description: &Description,
     firmware: Option<Firmware>,
@@ -110,8 +112,8 @@ pub fn procedure(
 }
 
 /// Plans to write exactly the given bytes. A later edit of a register replaces an earlier one, and unchanged values are
-/// left out. `banks` and `registers` contain the present values of all edited registers, `None` for a register that
-/// cannot be read.
+/// omitted. `banks` and `registers` contain the current values of all edited registers. A register that cannot be read
+/// has the value `None`.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -163,16 +165,15 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Returns the number of persistent writes needed to store a value, which is at most one if the register is not
-/// described.
+/// Returns the number of persistent writes that a value needs. It is at most one for a register without a description.
 fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
 }
 
-/// Plans to select a filter. The plan is empty if the filter is already in use.
+/// Plans to select a filter. The plan is empty if the filter is already active.
 ///
 /// # Errors
-/// If the filter does not exist, or the encoder offers no choice.
+/// Returns an error if the filter does not exist or the encoder offers no choice.
 pub fn plan_filter(description: &Description, device: &DeviceState, to: PositionFilter) -> Result<BissPlan, PlanError> {
     let from = have(description, device, ProcedureKind::FilterSelection, device.filter)?;
     if let PositionFilter::Unknown(code) = to {
@@ -182,11 +183,12 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Position
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Plans to store the preset value if it is given and not stored yet. With `parts`, also plans to set the current
-/// shaft position to the stored value.
+/// Plans to store a preset value, unless it is already stored. With `parts`, the plan also sets the current shaft
+/// position to the stored value.
 ///
 /// # Errors
-/// If the value is too wide, the encoder has no preset, or the given parts cannot be preset separately.
+/// Returns an error if the value is too wide, the encoder has no preset, or the given parts cannot be preset
+/// separately.
 pub fn plan_preset(
     description: &Description,
     device: &DeviceState,
@@ -210,10 +212,10 @@ pub fn plan_preset(
     Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
 }
 
-/// Plans the guided procedures of a mounting.
+/// Plans the guided procedures after an encoder was mounted.
 ///
 /// # Errors
-/// See [`PlanError`]; a motor that depends on this encoder is refused if the run needs a motor.
+/// See [`PlanError`]. A motor that depends on this encoder is refused if a step needs a motor.
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,

@@ -1,5 +1,5 @@
-//! Item names in an encoder: `0x66` for a direct register, `0x24:0x10` for a register in a bank, `0x24:0x10+3` for
-//! consecutive registers.
+//! Item names in an encoder. Examples are `0x66` for a direct register, `0x24:0x10` for a register in a bank, and
+//! `0x24:0x10+3` for consecutive registers.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,7 +14,7 @@ pub struct RegisterRange {
     count: u8,
 }
 
-/// The string does not name any registers.
+/// The error for a string that does not name any registers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not an item; items are 0x40 to 0x7F, BANK:OFFSET as 0x24:0x10, and either with +COUNT behind it")]
 pub struct ItemError(pub String);
@@ -25,8 +25,8 @@ impl RegisterRange {
         RegisterRange { start, count: 1 }
     }
 
-    /// Creates the range of `count` registers from `start`; `None` if `count` is 0 or the range extends beyond the
-    /// bank.
+    /// Creates the range of `count` registers from `start`. Returns `None` if `count` is 0 or the range extends beyond
+    /// the bank.
     pub fn new(start: RegisterAddress, count: u8) -> Option<Self> {
         start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
     }
@@ -43,7 +43,7 @@ impl RegisterRange {
 
     /// Returns whether the range contains the given register.
     pub fn contains(self, address: RegisterAddress) -> bool {
-        // Global addresses of a bank are consecutive, and a range does not leave its bank.
+        // Global addresses of a bank are consecutive, and a range lies within one bank.
         let first = self.start.global();
         (first..first + u16::from(self.count)).contains(&address.global())
     }
@@ -53,7 +53,7 @@ impl RegisterRange {
         (0..self.count).filter_map(move |at| self.start.plus(at))
     }
 
-    /// Returns the shortest list of ranges covering the given registers, which must be in ascending order.
+    /// Returns the shortest list of ranges that covers the given registers, which must be in ascending order.
     pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
         let mut runs: Vec<RegisterRange> = Vec::new();
         for address in addresses {

@@ -1,5 +1,5 @@
-//! BiSS profiles: the saved content of an encoder, the differences between two encoders, and the effect of a restore or
-//! a guided procedure.
+//! BiSS profiles. They contain the saved content of an encoder. The module also compares two encoders, and plans
+//! restores and guided procedures.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! Summarizes the changes of an operation in one line for the logbook: registers by address and name, with old and new
-//! values. Terms are those of the manual, whatever the language of the window.
+//! One-line summary of an operation for the logbook. It lists registers by address and name, with old and new values.
+//! It uses the terms of the manual in every language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{Description, PositionFilter, PresetValue};
 
 impl Op {
     /// Returns a description of the changes with old and new values. If many registers change, only the first are
-    /// listed; the backup contains all of them.
+    /// listed. The backup contains all of them.
     pub fn note(&self, description: &Description) -> String {
         match self {
             Op::StoreData { area, registers } => {

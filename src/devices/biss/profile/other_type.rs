@@ -1,6 +1,6 @@
-//! Checks whether an encoder is of the type that a profile was read from. A type consists of the reported identity
-//! (profile ID, manufacturer, device ID) and the position widths: a preset is a number of steps, which means a
-//! different angle if the widths differ.
+//! Check whether an encoder is of the same type as the encoder of a profile. The type consists of profile ID,
+//! manufacturer, device ID and the position widths. The widths matter because a preset is a number of steps, which is a
+//! different angle with other widths.
 
 use std::fmt;
 
@@ -57,8 +57,8 @@ impl fmt::Display for Width {
     }
 }
 
-/// Returns how the types of a profile and an encoder differ, or `None` if they match. An unknown width matches any
-/// value.
+/// Returns the difference between the types of a profile and an encoder, or `None` if they match. An unknown width
+/// matches any width.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (of_profile, of_device) = (profile.kind(), device.kind());
     if of_profile != of_device {

@@ -7,12 +7,12 @@ use crate::profile::{Operation, Plan};
 /// A plan of writes to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// The current values on which a plan is based, for everything readable that its operations change.
+/// The current values on which a plan is based. They include everything readable that the operations change.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// Plain data banks that the plan changes.
+    /// Data banks that the plan changes.
     pub banks: Vec<Bank>,
-    /// Filter in use.
+    /// Active filter.
     pub filter: Option<PositionFilter>,
     /// Preset value stored in the encoder.
     pub preset: Option<PresetValue>,
@@ -20,12 +20,12 @@ pub struct Base {
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// An operation of a plan, which enters the required device mode and leaves it again.
+/// An operation of a plan. It enters the required device mode and leaves it again.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// Writes registers of one area and saves them together (manual 6.5).
     StoreData {
-        /// The area, which the command in its `open` field opens.
+        /// Area with the registers. The command in its `open` field opens it.
         area: Area,
         /// Register changes in ascending order of address.
         registers: Vec<RegisterChange>,
@@ -46,7 +46,7 @@ pub enum Op {
     },
     /// Selects the position filter (manual 6.6).
     SelectFilter {
-        /// Filter in use before the operation.
+        /// Filter that is active before the operation.
         from: PositionFilter,
         /// Filter to select.
         to: PositionFilter,
@@ -66,7 +66,7 @@ pub enum Op {
         old: Option<u8>,
         /// Value to write.
         new: u8,
-        /// Number of persistent writes used by the operation.
+        /// Number of persistent writes that the operation needs.
         cycles: u8,
     },
 }
@@ -134,8 +134,8 @@ impl Op {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
-    /// Returns the register ranges that the operation changes, in the form that `read` accepts; empty if no readable
-    /// register changes.
+    /// Returns the register ranges that the operation changes, in the notation of the command `read`. The list is empty
+    /// if no readable register changes.
     pub fn ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
@@ -147,8 +147,8 @@ impl Op {
         }
     }
 
-    /// Returns the name of the item that the operation changes. If the item can be read, `read` accepts this
-    /// name.
+    /// Returns the name of the item that the operation changes. The command `read` accepts this name if the item can be
+    /// read.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -158,7 +158,8 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes that a comparison would count: the changed registers of an area, otherwise one.
+    /// Returns the number of items that a comparison counts for the operation. This is the number of changed registers
+    /// in an area, and otherwise one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

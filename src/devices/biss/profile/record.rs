@@ -1,5 +1,5 @@
-//! The saved content of a BiSS encoder: identity, settings, plain data areas, and recorded values. For the text format,
-//! see [`text`](super::text).
+//! The saved content of a BiSS encoder: identity, settings, data areas and recorded values. For the text format, see
+//! [`text`](super::text).
 
 use std::fmt;
 
@@ -14,15 +14,15 @@ use crate::profile::ron_text::Unknown;
 pub struct BissProfile {
     /// Identity of the encoder that the profile was read from.
     pub identity: ProfileIdentity,
-    /// Position filter; `None` if the encoder offers no choice.
+    /// Position filter, or `None` if the encoder offers no choice.
     pub filter: Option<PositionFilter>,
-    /// Preset value, which belongs to the mounting; `None` if the encoder has none.
+    /// Preset value, or `None` if the encoder has none. It is only valid for the encoder on its motor.
     pub preset: Option<PresetSetting>,
-    /// Values that change on their own or cannot be written; recorded, but neither compared nor restored.
+    /// Values that the encoder changes by itself, or that cannot be written. They are neither compared nor restored.
     pub recorded: Recorded,
-    /// Values that belong to the mounting and are never written to another encoder unless requested.
+    /// Values that are only valid for this encoder on its motor. They are written to another encoder only on request.
     pub mounting: Vec<MountingMark>,
-    /// Plain data areas in ascending order of bank.
+    /// Data areas in ascending order of bank.
     pub data: Vec<DataImage>,
 }
 
@@ -37,11 +37,11 @@ pub struct ProfileIdentity {
     pub device_id: [u8; 6],
     /// Manufacturer ID (registers 7Eh and 7Fh).
     pub manufacturer: [u8; 2],
-    /// Firmware version (registers 74h to 76h); `None` if the encoder has no such registers.
+    /// Firmware version (registers 74h to 76h), or `None` if the encoder has no such registers.
     pub firmware: Option<Firmware>,
     /// Name of the encoder description used for reading.
     pub description: String,
-    /// Multiturn width in bits; `None` if unknown.
+    /// Multiturn width in bits, if known.
     pub multiturn_bits: Option<u8>,
     /// Singleturn width in bits, if known.
     pub singleturn_bits: Option<u8>,
@@ -58,30 +58,30 @@ pub struct PresetSetting {
     pub unknown: Unknown,
 }
 
-/// The values in a profile that change on their own or cannot be written.
+/// The values in a profile that the encoder changes by itself, or that cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// Banks of the electronic data sheet.
     pub eds: Vec<ListedBank>,
     /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
-    /// Result of the factory's Wiegand test.
+    /// Result of the Wiegand test in the factory.
     pub wiegand_production: Option<WiegandResult>,
     /// Result of the Wiegand test saved in the encoder.
     pub wiegand_saved: Option<WiegandResult>,
     /// Value of the calibration status register (bank 0, 01h).
     pub calibration_status: Option<u8>,
-    /// Device mode during the reading, unless the encoder was in operation. In another mode, the profile may contain
-    /// values that were never saved in the encoder.
+    /// Device mode during the reading, or `None` if the encoder was in operation. In a device mode, the profile may
+    /// contain values that were never saved in the encoder.
     pub device_mode: Option<DeviceMode>,
     /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
-/// A mark on an item that is only right for one encoder on one motor.
+/// A mark on an item that is only valid for one encoder on one motor.
 pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
-/// An item that belongs to the mounting.
+/// An item that is only valid for one encoder on one motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MountingItem {
     /// A range of registers.
@@ -91,7 +91,7 @@ pub enum MountingItem {
 }
 
 impl MountingItem {
-    /// Name of the calibration item, which has no readable registers.
+    /// Name of the calibration table, which has no registers that could be read.
     pub(super) const CALIBRATION: &str = "calibration";
 }
 
@@ -122,7 +122,7 @@ pub struct ListedBank {
     pub unknown: Unknown,
 }
 
-/// The contents of a plain data area. Banks with the same byte in every register need not be listed.
+/// The contents of a data area. Banks with the same byte in every register need not be listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataImage {
     /// Name of the area in the encoder's description.
@@ -131,7 +131,7 @@ pub struct DataImage {
     pub first: u8,
     /// Last bank of the area.
     pub last: u8,
-    /// Byte in every register of an unlisted bank; `None` if unlisted banks are not part of the profile.
+    /// Byte in every register of an unlisted bank. If this is `None`, unlisted banks are not part of the profile.
     pub empty: Option<u8>,
     /// Listed banks in ascending order.
     pub listed: Vec<ListedBank>,
@@ -145,10 +145,10 @@ impl BissProfile {
     /// Filter register of a kit encoder.
     pub const FILTER: &'static str = "0x6E";
 
-    /// Marks the preset and the calibration as belonging to the mounting, unless they are already marked.
+    /// Marks the preset value and the calibration as valid only on this motor, unless they are already marked.
     pub fn mark_mounting_values(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
-        // An encoder with a preset also has a calibration: it is a kit encoder.
+        // An encoder with a preset value is a kit encoder, which also has a calibration.
         let calibration = preset.map(|_| MountingItem::Calibration);
         let known = [(preset, "preset value"), (calibration, "singleturn calibration: it stays in the encoder")];
         for (item, meaning) in known {
@@ -157,7 +157,7 @@ impl BissProfile {
         }
     }
 
-    /// Returns whether a register belongs to the mounting.
+    /// Returns whether the value of a register is only valid for one encoder on one motor.
     pub fn is_mounting_value(&self, address: RegisterAddress) -> bool {
         self.mounting.iter().any(|mark| match mark.item {
             MountingItem::Registers(range) => range.contains(address),
@@ -170,7 +170,7 @@ impl BissProfile {
         self.data.iter().find_map(|image| image.bank(number))
     }
 
-    /// Changes a plain data register. Returns `false` if the profile does not contain its bank.
+    /// Changes a register in a data area. Returns `false` if the profile does not contain its bank.
     pub fn put(&mut self, address: RegisterAddress, byte: u8) -> bool {
         let Some(number) = address.bank() else { return false };
         let image = self.data.iter_mut().find_map(|image| Some((image.bank(number)?, image)));
@@ -210,7 +210,7 @@ impl Bank {
         Bank { number, bytes: [byte; Self::SIZE] }
     }
 
-    /// Returns the byte that all registers have in common, or `None` if they differ.
+    /// Returns the byte that is in every register, or `None` if the registers differ.
     fn common_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)
@@ -230,12 +230,12 @@ impl From<Bank> for ListedBank {
 }
 
 impl DataImage {
-    /// Creates the image of an area from the given banks, in ascending order. If the area is complete, empty banks are
-    /// left out.
+    /// Creates the image of an area from the given banks, which must be in ascending order. If the image is complete,
+    /// empty banks are omitted.
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.common_byte() == Some(byte)).count();
-        // Contents of memory that was never written, or has been erased.
+        // These are the contents of memory that was never written or was erased.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
         let holds = |bank: &Bank| empty.is_none() || bank.common_byte() != empty;

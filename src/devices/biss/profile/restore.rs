@@ -1,5 +1,5 @@
-//! Plans a restore: only differences, in the fewest persistent writes, and nothing that belongs to another encoder's
-//! mounting. A preset is stored but never executed.
+//! Planning of a restore. A plan contains only differences and needs as few persistent writes as possible. Values that
+//! are only valid for another encoder on its motor are omitted. A preset value is stored, but the position is not set.
 
 pub use crate::profile::RestoreOptions;
 
@@ -7,18 +7,18 @@ use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
-/// The current state of an encoder, as far as planning requires it.
+/// The current state of an encoder, as far as it is needed for a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Filter in use, or `None` if the encoder offers no choice.
+    /// Active filter, or `None` if the encoder offers no choice.
     pub filter: Option<PositionFilter>,
     /// Stored preset value, or `None` if the encoder has none.
     pub preset: Option<PresetValue>,
-    /// Plain data areas of the encoder.
+    /// Data areas of the encoder.
     pub areas: Vec<Area>,
-    /// Banks that were read, including at least those returned by [`banks_needed`].
+    /// Banks that were read. They include at least those returned by [`banks_needed`].
     pub banks: Vec<Bank>,
 }
 
@@ -39,7 +39,7 @@ pub enum PlanError {
     /// The profile was read from an encoder of another type.
     #[error(transparent)]
     OtherType(#[from] OtherType),
-    /// The encoder has no such plain data bank, or the bank cannot be written.
+    /// The bank does not belong to a data area of the encoder, or cannot be written.
     #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
     NoBank {
         /// Number of the bank.
@@ -48,7 +48,7 @@ pub enum PlanError {
     /// The preset value is wider than the position.
     #[error("the preset value {value} needs more than the {bits} {part} bits that the encoder has")]
     PresetTooWide {
-        /// Part of the position that is too narrow, `singleturn` or `multiturn`.
+        /// Part of the position that is too narrow: `singleturn` or `multiturn`.
         part: &'static str,
         /// Requested preset value.
         value: u32,
@@ -74,7 +74,7 @@ pub enum PlanError {
     FirmwareTooOld {
         /// Requested procedure.
         kind: ProcedureKind,
-        /// First firmware that supports the procedure.
+        /// Oldest firmware that supports the procedure.
         needed: Firmware,
         /// Firmware of the encoder.
         found: Firmware,
@@ -85,7 +85,7 @@ pub enum PlanError {
         /// Address of the register.
         address: RegisterAddress,
     },
-    /// The register may only be written by a procedure.
+    /// Only a procedure may write the register.
     #[error("register {address} is written by the procedures alone")]
     Guarded {
         /// Address of the register.
@@ -99,13 +99,13 @@ pub enum PlanError {
         /// Number of bytes given.
         count: usize,
     },
-    /// The calibration requires the balanced filter, but another filter is in use.
+    /// The calibration requires the balanced filter, but another filter is active.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced {
-        /// Code of the filter in use.
+        /// Code of the active filter.
         code: u8,
     },
-    /// The motor's drive closes its loop on this encoder, which provides no position during the procedure.
+    /// The drive of the motor closes its loop on this encoder, which provides no position during the procedure.
     #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
     DrivenByThisEncoder,
 }
@@ -135,8 +135,8 @@ pub fn plan_restore(
     Ok(planner.finish())
 }
 
-/// Plans to write only the plain data of a profile, including the values of the mounting, to an encoder that is being
-/// mounted. Nothing is written yet.
+/// Plans to write only the data areas of a profile to an encoder that is being mounted. The plan includes the values
+/// that are only valid on this motor. Nothing is written yet.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -146,20 +146,19 @@ pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore,
     Ok(planner.finish())
 }
 
-/// Refuses an encoder other than the one from which the profile was read. An encoder without a serial number is always
-/// refused.
+/// Checks that a profile was read from this encoder. An encoder without a serial number never passes.
 ///
 /// # Errors
-/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`].
 pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Refuses an encoder other than the one from which the profile was read, unless the options allow it. Permission for
-/// another serial number does not include another encoder type, whose registers may have other meanings.
+/// Checks that a profile was read from this encoder or that the options allow another one. Permission for another
+/// serial number does not include another type, whose registers may have other meanings.
 ///
 /// # Errors
-/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`].
 pub fn check_allowed(
     profile: &BissProfile,
     device: &ProfileIdentity,
@@ -185,10 +184,10 @@ fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
     !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 
-/// Refuses a preset value that is too wide for the position.
+/// Checks that a preset value fits the position.
 ///
 /// # Errors
-/// [`PlanError::PresetTooWide`].
+/// Returns [`PlanError::PresetTooWide`] if it does not.
 pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Result<(), PlanError> {
     let parts = [
         ("singleturn", value.singleturn(), identity.singleturn_bits),
@@ -202,12 +201,12 @@ pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Re
     Ok(())
 }
 
-/// How a restore treats values that belong to the mounting.
+/// The treatment of values that are only valid for one encoder on its motor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mounting {
     /// The values belong to this encoder.
     Own,
-    /// The values belong to another encoder and are left out.
+    /// The values belong to another encoder and are not written.
     Leave,
     /// The values belong to another encoder but are written anyway.
     Write,
@@ -246,7 +245,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Plans to write all differences of an area with a single save.
+    /// Plans to write all differences in the data areas, with a single save for each area.
     fn data(&mut self) -> Result<(), PlanError> {
         let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
         for wanted in self.profile.banks() {
@@ -271,7 +270,7 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    /// Returns the changes for registers of a bank that differ and may be written.
+    /// Returns a change for each register of a bank that differs and may be written.
     fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
         let mut changes = Vec::new();
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
@@ -339,8 +338,8 @@ fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
-/// Returns the operations that store changes in an area: a single one if the area is opened and saved as a whole,
-/// otherwise one per register.
+/// Returns the operations that store changes in an area. There is a single operation if the area is opened and saved as
+/// a whole, and otherwise one for each register.
 pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];
@@ -349,7 +348,7 @@ pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
         address: change.address,
         old: Some(change.old),
         new: change.new,
-        // The cost is unknown, but at most one.
+        // The cost is not known, but it is at most one write cycle.
         cycles: 1,
     };
     registers.into_iter().map(single).collect()

@@ -1,4 +1,4 @@
-//! The text format of a BiSS profile, which is read and edited by people. Errors name the entry concerned.
+//! The text format of a BiSS profile, which people can read and edit. Errors name the entry that caused them.
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
@@ -13,7 +13,7 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Writer, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// Range of each part of a preset value, which occupies three registers.
+/// Range of each part of a preset value. A part occupies three registers.
 const PRESET_NUMBER: AllowedValues = AllowedValues::between(0, 16_777_215);
 
 impl Profile for BissProfile {

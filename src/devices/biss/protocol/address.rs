@@ -1,36 +1,36 @@
-//! Register addresses: 00h to 3Fh within one of the banks, 40h to 7Fh direct (manual 4), or both as a single number, as
-//! used by UBICOM (manual, appendix: "Address global").
+//! Register addresses. Addresses 00h to 3Fh lie within one of the banks, and 40h to 7Fh are direct. UBICOM numbers all
+//! of them globally. See chapter 4 of the manual, and "Address global" in its appendix.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The address of a register. Direct registers sort before registers in banks, which sort by global address.
+/// The address of a register. Direct registers sort before those in banks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
-/// The string is not a register address.
+/// The error for a string that is not a register address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
 pub struct AddressError(String);
 
 impl RegisterAddress {
-    /// Number of registers in a bank, and number of direct registers.
+    /// Number of registers in a bank. There are equally many direct registers.
     pub const BANK_SIZE: u8 = 0x40;
-    /// Register 40h in all encoders: selects the bank visible at 00h to 3Fh.
+    /// Register 40h in all encoders. It selects the bank visible at 00h to 3Fh.
     pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
-    /// Register 41h in all encoders, which holds the number of the first electronic data sheet bank.
+    /// Register 41h in all encoders. It holds the number of the first electronic data sheet bank.
     pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
-    /// Registers 42h and 43h in all encoders, which hold the profile ID.
+    /// Registers 42h and 43h in all encoders. They hold the profile ID.
     pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
-    /// Registers 78h to 7Dh in all encoders, which hold the device ID and are followed by the manufacturer ID.
+    /// Registers 78h to 7Dh in all encoders. They hold the device ID, and the manufacturer ID follows.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
-    /// Creates the address of a direct register, 40h to 7Fh; `None` outside this range.
+    /// Creates the address of a direct register. Returns `None` outside 40h to 7Fh.
     pub const fn direct(address: u8) -> Option<Self> {
         if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
     }
 
-    /// Creates the address of a register in a bank, 00h to 3Fh; `None` outside this range.
+    /// Creates the address of a register in a bank. Returns `None` if the offset is above 3Fh.
     pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
@@ -45,8 +45,7 @@ impl RegisterAddress {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }
 
-    /// Returns the global number, which starts at 0 for direct registers and at 40h for the registers of bank 0,
-    /// followed by the other banks.
+    /// Returns the global number. Direct registers start at 0, bank 0 starts at 40h, and the other banks follow.
     pub const fn global(self) -> u16 {
         self.0
     }
@@ -56,8 +55,8 @@ impl RegisterAddress {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// Returns the seven-bit address used in the control frame, 40h to 7Fh for direct registers and 00h to 3Fh within a
-    /// bank.
+    /// Returns the seven-bit address for the control frame. It is 40h to 7Fh for a direct register, and 00h to 3Fh
+    /// within a bank.
     pub const fn address(self) -> u8 {
         // Always below 40h.
         let offset = (self.0 % 0x40) as u8;
@@ -83,7 +82,7 @@ impl fmt::Display for RegisterAddress {
 impl FromStr for RegisterAddress {
     type Err = AddressError;
 
-    /// Parses an address such as `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
+    /// Parses an address such as `0x66` or `0x24:0x10`. Numbers without `0x` are decimal.
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let place = match text.split_once(':') {
             None => byte(text).and_then(Self::direct),

@@ -7,11 +7,10 @@
 //! CDS    0  IDL0 … IDL7 0…            0   R   W   S       DATA    CRC4 P   encoder → host, at the start of a cycle
 //! ```
 //! A CDS bit answers the CDM bit of the previous cycle. P = 1 continues with the next address, whose S is sent in the
-//! same cycle. Fourteen cycles with CDM = 0 return both sides to rest from any state.
+//! same cycle. Fourteen cycles with CDM = 0 return both sides to the idle state from any state.
 //!
-//! Two details are in no available source (`U`) and were chosen for this implementation: a host waiting for the
-//! encoder's S repeats its own, because fourteen zeros would be an abort; an encoder echoes written data with its
-//! checksum.
+//! No available source defines two details (`U`). In this implementation, a host that waits for the encoder's S repeats
+//! its own S, because fourteen zeros would be an abort. An encoder echoes written data with its checksum.
 
 mod encoder;
 mod host;
@@ -67,10 +66,10 @@ pub enum ControlError {
     /// The encoder did not echo the access type, so it did not understand the request or refused it.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
-    /// The encoder delayed its answer for too many cycles.
+    /// The encoder delayed its reply for too many cycles.
     #[error("the encoder does not give register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
-    /// The encoder's answer is damaged. A write may or may not have taken effect.
+    /// The encoder's reply is damaged. A write may or may not have taken effect.
     #[error("register 0x{address:02X}: CRC {got:X} where {expected:X} was expected")]
     Crc {
         /// Address of the register.
@@ -86,7 +85,7 @@ impl Request {
     /// Creates a request to read `count` consecutive registers.
     ///
     /// # Errors
-    /// [`RequestError`] if the slave or a register does not exist.
+    /// Returns a [`RequestError`] if the slave or a register does not exist.
     pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Read { count })
     }
@@ -94,7 +93,7 @@ impl Request {
     /// Creates a request to write consecutive registers.
     ///
     /// # Errors
-    /// [`RequestError`] if the slave or a register does not exist.
+    /// Returns a [`RequestError`] if the slave or a register does not exist.
     pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Write { values: values.to_vec() })
     }
@@ -122,7 +121,7 @@ impl Request {
         matches!(self.kind, RequestKind::Read { .. })
     }
 
-    /// Returns the DATA and CRC4 bits that the host sends for the register at `index` in the request; zeros for a read.
+    /// Returns the DATA and CRC4 bits that the host sends for the register at `index`. In a read, they are all 0.
     fn data(&self, index: usize) -> u16 {
         match &self.kind {
             RequestKind::Read { .. } => 0,

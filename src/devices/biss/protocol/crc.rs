@@ -1,9 +1,10 @@
-//! BiSS checksums: a polynomial of up to 32 bits, first bit first, without reflection (manual 3.1.1; iC-Haus AN3). Each
-//! encoder defines the polynomial for its position data; the control frame always uses the 4-bit one.
+//! BiSS checksums. They have a polynomial of up to 32 bits, process bits in the order of transmission, and use no
+//! reflection. Each encoder defines the polynomial for its position data. The control frame always uses the 4-bit one.
+//! See manual 3.1.1 and iC-Haus AN3.
 
 use std::fmt;
 
-/// A checksum as specified in a description, whose width follows from the polynomial.
+/// A checksum algorithm. The width of the checksum follows from the polynomial.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Crc {
     polynomial: u64,
@@ -13,7 +14,7 @@ pub struct Crc {
     table: [u32; 256],
 }
 
-/// The reason why a checksum is invalid.
+/// The reason why checksum parameters are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The degree of the polynomial is 0 or above 32.
@@ -33,16 +34,17 @@ pub enum CrcError {
 }
 
 impl Crc {
-    /// Polynomial x⁶ + x + 1 for position data, unless an encoder specifies another. The checksum is sent inverted.
+    /// Polynomial x⁶ + x + 1 for position data, used unless an encoder specifies another. The checksum is sent
+    /// inverted.
     pub const POSITION: u64 = 0x43;
     /// Polynomial x⁴ + x + 1 for the control frame. The checksum is sent inverted.
     pub const CONTROL: u64 = 0x13;
 
-    /// Creates a checksum. The polynomial includes all its terms, even the highest (43h is x⁶ + x + 1), and `start` is
-    /// the value of the register before the first bit.
+    /// Creates a checksum algorithm. The polynomial includes its highest and lowest terms, so that 43h is x⁶ + x + 1.
+    /// `start` is the value of the register before the first bit.
     ///
     /// # Errors
-    /// [`CrcError`] if the parameters do not describe a checksum of 1 to 32 bits.
+    /// Returns a [`CrcError`] if the parameters do not describe a checksum of 1 to 32 bits.
     pub fn new(polynomial: u64, start: u32, inverted: bool) -> Result<Self, CrcError> {
         let degree = polynomial.checked_ilog2().unwrap_or(0);
         if !(1..=32).contains(&degree) {
@@ -58,11 +60,11 @@ impl Crc {
         Ok(crc)
     }
 
-    /// Creates a checksum from the notation of the electronic data sheet, which omits the term 1 that every polynomial
-    /// has (21h stands for 43h); `None` for 0, which means no checksum.
+    /// Creates a checksum algorithm from the notation of the electronic data sheet, or returns `None` for 0, which
+    /// means no checksum. The notation omits the lowest term, so that 21h stands for 43h.
     ///
     /// # Errors
-    /// Same as for [`new`](Self::new).
+    /// Returns the same errors as [`new`](Self::new).
     pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
         match polynomial {
             0 => Ok(None),
@@ -90,8 +92,8 @@ impl Crc {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first, in the form in which it is sent.
-    /// Values of `bits` above 64 count as 64.
+    /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first. The result is inverted if the
+    /// checksum is sent inverted. Values of `bits` above 64 count as 64.
     pub fn of(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;

@@ -1,5 +1,5 @@
-//! Encoder descriptions: user-editable files (RON, `assets/devices/biss/`) that define the frame, registers, plain data
-//! areas and procedures of one kind of encoder. This module handles the data only and opens no files.
+//! Encoder descriptions. These are RON files in `assets/devices/biss/` that users can edit. They define the frame,
+//! registers, data areas and procedures of one type of encoder. This module handles the data only and opens no files.
 
 mod codes;
 mod file;
@@ -79,9 +79,10 @@ pub struct Procedure {
     pub command: RegisterAddress,
     /// Address of the status register.
     pub status: RegisterAddress,
-    /// First additional register, which holds the error code and results of a Wiegand test or the value of a preset.
+    /// First additional register, if any. It holds the error code and results of a Wiegand test, or the value of a
+    /// preset.
     pub data: Option<RegisterAddress>,
-    /// First firmware that supports the procedure.
+    /// Oldest firmware that supports the procedure.
     pub since: Firmware,
 }
 
@@ -89,13 +90,13 @@ pub struct Procedure {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct DescriptionError {
-    /// File name as given.
+    /// Name of the file.
     pub file: String,
     /// Line number, counted from 1.
     pub line: usize,
     /// Column number, counted from 1.
     pub column: usize,
-    /// The flaw at this position.
+    /// Kind of error.
     pub problem: DescriptionErrorKind,
 }
 
@@ -104,11 +105,11 @@ pub struct DescriptionError {
 pub struct Descriptions(Vec<Description>);
 
 impl Description {
-    /// Parses a description; `file` is the name used in error messages.
+    /// Parses a description. `file` is the name used in error messages.
     ///
     /// # Errors
-    /// Returns line and column if the string is not valid RON, a key is unknown or missing, a number is out of range,
-    /// or registers overlap.
+    /// Returns line and column if the text is not valid RON, a key is unknown or missing, a number is out of range, or
+    /// registers overlap.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
         file::parse(text).map_err(|(place, what)| DescriptionError {
             file: file.to_owned(),
@@ -143,7 +144,7 @@ impl Description {
         &self.registers
     }
 
-    /// Returns the plain data areas.
+    /// Returns the data areas.
     pub fn areas(&self) -> &[Area] {
         &self.areas
     }
@@ -179,7 +180,7 @@ impl Description {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
 
-    /// Returns the kind of access to the byte at an address, or `None` if it is not described.
+    /// Returns the permitted access to the byte at an address, or `None` if the byte is not described.
     pub fn access(&self, address: RegisterAddress) -> Option<Access> {
         self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
     }
@@ -187,7 +188,7 @@ impl Description {
     /// Checks whether an encoder is of the described kind.
     ///
     /// # Errors
-    /// [`Mismatch`], with both identities.
+    /// Returns a [`Mismatch`] with both identities if it is not.
     pub fn check(&self, found: &Identity) -> Result<(), Mismatch> {
         match &self.identity {
             Some(expected) if expected != found => {
@@ -228,7 +229,7 @@ impl Descriptions {
                 Err(error) => errors.push(error),
             }
         }
-        // Descriptions for one kind of encoder come before those for any.
+        // Specific descriptions come before those that apply to any encoder.
         read.sort_by_key(|description| description.identity.is_none());
         (Descriptions(read), errors)
     }
@@ -248,7 +249,8 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// Returns the description for the given identity, preferring a specific one over one that applies to any encoder.
+    /// Returns the description for the given identity. A specific description is preferred to one that applies to any
+    /// encoder.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }

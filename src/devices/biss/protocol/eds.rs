@@ -1,6 +1,6 @@
-//! The electronic data sheet of the standard encoder profile BP3: bank 2, common to all BiSS devices, and bank 3,
-//! specific to encoders (manual, appendix 9.1.4 and 9.1.5). Numbers are stored high byte first; the last byte of each
-//! bank is the sum of the others. Bytes that the tables do not name are kept.
+//! The electronic data sheet of the standard encoder profile BP3. Bank 2 is common to all BiSS devices, and bank 3 is
+//! specific to encoders. Numbers are stored high byte first, and the last byte of each bank is the sum of the others.
+//! Bytes that the manual's tables do not name are preserved. See appendix 9.1.4 and 9.1.5 of the manual.
 
 use super::crc::{Crc, CrcError};
 use super::single_cycle::{Layout, LayoutError};
@@ -52,7 +52,7 @@ pub enum EdsValue {
     Bank(u8),
     /// A bank that is not available, encoded as FFh.
     NotAvailable,
-    /// Time in an unpublished unit. No unit length fits the manual's tables exactly (`U`).
+    /// Time in a unit that the manual does not define. No unit matches all values in the manual's tables (`U`).
     Ticks(u8),
     /// Adaptive time-out, which is encoded as 0.
     Adaptive,
@@ -60,19 +60,19 @@ pub enum EdsValue {
     NoLimit,
     /// Absolute temperature in kelvin.
     Kelvin(u16),
-    /// CRC polynomial with all of its terms (43h is x⁶ + x + 1), or 0 for no CRC.
+    /// CRC polynomial including its highest and lowest terms. For example, 43h is x⁶ + x + 1. The value 0 means no CRC.
     Polynomial(u64),
     /// Profile ID.
     Profile(ProfileId),
-    /// Meaning of a status bit sent next to the position.
+    /// Meaning of a status bit in the position frame.
     Feedback(StatusBitMeaning),
-    /// Encoder type. Type 0 is rotary; other numbers are unknown (`U`).
+    /// Encoder type. Type 0 is rotary, and the other types are unknown (`U`).
     EncoderType(u8),
-    /// Number that stands for a code.
+    /// Code without numerical meaning.
     Code(u32),
 }
 
-/// The meaning of a status bit sent next to the position.
+/// The meaning of a status bit in the position frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusBitMeaning {
     /// The frame has no such bit (code 0).
@@ -139,7 +139,7 @@ pub struct Eds {
     bytes: [u8; 64],
 }
 
-/// The reason why an electronic data sheet is unreliable.
+/// The reason why an electronic data sheet is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of all other bytes.
@@ -152,12 +152,12 @@ pub enum EdsError {
         /// Checksum received.
         got: u8,
     },
-    /// The meaning of a status bit sent next to the position is unknown.
+    /// The meaning of a status bit in the position frame is unknown.
     #[error("EDS: feedback bit {number} has the unknown meaning 0x{code:02X}")]
     Feedback {
         /// Number of the bit, 1 or 2.
         number: u8,
-        /// Unknown code that states the meaning of the bit.
+        /// Code for the meaning of the bit, as stored in the data sheet.
         code: u8,
     },
     /// The two banks disagree on the data length.
@@ -171,13 +171,13 @@ pub enum EdsError {
     /// The CRC parameters of the position data are invalid.
     #[error("EDS: {0}")]
     Crc(#[from] CrcError),
-    /// The combination of widths is impossible.
+    /// The field widths do not form a valid frame.
     #[error("EDS: {0}")]
     Layout(#[from] LayoutError),
 }
 
 impl EdsBank {
-    /// Returns the bank number in a kit encoder.
+    /// Returns the number of this bank in a kit encoder.
     pub const fn number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,
@@ -201,7 +201,7 @@ impl Eds {
     /// Parses a bank and verifies its checksum.
     ///
     /// # Errors
-    /// [`EdsError::Checksum`].
+    /// Returns [`EdsError::Checksum`] if the checksum is wrong.
     pub fn parse(bank: EdsBank, bytes: [u8; 64]) -> Result<Self, EdsError> {
         let expected = sum(&bytes);
         let [.., got] = bytes;
@@ -211,7 +211,7 @@ impl Eds {
         Ok(Eds { bank, bytes })
     }
 
-    /// Returns a kit encoder's bank with factory settings; bytes without a value in the manual are 0.
+    /// Returns a bank with the factory settings of a kit encoder. Bytes that the manual does not list are 0.
     pub fn factory_default(bank: EdsBank) -> Self {
         let mut bytes = [0; 64];
         for field in bank.fields() {
@@ -239,8 +239,7 @@ impl Eds {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
-    /// Returns the last bank available to users, or `None` if there is none. Bank 3 does not contain this field and
-    /// always yields `None`.
+    /// Returns the last bank available to users, or `None` if there is none. Only bank 2 contains this field.
     pub fn last_user_bank(&self) -> Option<u8> {
         match (self.bank, self.byte(0x03)) {
             (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
@@ -261,7 +260,7 @@ impl Eds {
 /// Returns the position frame layout described by both banks.
 ///
 /// # Errors
-/// [`EdsError`] if the banks describe no layout, or disagree.
+/// Returns an error if the banks disagree or describe an invalid layout.
 pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
     let feedback =
         |number: u8, offset: u8, expected: StatusBitMeaning| match StatusBitMeaning::from_byte(encoder.byte(offset)) {
@@ -290,11 +289,10 @@ impl EdsField {
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
     }
 
-    /// Returns the decoded value of the field without verifying the bank's checksum, which [`Eds::parse`] does.
+    /// Returns the decoded value of the field. The checksum of the bank is not verified. See [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw(bank);
-        // Fields with these meanings are one byte wide, and those two bytes wide use only one of them, so nothing is
-        // cut off.
+        // The conversion loses nothing, because fields with these meanings use only one byte.
         let byte = raw as u8;
         match self.meaning {
             Meaning::Number(unit) => EdsValue::Number(raw, unit),

@@ -1,12 +1,13 @@
-//! One cycle of the data line (SLO), with one sample per clock after the latch: acknowledge, start bit, control bit,
-//! frame, time-out (manual figure 2). Clock period and time-out duration do not matter to this module.
+//! One cycle of the data line SLO, with one sample per clock after the latch. It consists of acknowledge, start bit,
+//! control bit, frame and time-out. Clock period and time-out duration do not matter to this module. See manual, figure
+//! 2.
 
 use super::single_cycle::Layout;
 
 /// One cycle of the data line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BissCycle {
-    /// Number of clocks for which the encoder was still busy (SLO = 0), at least 1.
+    /// Number of clocks during which the encoder was busy and SLO was 0, at least 1.
     pub acknowledge: usize,
     /// CDS, the control frame bit that the encoder sends in this cycle.
     pub control: bool,
@@ -40,10 +41,10 @@ pub enum CycleError {
 }
 
 impl BissCycle {
-    /// Finds the frame in the samples of a cycle. Samples after the first one of the time-out are ignored.
+    /// Finds the frame in the samples of a cycle. Samples after the start of the time-out are ignored.
     ///
     /// # Errors
-    /// [`CycleError`]. The frame's checksum is not verified here but in [`Layout::parse`].
+    /// Returns a [`CycleError`]. The checksum of the frame is verified by [`Layout::parse`] and not here.
     pub fn parse(samples: &[bool], layout: &Layout) -> Result<Self, CycleError> {
         // The line is at rest before the acknowledge.
         let low = samples.iter().position(|sample| !sample).ok_or(CycleError::NoAcknowledge)?;

@@ -1,8 +1,8 @@
 //! BiSS C: position data, the control frame, and the meaning of an encoder's registers.
 //!
-//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6, called "the manual" below, or the project's
-//! reference of it where one of its sections is cited. Facts that the manual leaves open are marked `U` (unknown) and
-//! are either tolerated or configurable.
+//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6, called "the manual" below. A "reference" is
+//! a section of the project's reference of it. Facts that the manual leaves open are marked `U` (unknown). They are
+//! either tolerated or configurable.
 
 #![warn(missing_docs)]
 

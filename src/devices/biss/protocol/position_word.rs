@@ -11,8 +11,8 @@ impl Layout {
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// Splits the position in a word by the widths of the frame, or returns `None` if higher bits are set. The result
-    /// has no error or warning bit.
+    /// Splits a position word into multiturn and singleturn. Returns `None` if higher bits are set. The error and
+    /// warning flags of the result are not set.
     pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.word(), self.singleturn_bits());

@@ -15,7 +15,7 @@ pub enum ProcedureKind {
     DataWrite,
     /// Selection of the position filter (manual 6.6).
     FilterSelection,
-    /// Saves the preset value and sets the position to it (manual 6.7).
+    /// Setting of the position to a saved preset value (manual 6.7).
     Preset,
 }
 
@@ -30,7 +30,7 @@ impl ProcedureKind {
     ];
 }
 
-/// Defines an enum for the codes of a register. Unknown codes keep their number.
+/// Defines an enum for the codes of a register. Unknown codes are preserved.
 macro_rules! codes {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
         $(#[$about])*
@@ -81,7 +81,7 @@ codes! {
         StartClockwise = 0x01 "start clockwise",
         /// Collects pulses while the motor runs counterclockwise.
         StartCounterclockwise = 0x02 "start counterclockwise",
-        /// Ends the test; allowed at any time.
+        /// Ends the test. This is allowed at any time.
         Stop = 0x03 "finish test",
         /// Stores the result, which becomes visible after a restart.
         Save = 0x05 "save result",
@@ -114,7 +114,7 @@ codes! {
         /// Starts the first run, with the motor turning counterclockwise.
         StartCounterclockwise = 0x01 "start counterclockwise",
         /// Starts the second run, with the motor turning clockwise. If the run succeeds, the table is saved
-        /// automatically; if it fails, the table is lost.
+        /// automatically. If it fails, the table is lost.
         StartClockwise = 0x02 "start clockwise",
     }
 }
@@ -217,7 +217,8 @@ codes! {
     }
 }
 
-/// A preset value: three bytes each for singleturn and multiturn, low byte first (bank 1, 02h to 07h).
+/// A preset value with a singleturn and a multiturn part. Each part has three bytes, low byte first. See bank 1, 02h to
+/// 07h.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PresetValue {
     singleturn: u32,
@@ -230,8 +231,7 @@ impl PresetValue {
     /// Maximum singleturn or multiturn value.
     pub const MAX: u32 = (1 << 24) - 1;
 
-    /// Creates a preset value from two parts of up to 24 bits each, or returns `None` if a part is larger. The
-    /// encoder's position may be narrower.
+    /// Creates a preset value, or returns `None` if a part exceeds 24 bits. The encoder's position may be narrower.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
         if singleturn <= Self::MAX && multiturn <= Self::MAX {
             Some(PresetValue { singleturn, multiturn })
@@ -268,8 +268,8 @@ impl PresetValue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PulseVoltage(u8);
 
-/// The result of a Wiegand test in both directions (bank 0, with the last result from 09h, the factory result from 0Dh
-/// and the saved one from 11h).
+/// The result of a Wiegand test in both directions. Bank 0 holds the last result at 09h, the factory result at 0Dh, and
+/// the saved result at 11h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WiegandResult {
     /// Average pulse voltage, clockwise.
@@ -283,10 +283,10 @@ pub struct WiegandResult {
 }
 
 impl PulseVoltage {
-    /// Minimum of 5.3 V for the average minus four standard deviations.
+    /// Limit of 5.3 V for the average minus four standard deviations.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
 
-    /// Creates a voltage from tenths of a volt; every byte is valid.
+    /// Creates a voltage from tenths of a volt. Every byte is valid.
     pub const fn new(tenths: u8) -> Self {
         PulseVoltage(tenths)
     }
@@ -303,16 +303,16 @@ impl PulseVoltage {
 }
 
 impl WiegandResult {
-    /// Number of revolutions in each direction over which pulses are measured (manual 6.3).
+    /// Number of revolutions in each direction during which pulses are collected (manual 6.3).
     pub const REVOLUTIONS: u16 = 515;
 
-    /// Parses the four registers in address order.
+    /// Parses the four registers in ascending order of address.
     pub fn parse(bytes: [u8; 4]) -> Self {
         let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);
         WiegandResult { average_cw, lowest_cw, average_ccw, lowest_ccw }
     }
 
-    /// Returns the four registers in address order.
+    /// Returns the four registers in ascending order of address.
     pub fn emit(&self) -> [u8; 4] {
         [self.average_cw, self.lowest_cw, self.average_ccw, self.lowest_ccw].map(PulseVoltage::byte)
     }

@@ -23,12 +23,12 @@ const UNKNOWN_ERROR: &str = "unknown error";
 const UNKNOWN_WARNING: &str = "unknown warning";
 
 impl ErrorRegister {
-    /// Bit 1, set if the multiturn counter has lost synchronisation.
+    /// Bit 1, which is set if the multiturn counter has lost synchronisation.
     pub const MULTITURN: ErrorRegister = ErrorRegister(0x02);
-    /// Bit 4, set if the magnet is missing or too far away.
+    /// Bit 4, which is set if the magnet is missing or too far away.
     pub const FIELD_TOO_LOW: ErrorRegister = ErrorRegister(0x10);
 
-    /// Creates an error register; every byte is valid, and bits that the manual does not use are kept.
+    /// Creates an error register. Bits that the manual does not define are preserved.
     pub const fn new(byte: u8) -> Self {
         ErrorRegister(byte)
     }
@@ -45,10 +45,10 @@ impl ErrorRegister {
 }
 
 impl WarningRegister {
-    /// Bit 0: set at 125 °C and above, cleared below 123 °C.
+    /// Bit 0, which is set at 125 °C and above and cleared below 123 °C.
     pub const TEMPERATURE: WarningRegister = WarningRegister(0x01);
 
-    /// Creates a warning register; every byte is valid, and bits that the manual does not use are kept.
+    /// Creates a warning register. Bits that the manual does not define are preserved.
     pub const fn new(byte: u8) -> Self {
         WarningRegister(byte)
     }
@@ -74,14 +74,15 @@ fn set_bits(
         .map(move |bit| (bit, names.get(usize::from(bit)).copied().unwrap_or(unknown)))
 }
 
-/// The temperature register (66h): degrees Celsius plus 50. The sensor is accurate to 5 °C, from −40 to 130 °C.
+/// The temperature register (66h), which holds degrees Celsius plus 50. The sensor covers −40 to 130 °C with an
+/// accuracy of 5 °C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Temperature(u8);
 
 impl Temperature {
     const OFFSET: i16 = 50;
 
-    /// Creates a temperature from a register byte; every byte is valid.
+    /// Creates a temperature from a register value. Every byte is valid.
     pub const fn new(byte: u8) -> Self {
         Temperature(byte)
     }
@@ -120,7 +121,7 @@ impl DeviceMode {
     pub const WIEGAND_TEST: DeviceMode = DeviceMode(0x02);
     /// Write access to OEM data and EDS motor data.
     pub const DATA_WRITE: DeviceMode = DeviceMode(0x04);
-    /// Selection of another position filter.
+    /// Selection of the position filter.
     pub const FILTER: DeviceMode = DeviceMode(0x05);
     /// Preset of the position.
     pub const PRESET: DeviceMode = DeviceMode(0x07);
@@ -135,10 +136,10 @@ impl DeviceMode {
         (DeviceMode::PRESET.0, "preset"),
     ];
 
-    /// Password that unlocks the device mode register; it is written to 6Bh.
+    /// Password that unlocks the device mode register. It is written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
-    /// Creates a device mode from a register byte; every byte is valid.
+    /// Creates a device mode from a register value. Every byte is valid.
     pub const fn new(byte: u8) -> Self {
         DeviceMode(byte)
     }
@@ -216,23 +217,23 @@ impl fmt::Display for Firmware {
     }
 }
 
-/// The profile identification (42h and 43h, high byte first), which identifies the kind of electronic data sheet.
+/// The profile ID, which identifies the type of electronic data sheet. It is stored in 42h and 43h, high byte first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ProfileId(u16);
 
 impl ProfileId {
-    /// Creates a profile identification; every 16-bit value is valid.
+    /// Creates a profile ID. Every 16-bit value is valid.
     pub const fn new(word: u16) -> Self {
         ProfileId(word)
     }
 
-    /// Returns both bytes as a 16-bit word with the first byte in the high half.
+    /// Returns the profile ID as a 16-bit word. The first byte is in the high half.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Returns whether bits 15 to 13 are 011, which denotes the standard encoder profile BP3. This program can read the
-    /// data sheet of that profile.
+    /// Returns whether bits 15 to 13 are 011, which denotes the standard encoder profile BP3. Only the data sheet of
+    /// that profile can be decoded.
     pub const fn is_standard_encoder(self) -> bool {
         self.0 >> 13 == 0b011
     }

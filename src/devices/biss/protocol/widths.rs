@@ -1,18 +1,19 @@
-//! Determines the frame length of an unknown encoder: the length at which the checksum matches repeatedly while the
-//! shaft turns (reference 2).
+//! Detection of the frame length of an unknown encoder. At the correct length, the checksum matches repeatedly while
+//! the shaft turns. See reference 2.
 
 use super::crc::Crc;
 
 /// Range of data widths to try, in bits (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// Required number of consecutive frames that match and differ in data from the one before (`U`).
+/// Required number of consecutive frames with a matching checksum. Repeated data does not count (`U`).
 const ENOUGH: usize = 8;
 
-/// Returns the data width without the checksum, or `None` if no length fits or too few frames differ. Each frame holds
-/// the first `clocked` bits after the control bit, with the last of them in bit 0.
+/// Returns the data width without the checksum, or `None` if no length fits or too few frames differ.
 ///
-/// Repeated data counts only once: at the wrong length, one frame in 64 matches by chance and would match again on
-/// every repetition.
+/// Each frame contains the first `clocked` bits after the control bit, and the last bit received is bit 0.
+///
+/// Consecutive frames with the same data count once. At a wrong length, one frame in 64 matches by chance, and every
+/// repetition would match again.
 pub fn detect_data_bits(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
 }

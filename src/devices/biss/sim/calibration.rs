@@ -1,8 +1,8 @@
-//! Singleturn calibration (manual 6.4): two runs, counterclockwise first, each about five seconds.
+//! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each. See manual 6.4.
 //!
-//! Choices where the manual is silent (`U`): an unmet condition ends a run after a second; a change of speed ends it at
-//! once; the second run is refused if the first was not completed. If the status is kept, it is shown until the next
-//! run has begun, even after a change of the device mode.
+//! The manual leaves some rules open (`U`). In this model, an unmet condition ends a run after one second, and a change
+//! of speed ends it at once. The second run is refused if the first was not completed. If the status is kept, it is
+//! shown until the next run has begun, even after a change of the device mode.
 
 use std::time::Duration;
 
@@ -62,7 +62,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// Handles a command, and returns `false` if it is refused.
+    /// Handles a command. Returns `false` if it is refused.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: CalibrationConditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,
@@ -91,7 +91,7 @@ impl Calibration {
         }
     }
 
-    /// Starts a run that is due and ends one whose time is up.
+    /// Starts a run that is due, and ends a run whose time is over.
     pub(super) fn settle(&mut self, now: Moment) -> Ended {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;

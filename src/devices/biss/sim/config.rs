@@ -1,5 +1,5 @@
-//! Settings of a virtual encoder, as given in the query of a `sim:` link: `seed=7&fault=drop:0.01&rpm=-500`. This
-//! module opens no connection.
+//! Settings of a virtual encoder. They are given in the query of a `sim:` link, such as
+//! `seed=7&fault=drop:0.01&rpm=-500`. This module opens no connection.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -46,7 +46,7 @@ impl Config {
     /// are decimal or `0x…`.
     ///
     /// # Errors
-    /// A message that names the key and the allowed values.
+    /// Returns an error that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         setting::read(VirtualDevice::Encoder, pairs)
     }

@@ -4,8 +4,9 @@
 //! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
 //!                                   └── save or preset of modes 05, 07 ──▶ restart (silent) ──▶ operation
 //! ```
-//! Choices where the manual is silent (`U`): a mode can only be entered from operation, and is left without the
-//! password; undescribed registers read 00h and cannot be written; entered values are discarded when the mode is left.
+//! The manual leaves some rules open (`U`). In this model, a mode can only be entered from operation, and is left
+//! without the password. Undescribed registers read 00h and cannot be written. Entered values are discarded when the
+//! mode is left.
 
 mod registers;
 mod time;
@@ -45,7 +46,7 @@ pub struct Encoder {
     password: u8,
     mode: DeviceMode,
     flash: Flash,
-    /// Wiegand test results saved before the encoder started.
+    /// Wiegand test result that was saved when the encoder started.
     saved_wiegand: [u8; 4],
     calibration: Calibration,
     wiegand: WiegandState,
@@ -74,7 +75,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// Creates an encoder from `config` that has been powered for a long time.
+    /// Creates an encoder that has been powered for a long time.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::factory_default(config.cycles) };
         let mut encoder = Encoder {
@@ -133,7 +134,7 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the flash faults without resetting the store count.
+    /// Sets other faults for the flash. The count of stores is kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.die_in_store = faults.die_in_store();
     }
@@ -181,14 +182,13 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// Returns the true shaft position at `now`, independent of the reported position, as steps and steps per
-    /// revolution.
+    /// Returns the shaft position at `now` and the number of steps per revolution. The position is available even if
+    /// the encoder reports none.
     pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
         self.settle(now);
         (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }
 
-    /// Returns the bank selected for registers 00h to 3Fh.
     pub const fn bank(&self) -> u8 {
         self.bank
     }
@@ -202,7 +202,7 @@ impl Encoder {
         }
     }
 
-    /// Reads a register at `now`, or returns `None` if its bank does not exist.
+    /// Reads a register at `now`. Returns `None` if its bank does not exist.
     pub fn read(&mut self, now: Moment, address: RegisterAddress) -> Option<u8> {
         self.settle(now);
         let offset = address.address();
@@ -225,7 +225,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`, or returns `false` and changes nothing if the encoder refuses.
+    /// Writes a register at `now`. Returns `false` and changes nothing if the encoder refuses.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.settle(now);
         let offset = address.address();
@@ -351,7 +351,7 @@ impl Encoder {
         true
     }
 
-    /// Writes the flash once; the flag passed to `change` is `false` if power is lost during the write.
+    /// Writes the flash once. `change` receives `false` if power is lost during the write.
     fn store(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);

@@ -1,5 +1,5 @@
-//! Procedures that enter values and then save them: data, filter and preset (manual 6.5 to 6.7). They hold the entered
-//! values; the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`).
+//! Procedures in which values are entered and then saved: data, filter and preset. They hold the entered values, and
+//! the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`). See manual 6.5 to 6.7.
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, FilterCommand, FilterStatus, Layout, PositionFilter, PresetCommand, PresetStatus,
@@ -13,7 +13,8 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Returns the area that contains a bank and the bank's offset in that area, or `None` for any other bank.
+    /// Returns the area of a bank, and the offset of the bank in that area. Returns `None` if the bank does not belong
+    /// to an area.
     pub(super) fn containing_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
@@ -28,7 +29,7 @@ impl Area {
 pub(super) enum Then {
     Refused,
     Nothing,
-    /// A data area is opened; its content must be passed to [`DataEntry::open`].
+    /// A data area is opened. Its content must then be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
     /// The filter is written to the flash, followed by a restart.
@@ -80,7 +81,7 @@ impl DataEntry {
         bytes.get(at).copied()
     }
 
-    /// Enters a byte, or returns `false` if the area is not open.
+    /// Enters a byte. Returns `false` if the area is not open.
     pub(super) fn enter(&mut self, area: Area, at: usize, value: u8) -> bool {
         let place = self.open.as_mut().filter(|(open, _)| *open == area).and_then(|(_, bytes)| bytes.get_mut(at));
         place.map(|byte| *byte = value).is_some()
@@ -159,7 +160,7 @@ impl PresetEntry {
         self.bytes.get(at).copied()
     }
 
-    /// Enters a byte; returns `false` if no byte is expected.
+    /// Enters a byte. Returns `false` if no byte is expected.
     pub(super) fn enter(&mut self, at: usize, value: u8) -> bool {
         let open = self.status == PresetStatus::WaitForValue;
         self.bytes.get_mut(at).filter(|_| open).map(|byte| *byte = value).is_some()

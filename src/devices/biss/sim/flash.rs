@@ -8,8 +8,8 @@ pub struct Flash {
     pub(super) oem_data: Vec<u8>,
     pub(super) preset: PresetValue,
     pub(super) filter: PositionFilter,
-    /// Wiegand test result in tenths of a volt. Contains the average and the average minus four standard deviations,
-    /// first clockwise, then counterclockwise.
+    /// Wiegand test result in tenths of a volt. Each direction has an average and the average minus four standard
+    /// deviations. The clockwise values come first.
     pub(super) wiegand: [u8; 4],
     pub(super) calibrated: bool,
     pub(super) cycles: u32,

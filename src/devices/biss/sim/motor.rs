@@ -2,8 +2,8 @@
 
 use crate::sim::Motor;
 
-/// A motor as seen by its encoder. Cloning creates an independent motor, so a copied encoder does not share one with
-/// the original.
+/// A motor as seen by its encoder. Cloning creates an independent motor, because a copied encoder must not share the
+/// motor of the original.
 #[derive(Debug)]
 pub(super) struct Drive {
     motor: Motor,
@@ -17,8 +17,8 @@ impl Clone for Drive {
 }
 
 impl Drive {
-    /// Creates the motor. If `reverses` is set, the motor changes direction by itself when a procedure waits for the
-    /// opposite direction.
+    /// Creates the motor. If `reverses` is set, the motor changes its direction when a procedure waits for the opposite
+    /// direction.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
         Drive { motor: Motor::at(rpm), reverses }
     }
@@ -27,7 +27,7 @@ impl Drive {
         &self.motor
     }
 
-    /// Reports that a procedure is waiting for the opposite direction.
+    /// Reverses the motor, if configured. Called when a procedure waits for the opposite direction.
     pub(super) fn reverse_motor(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

@@ -26,7 +26,7 @@ impl Shaft {
         &self.layout
     }
 
-    /// Returns the speed in revolutions per minute, positive clockwise (rising positions).
+    /// Returns the speed in revolutions per minute, positive clockwise. Clockwise rotation increases the position.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -46,7 +46,8 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment with [`FINE`] fractional bits, for another encoder on the same shaft.
+    /// Returns the position at a moment with [`FINE`] fractional bits. Another encoder on the same shaft needs this
+    /// resolution.
     pub(super) fn fine(&self, at: Moment) -> u64 {
         let whole = (self.integer_steps(at) + self.offset) % self.range();
         // The product is at least 0 and below 1 << FINE.

@@ -1,7 +1,7 @@
 //! UBICOM on the configuration pin: a half-duplex line simulated byte by byte, with its faults.
 //!
-//! Choices where the manual is silent (`U`): the encoder replies a millisecond after the last byte; it does not reply
-//! to invalid requests; bytes received while it is busy or sending are lost.
+//! The manual leaves some details open (`U`). In this model, the encoder replies one millisecond after the last byte
+//! and does not reply to invalid requests. Bytes that arrive while it is busy or sending are lost.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{TransitQueue, VirtualLine, Wires};
 use crate::units::Moment;
 
-/// A line with a virtual encoder, as seen by the host. Created from a [`Config`].
+/// A line with a virtual encoder, as seen by the host. It is created from a [`Config`].
 #[derive(Clone)]
 pub struct UbicomPort {
     encoder: Encoder,
@@ -35,7 +35,6 @@ pub struct UbicomPort {
     frames: u32,
 }
 
-/// A request that the encoder is processing.
 #[derive(Clone, Copy)]
 struct PendingRequest {
     ends: Moment,
@@ -74,12 +73,11 @@ impl UbicomPort {
         &self.encoder
     }
 
-    /// Returns a mutable reference to the encoder, for example to turn its shaft or change its temperature.
     pub const fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }
 
-    /// Replaces the faults, to simulate a cable that is repaired or breaks later. The frame and store counts are kept.
+    /// Sets other faults for the line and the encoder. The counts of frames and stores are kept.
     pub fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
@@ -138,7 +136,7 @@ impl UbicomPort {
         }
     }
 
-    /// Puts bytes on the line and returns the time at which the last one has been transmitted.
+    /// Sends bytes on the line and returns the time at which the last one has been transmitted.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);

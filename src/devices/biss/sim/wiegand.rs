@@ -1,8 +1,8 @@
 //! The Wiegand sensor test (manual 6.3), which collects pulses for 515 revolutions in each direction. The encoder does
 //! not know which direction is which.
 //!
-//! Choices where the manual is silent (`U`): the encoder notices that the second run turns in the same direction as the
-//! first, and a sensor without pulses fails with code 01h.
+//! The manual leaves two details open (`U`). In this model, the encoder notices that the second run turns in the same
+//! direction as the first. A sensor without pulses fails with code 01h.
 
 use crate::devices::biss::protocol::{WiegandCommand, WiegandResult, WiegandStatus};
 use crate::units::Moment;
@@ -20,12 +20,12 @@ pub(super) struct WiegandState {
     pub(super) command: u8,
     pub(super) status: WiegandStatus,
     pub(super) error: u8,
-    /// Results in register order.
+    /// Results in ascending order of their registers.
     pub(super) result: [u8; 4],
     /// Number of revolutions from the start of the run until `since`.
     collected: f64,
     since: Moment,
-    /// Whether the first run turned clockwise, once known.
+    /// Whether the first run turned clockwise, or `None` until this is known.
     first_clockwise: Option<bool>,
 }
 
@@ -45,7 +45,7 @@ impl WiegandState {
         }
     }
 
-    /// Handles a command, or returns `false` if it is refused. The result is saved by the [`Encoder`](super::Encoder).
+    /// Handles a command. Returns `false` if it is refused. The [`Encoder`](super::Encoder) saves the result.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -69,8 +69,8 @@ impl WiegandState {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Adds the revolutions since the previous call, at constant speed, and ends a run that has collected enough of
-    /// them.
+    /// Adds the revolutions since the previous call at a constant speed. A run ends when it has collected enough
+    /// revolutions.
     pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: WiegandPulses) {
         if !self.is_running() {
             return;

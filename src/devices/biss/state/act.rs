@@ -1,4 +1,4 @@
-//! The user's actions on an encoder. Edits take effect at once; everything else becomes a session job or a task.
+//! The user's actions on an encoder. Edits take effect immediately. Everything else becomes a session job or a task.
 
 use std::time::Duration;
 
@@ -39,7 +39,7 @@ impl Encoder {
             BissAction::Watch(register, on) => self.watch(*register, on),
             BissAction::ReadBank(bank) => self.read_bank(bank, services),
             BissAction::SeeBank(bank) => {
-                // Only when idle, when no stream would be interrupted, and only once.
+                // A bank is read only once, and only if nothing is running and no stream would be interrupted.
                 let free = self.session.is_ready() && self.streamed().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
@@ -61,7 +61,6 @@ impl Encoder {
         }
     }
 
-    /// Starts or stops watching a register in addition to the position.
     fn watch(&mut self, register: Register, on: bool) {
         let mut watched = self.record.watched();
         watched.retain(|own| own.address != register.address);
@@ -101,8 +100,8 @@ impl Encoder {
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// Returns the part of an area that can be shown: for a profile, the part that it contains; for an encoder, the
-    /// whole area.
+    /// Returns the part of an area that can be shown. This is the whole area for an encoder, and the part that the file
+    /// contains for a profile.
     pub fn visible_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
@@ -112,7 +111,7 @@ impl Encoder {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));
         }
-        // A profile is only a file, so the access rights it records do not protect it.
+        // A profile is only a file. The access rights of the encoder do not apply to it.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
     }
 

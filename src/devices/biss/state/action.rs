@@ -1,4 +1,4 @@
-//! Actions of the BiSS encoder on display.
+//! Actions of the BiSS encoder that is displayed.
 
 use std::path::PathBuf;
 
@@ -15,13 +15,13 @@ pub enum BissAction {
     Check,
     /// Starts or stops reading the given register along with the position.
     Watch(Box<Register>, bool),
-    /// Reads a bank, or the direct registers for `None`.
+    /// Reads a bank, or the direct registers if it is `None`.
     ReadBank(Option<u8>),
-    /// Reads a newly visible bank that has never been read, unless another job is running.
+    /// Reads a bank that has become visible and was never read. Does nothing while another job is running.
     SeeBank(Option<u8>),
-    /// Reads the plain data area that starts at the given bank.
+    /// Reads the data area that starts at the given bank.
     ReadArea(u8),
-    /// Edits bytes of plain data.
+    /// Edits bytes of a data area.
     Put {
         start: RegisterAddress,
         bytes: Vec<u8>,
@@ -31,9 +31,10 @@ pub enum BissAction {
         count: usize,
     },
     Plan(Box<Change>),
-    /// Plans a mounting run and shows its effect. The plain data comes from a profile that is open in another session.
+    /// Plans the procedures after mounting and shows their effect. A profile that is open in another session provides
+    /// the values for the data areas.
     PlanMounting {
-        /// Steps of the run, without the plain data.
+        /// Steps of the run, without the values for the data areas.
         run: Box<MountingSteps>,
         motor: MotorSource,
         data: Option<SessionId>,
@@ -41,7 +42,7 @@ pub enum BissAction {
     Answer(Task, Answer),
     CloseGuide,
     LeadBack,
-    /// Turns the virtual encoder's shaft at a speed in revolutions per minute.
+    /// Turns the shaft of the virtual encoder at a speed in revolutions per minute.
     Turn(f64),
     Save(PathBuf),
 }

@@ -126,7 +126,7 @@ impl FormModel for BissForm {
 }
 
 impl BissForm {
-    /// Fills in the form field for a parameter; returns `false` if no field can show the value.
+    /// Fills in the form field for a parameter. Returns `false` if no field can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfterSession::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;
@@ -149,7 +149,6 @@ impl BissForm {
         is_taken
     }
 
-    /// Returns the form fields for the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
@@ -163,7 +162,7 @@ impl BissForm {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
 
-    /// Returns the fields for the frame and those for the line, which apply to every kind of connection.
+    /// Returns the fields for the frame and those for the line. They apply to every kind of connection.
     pub fn common_entries() -> (Vec<Entry>, Vec<Entry>) {
         (FrameParameters::entries(), LineParameters::entries())
     }
@@ -174,7 +173,7 @@ impl BissForm {
         [own, Self::bus_entries(), PinParameters::entries(), frame, line].concat()
     }
 
-    /// Returns whether the encoder is connected by its bus, through a real or virtual adapter.
+    /// Returns whether the encoder is connected by its bus. The adapter may be real or virtual.
     pub fn is_on_the_bus(&self) -> bool {
         self.kind == BissLinkKind::Bus || (self.leads_to_pin_or_bus() && self.behind_adapter)
     }
@@ -227,8 +226,8 @@ impl BissForm {
         parameters
     }
 
-    /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped; unknown
-    /// ones are kept, so that they are refused by name.
+    /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped. Unknown
+    /// parameters are kept, because they are refused later with an error that names them.
     fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);

@@ -1,4 +1,5 @@
-//! Edits of an encoder's plain data, stored as global address and byte so that they survive a crash.
+//! Drafts of the edits in an encoder's data areas. An edit is stored as global address and byte, so that it survives a
+//! crash.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

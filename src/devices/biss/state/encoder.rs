@@ -22,9 +22,7 @@ use crate::sim::Motor;
 pub struct Encoder {
     pub session: Session<Biss>,
     pub survey: Option<Survey>,
-    /// Status from the last reading, if any.
     pub status: Option<Status>,
-    /// Results of the last device check, if any.
     pub check: Option<Vec<CheckLine>>,
     pub description: Option<Arc<Description>>,
     pub memory: Memory,
@@ -32,11 +30,12 @@ pub struct Encoder {
     pub record: Record,
     /// The running procedure, or the last one with its result.
     pub guide: Option<Guide>,
-    /// Reason why the last data request was refused, if it was.
+    /// Reason why the last data request was refused, if any.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
-    /// Banks that have been read on becoming visible, or could not be read. They are not requested automatically again.
+    /// Banks that were read when they became visible, or that could not be read. They are not requested again
+    /// automatically.
     pub(super) seen: BTreeSet<Option<u8>>,
     /// Banks that have been written and must be read back.
     pub(super) read_after: BTreeSet<u8>,
@@ -90,7 +89,6 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Returns the encoder's identity, if known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
@@ -117,8 +115,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, or `None` if nothing was read. The string is empty if the encoder has no serial
-    /// number.
+    /// Returns the serial number, or `None` if nothing was read. The string is empty if the encoder has none.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -158,15 +155,15 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Updates the device mode in which registers were just read; `None` means operation.
+    /// Updates the device mode in which registers were just read. `None` means operation.
     pub(super) fn set_device_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }
     }
 
-    /// Returns a message if registers may show values that were never saved, because of the device mode of the encoder,
-    /// or the mode in which the profile was read.
+    /// Returns a message if registers may show values that were never saved. The cause is the device mode of the
+    /// encoder, or the mode in which the profile was read.
     pub fn unsaved(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return words::profile_unsaved(profile);

@@ -138,7 +138,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether an error means that the encoder and the adapter do not respond.
+    /// Returns whether an error means that neither the encoder nor the adapter responds.
     fn is_silence(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),

@@ -34,7 +34,7 @@ pub fn name(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// Returns the messages for a job that ended early: one or more sentences, each of which may stand on its own line.
+/// Returns the messages for a job that ended early. Each message may be shown on a separate line.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -138,13 +138,13 @@ fn layout(error: &LayoutError) -> Text {
     }
 }
 
-/// Returns the warning that registers may show values that were never saved, because of the device mode.
+/// Returns the warning for a device mode in which registers may show values that were never saved.
 pub fn unsaved(mode: DeviceMode) -> Text {
     in_mode("biss.unsaved", mode)
 }
 
-/// Returns the warning that a profile just saved may contain values that were never saved in the encoder, or `None` if
-/// the encoder was in operation.
+/// Returns a warning if a profile that was just saved may contain values that were never saved in the encoder. Returns
+/// `None` if the encoder was in operation.
 pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved)
 }
@@ -179,7 +179,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// Returns the message for an encoder that differs from the description that matches it best.
+/// Returns the message for an encoder that does not match the closest description.
 pub fn mismatch(mismatch: &Mismatch) -> Text {
     TEXTS
         .text("biss.mismatch")

@@ -28,27 +28,27 @@ impl PresetForm {
     /// Returns the step nearest to the entered angle.
     ///
     /// # Errors
-    /// A message that states the valid range.
+    /// Returns a message with the valid range if the entry is invalid.
     pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = within(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
-        // Less than the step count, which fits into 32 bits.
+        // The result is less than the step count and fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
-    /// Returns the revolution entered.
+    /// Returns the entered number of revolutions.
     ///
     /// # Errors
-    /// A message that states the valid range.
+    /// Returns a message with the valid range if the entry is invalid.
     pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
         whole(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
-    /// Returns the preset value given by both fields.
+    /// Returns the preset value that both fields define.
     ///
     /// # Errors
-    /// A message that states the valid range; if both fields are invalid, for the first one.
+    /// Returns a message with the valid range of the first invalid field.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))

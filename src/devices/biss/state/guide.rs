@@ -1,5 +1,5 @@
-//! State of a guided procedure for display: steps, progress, current task, results. Nothing is carried out in this
-//! module; answers go to the job.
+//! State of a guided procedure for display: steps, progress, current task and results. The procedure itself runs in a
+//! job, which also receives the answers.
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
@@ -7,11 +7,10 @@ use crate::devices::biss::procedures::procedure::{
 };
 use crate::devices::biss::profile::Op;
 
-/// A procedure that is running or has ended.
 pub struct Guide {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The interrupted step. The last reported step may instead belong to the return to operation.
+    /// The interrupted step. The last reported step may be a different one, which belongs to the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, Task)>,
@@ -25,7 +24,7 @@ pub enum End {
     Done(Vec<Outcome>),
     /// The procedure ended early.
     Failed {
-        /// Messages that explain what happened, the state in which the encoder was left, and what to do.
+        /// Messages about the cause, the state in which the encoder was left, and what to do next.
         texts: Vec<Text>,
         /// Results of the operations that were completed before the interruption.
         before: Vec<Outcome>,
@@ -123,8 +122,8 @@ impl Guide {
         steps
     }
 
-    /// Returns the range of skipped steps in an operation, taken from its result if available and from the operator's
-    /// answers otherwise.
+    /// Returns the range of skipped steps in an operation. It is taken from the result if available, and otherwise from
+    /// the operator's answers.
     fn skipped(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),

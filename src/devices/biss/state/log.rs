@@ -41,7 +41,7 @@ impl Encoder {
     }
 }
 
-/// Returns the log text for a changed value, consisting of old and new value.
+/// Returns the log text for a changed value, with the old and the new value.
 fn operation(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),

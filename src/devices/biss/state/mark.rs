@@ -1,5 +1,5 @@
-//! Validity of the last position. It comes from the position itself or, if the connection does not transmit it, from
-//! the error and warning registers at the last status reading.
+//! Validity of the last position. The position itself contains it, or the last status reading provides it in the error
+//! and warning registers.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::FlagRegister;

@@ -1,5 +1,5 @@
-//! The meaning of frames in the trace. A reply is decoded along with the request before it, and a register read over
-//! the bus along with the selected bank.
+//! The meaning of frames in the trace. To decode a reply, the preceding request must be known. To decode a register
+//! access over the bus, the selected bank must be known.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -54,8 +54,8 @@ impl Meaning {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. The reply may still follow a damaged
-    /// part.
+    /// Decodes bytes received over the configuration pin after a request. After a damaged part, the reply may still
+    /// follow.
     fn reply(&mut self, bytes: &[u8]) -> Explained {
         let broken = |damage| Explained::broken(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };

@@ -1,8 +1,8 @@
-//! The registers read from an encoder and the edited values. Nothing is written to an encoder in this module; a plan is
-//! made from the difference.
+//! The registers read from an encoder, and the edited values. A plan is later made from the difference. This module
+//! writes nothing to an encoder.
 //!
-//! Only plain data can be edited: the areas that the description marks as writable. Other writes (a filter, a preset, a
-//! command) have their own review and are not edits.
+//! Only bytes of a data area that the description marks as writable can be edited. Other writes, such as a filter, a
+//! preset or a command, are reviewed separately and are not edits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,7 +32,7 @@ pub enum MemoryError {
     /// The register has not been read, so the value to be replaced is unknown.
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
-    /// The register is not a plain data register.
+    /// The register does not belong to an editable data area.
     #[error("{0} is no plain data")]
     NoData(RegisterAddress),
 }
@@ -64,18 +64,18 @@ impl Memory {
         self.get(at).or_else(|| self.read(at))
     }
 
-    /// Returns `count` bytes as read, or `None` unless all of them were read.
+    /// Returns `count` bytes as read, or `None` if some of them were not read.
     pub fn bytes(&self, start: RegisterAddress, count: usize) -> Option<Vec<u8>> {
         let place = |at| RegisterAddress::from_global(at).and_then(|at| self.read(at));
         (start.global()..).take(count).map(place).collect()
     }
 
-    /// Returns the bytes of a described register as read, or `None` unless all of them were read.
+    /// Returns the bytes of a described register as read, or `None` if some of them were not read.
     pub fn register(&self, register: &Register) -> Option<Vec<u8>> {
         self.bytes(register.address, register.width.into())
     }
 
-    /// Returns the bytes of an area, both as read and as edited, or `None` unless all of them were read.
+    /// Returns the bytes of an area, both as read and as edited. Returns `None` if some of them were not read.
     pub fn area(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
         let places: Vec<RegisterAddress> = places(area).collect();
         let read = places.iter().map(|at| self.read(*at)).collect::<Option<Vec<u8>>>()?;
@@ -114,7 +114,7 @@ impl Memory {
     /// Edits bytes from `start` onward as a single undo step.
     ///
     /// # Errors
-    /// [`MemoryError`] if the edit is refused, in which case nothing is changed.
+    /// Returns a [`MemoryError`] and changes nothing if the edit is refused.
     pub fn put(&mut self, description: &Description, start: RegisterAddress, bytes: &[u8]) -> Result<(), MemoryError> {
         let mut wanted = Vec::with_capacity(bytes.len());
         for (at, byte) in (start.global()..).zip(bytes) {

@@ -37,7 +37,7 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// The recorder of an encoder's positions, which also keeps the latest values.
+/// The recorder of an encoder's positions. It also keeps the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: DeviceRecorder<Register>,
@@ -52,12 +52,11 @@ pub struct Streamed {
     next: u64,
     period_ns: i64,
     pub clock_hz: u32,
-    /// Whether the requested frame rate exceeds what the clock allows.
+    /// Whether the requested frame rate is too high for the clock.
     pub is_limited: bool,
 }
 
 impl Streamed {
-    /// Returns the frame rate in frames per second.
     pub fn frame_rate_hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -175,7 +174,6 @@ impl Record {
         self.track.watch(watched);
     }
 
-    /// Returns the registers recorded along with the position.
     pub fn watched(&self) -> Vec<Register> {
         self.track.watched()
     }
@@ -189,7 +187,7 @@ impl Record {
         self.crc_errors
     }
 
-    /// Returns the latest stream, or `None` if polling has stopped or positions now arrive one by one.
+    /// Returns the latest stream. Returns `None` if polling has stopped or positions arrive one by one.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
@@ -198,7 +196,6 @@ impl Record {
         self.track.positions()
     }
 
-    /// Discards the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
@@ -214,7 +211,7 @@ impl Recording for Record {
         &mut self.track.recorder
     }
 
-    // Includes frames that an adapter could not send.
+    // The count includes frames that an adapter could not send.
     fn dropped_count(&self) -> u64 {
         self.track.dropped_count().saturating_add(self.lost)
     }

@@ -12,7 +12,7 @@ use crate::devices::biss::state::explain as words;
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 
-/// Returns whether an operation requires or supports an operator.
+/// Returns whether an operation is shown step by step, because an operator may be at the motor.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.turns() || matches!(op, Op::FirePreset { .. })
 }
@@ -107,7 +107,7 @@ impl Reviewable for Biss {
     }
 }
 
-/// Returns the selected parts of a mounting run that the plan does not contain because nothing would change.
+/// Returns the selected steps that the plan does not contain, because they would change nothing.
 fn skipped_operations(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),

@@ -106,7 +106,7 @@ impl Group {
 }
 
 impl RegisterEntry<'_> {
-    /// Returns whether the value differs from the factory default; `false` if the description gives no default or the
+    /// Returns whether the value differs from the factory default. Returns `false` if no default is known or the
     /// register was not read.
     pub fn differs_from_delivery(&self) -> bool {
         let default = &self.row.register.default;
@@ -143,7 +143,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
     }
 }
 
-/// Returns the name of a data sheet bank, which is the same for every encoder that conforms to BP3.
+/// Returns the name of a data sheet bank. The name is the same for every encoder that conforms to BP3.
 fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()

@@ -44,7 +44,7 @@ pub fn filter(filter: PositionFilter) -> Text {
     }
 }
 
-/// Returns the reason why a data sheet bank is unreliable.
+/// Returns the reason why a data sheet bank is invalid.
 pub fn sheet(error: &EdsError) -> Text {
     match error {
         EdsError::Checksum { expected, got, .. } => TEXTS
@@ -85,7 +85,7 @@ pub fn eds_value_text(value: EdsValue) -> Text {
     }
 }
 
-/// Returns the meaning of a data sheet field, or `None` if it means no more than its raw number.
+/// Returns the meaning of a data sheet field. Returns `None` if the raw number needs no explanation.
 pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
@@ -101,7 +101,7 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }
 
-/// The built-in description of the kit encoder, with the manual's field names in both languages for the fields found in
-/// every data sheet.
+/// The built-in description of the kit encoder. It provides the names of data sheet fields in both languages, and these
+/// fields are the same in every data sheet.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

@@ -1,5 +1,5 @@
-//! Writing to an encoder: edits or a profile as a request, the jobs, an operator at the motor if required, and the
-//! registers to read again afterwards.
+//! Writing of edits or a profile to an encoder. This includes the request, the jobs, an operator at the motor if
+//! required, and the registers to read again afterwards.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::JobInterruption;
 
-/// Patience for a shaft to come to rest when no operator is present.
+/// A substitute for an absent operator. It waits three seconds for the shaft to come to rest.
 const UNATTENDED: UnattendedOperator = UnattendedOperator { patience: Duration::from_secs(3) };
 
 impl Encoder {

@@ -97,7 +97,6 @@ impl TypedConnectForm for BissConnectForm {
     }
 }
 
-/// Draws the choice between the configuration pin and the bus.
 fn reached_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {

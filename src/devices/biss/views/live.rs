@@ -34,7 +34,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     if !is_angle {
         row(ui, theme, &theme.say("unit.steps"), theme.monospace(reading.position().to_string()));
     } else if ui.available_height() < LOW {
-        // In a window of little height, the plot needs the space.
+        // In a window of small height, the plot needs the space.
         let (turns, steps) = (theme.say("live.turns"), theme.say("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
@@ -56,8 +56,8 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     }
 }
 
-/// Draws the menu of values to read with the position. It offers the usual registers; all others are selected in the
-/// register table.
+/// Draws the menu of values to read along with the position. It offers common registers, and all others can be selected
+/// in the register table.
 pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("live.watch");
     let Some(description) = &encoder.description else { return };

@@ -24,10 +24,8 @@ use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Registers, grouped by bank.
     Registers,
     Data,
-    /// Step-by-step calibration, Wiegand test, preset and filter.
     Procedures,
     Backups,
 }
@@ -43,7 +41,7 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page handles its own scrolling and keeps its buttons in place.
+    /// Returns whether the page scrolls its own content, so that its buttons stay in place.
     fn handles_scrolling(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
     }
@@ -56,7 +54,7 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
-/// Draws messages below a page's table, so that clickable items do not move.
+/// Draws messages below the table of a page, where they do not move clickable items.
 fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -65,7 +63,6 @@ fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<
     });
 }
 
-/// Draws the reason why the data could not be read.
 fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
@@ -75,7 +72,6 @@ fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     motor::turning_ui(ui, theme, encoder, actions);
 }
 
-/// Draws the warning that registers may show values that were never saved, with the button that returns to operation.
 fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = encoder.unsaved() else { return };
     ui.horizontal_top(|ui| {
@@ -153,7 +149,7 @@ impl TypedDeviceView for BissView {
         actions: &mut Vec<Action>,
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
-        // Progress is shown step by step below; the bar itself explains the effect of cancelling.
+        // Progress is shown step by step below. The bar explains the effect of cancelling.
         let instead = is_led.then(|| say(theme, "guide.cancel_note"));
         status_line::running_ui(ui, theme, device, instead, actions);
     }

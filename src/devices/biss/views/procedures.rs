@@ -95,7 +95,6 @@ fn stored(encoder: &Encoder) -> PresetForm {
     value.zip(layout).map(|(value, layout)| PresetForm::of(value, layout)).unwrap_or_default()
 }
 
-/// Draws a warning that the encoder was left in a device mode or with its password set.
 fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(status) = &encoder.status else { return };
     let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
@@ -188,7 +187,6 @@ fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps,
     Ok(MountingSteps { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
-/// Draws the list of open profiles from which the data to write is selected.
 fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()
@@ -220,10 +218,10 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let layout = &identity.layout;
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        // The first error of both; it names its field.
+        // Only the first error is shown. It names its field.
         show_error_below(ui, theme, form.singleturn(layout).err().or(form.multiturn(layout).err()).as_ref());
         let value = form.value(layout);
-        // The encoder uses the saved value, whatever is in the fields.
+        // The encoder uses the saved value and not the value in the fields.
         let saved = encoder.survey.as_ref().and_then(|survey| survey.preset);
         let is_saved = saved.is_none() || value.as_ref().ok().copied() == saved;
         let ready = encoder.session.is_ready();

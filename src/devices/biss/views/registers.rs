@@ -20,8 +20,7 @@ pub(super) struct RegistersUiState {
     folded: bool,
 }
 
-/// Width of the bank list, and page width from which the list is beside the table. On a narrower page a drop-down above
-/// the table replaces the list.
+/// Width of the bank list. On a page narrower than `BESIDE`, a drop-down above the table replaces the list.
 const BANKS: f32 = 176.0;
 const BESIDE: f32 = 860.0;
 
@@ -62,7 +61,6 @@ pub(super) fn page_ui(
     });
 }
 
-/// Draws the buttons and messages for the selected bank and register.
 fn head_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -104,7 +102,6 @@ fn read_label(bank: Option<u8>) -> Text {
     }
 }
 
-/// Draws the watch button for the selected register, and the list of watched registers.
 fn watching_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));

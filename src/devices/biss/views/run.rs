@@ -15,7 +15,7 @@ use crate::ui::{Theme, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    // The view jumps to the result once available.
+    // The view scrolls to the result once it is available.
     let is_over = guide.end.is_some();
     let seen = ui.scope_id().with("end");
     if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
@@ -100,8 +100,7 @@ fn step(
     step
 }
 
-/// Returns the gauges shown while the operator turns the motor. Their marks use the limits that also apply to starting
-/// the run.
+/// Returns the gauges shown while the operator turns the motor. Their marks are the limits for the start of the run.
 fn speed_gauges(theme: &Theme, demand: &OperatorPrompt) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
@@ -202,7 +201,6 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
     });
 }
 
-/// Draws one line of the final report with its severity.
 fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {

@@ -29,7 +29,7 @@ enum Captured {
     Bytes(Vec<u8>),
 }
 
-/// Parses the arguments: four hexadecimal digits are a word, everything else is bytes.
+/// Parses the arguments. Four hexadecimal digits are a word; anything else is a sequence of bytes.
 fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
     let word = |text: &String| {
         let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
@@ -68,8 +68,8 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
     DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
 }
 
-/// Decodes a packet, or process data recognised by its length. If the direction is known, bytes of a matching length
-/// are taken as process data.
+/// Decodes bytes as a packet, or as process data if their length matches a layout. With a known direction, bytes of a
+/// matching length are always process data.
 fn decode_bytes(bytes: &[u8], known: &DecodeContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::all_with_length(bytes.len()).next().is_some();
     let packet =

@@ -46,8 +46,8 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
     Err(Failure::Failed(vec![format!("{summary} Check supply, cable and address: {hint}")]))
 }
 
-/// Returns the addresses to query for a link: that of a single device, or the broadcast address of a network
-/// (enip:192.168.1.255).
+/// Returns the addresses to query: that of a single device, or the broadcast address of a network. An example of a
+/// broadcast link is `enip:192.168.1.255`.
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (LinkScheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage(

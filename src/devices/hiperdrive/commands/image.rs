@@ -127,8 +127,8 @@ fn turns_text(position: i32) -> String {
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 
-/// Returns the meanings of eight bytes as a parameter word, if the manual lists the parameter. Only string parameters
-/// have elements.
+/// Decodes eight bytes as a parameter word, both as a request and as an answer. The result is empty if the manual does
+/// not list the parameter. A request for an element must name a string parameter, because only strings have elements.
 fn decode_parameter_word(bytes: &[u8], known: &DecodeContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
@@ -192,8 +192,8 @@ fn has_expected_width(pkw: Pkw, row: &ParameterRow) -> bool {
     }
 }
 
-/// Returns whether a value of the given width, a word or else a double word, can belong to the parameter. Four
-/// characters of a string form a double word.
+/// Returns whether a word or a double word can be a value of the parameter. A double word can also hold four characters
+/// of a string.
 fn matches_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
 }

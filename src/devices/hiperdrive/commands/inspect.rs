@@ -140,10 +140,11 @@ impl DriveFact {
     }
 }
 
-/// Returns the facts that a drive reports. The newest entries in the error buffer are errors: as many as the drive
-/// has counted since the last acknowledgement, and at least one during a fault. Older entries survive a power cycle
-/// (reference 4) and do not describe the present state. A drive outside its limits and a communication error are
-/// warnings.
+/// Returns the errors and warnings that a drive reports.
+///
+/// Entries in the error buffer survive a power cycle, so only the newest ones count as errors. Their number is the
+/// fault count since the last acknowledgement, or at least one during a fault. A drive outside its limits and a
+/// communication error are warnings. See reference 4.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
@@ -250,7 +251,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
     Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
-/// Formats a string parameter, followed by the number it contains, if any, with the unit.
+/// Formats a string parameter. If the string contains a number, the number and its unit follow.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal_value(text).filter(|_| !unit.is_empty()) {
         Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),

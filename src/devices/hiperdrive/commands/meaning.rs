@@ -39,8 +39,8 @@ impl WordMeaning {
     }
 }
 
-/// Returns the possible meanings of a word; only one if the direction is known. Bit 11 usually decides: a control word
-/// never has it set, a detected drive always does.
+/// Returns the possible meanings of a word. If the direction is known, there is only one. Otherwise bit 11 usually
+/// decides: it is never set in a control word and always set in the status word of a detected drive.
 ///
 /// # Errors
 /// Returns the reason why the word must not be sent, if its direction makes it a control word.

@@ -1,4 +1,4 @@
-//! Plans for an adapter or a hub: shown, confirmed, and carried out.
+//! Shows, confirms and carries out plans for an adapter or a hub.
 
 use serde_json::{Value as Json, json};
 
@@ -60,7 +60,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the report of the plan as text and JSON, with the old and new value of each parameter and the cost.
+/// Returns the report of a plan as text and JSON: the old and new value of each parameter, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
@@ -77,7 +77,6 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
-/// Lists the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
     for words in plan.ops.iter().map(words::op) {

@@ -54,7 +54,7 @@ impl TurnPosition {
     /// Splits a position. A turn has 256 · numerator / denominator steps (reference 5).
     fn of(position: i32, scale: PositionScale) -> Self {
         let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
-        // Calculated in fractions of a step, so that a turn is a whole number.
+        // Fractions of a step make a turn a whole number.
         let (turn, parts) = (256 * numerator, i64::from(position) * denominator);
         let rest = parts.rem_euclid(turn);
         // At most 256 · 65535, which `f64` represents exactly.

@@ -19,8 +19,8 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Time to wait for the drives to stop, several times the longest interval, so that a stop word is sent before the
-/// program may end.
+/// Time to wait for the drives to stop. It is several times the longest send interval, so a stop word is sent before
+/// the program ends.
 const STOPPED: Duration = Duration::from_millis(500);
 /// Time to wait until the drives are switched off and the connection is closed.
 const RELEASED: Duration = Duration::from_secs(1);

@@ -59,7 +59,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     if (row.number, value) == (SERVICE, 0) {
         return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
-    // Travel is checked by the plan, which knows the scale and can name both limits.
+    // The plan checks the travel, because it knows the scale and can name both limits.
     if row.reach.is_none() || row.number == REFERENCE {
         row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
     }

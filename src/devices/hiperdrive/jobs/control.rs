@@ -167,8 +167,8 @@ impl Hiperdrive {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
-    /// Closes a lost cyclic connection at the target as well, and reports the loss once. Losing explicit messaging also
-    /// counts as a loss, since motion is not allowed without access to parameters.
+    /// Closes a lost cyclic connection at the target as well, and reports the loss once. A loss of explicit messaging
+    /// counts too, because motion is not allowed without access to the parameters.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.mark_session_lost();
@@ -180,8 +180,8 @@ impl Hiperdrive {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
-        // The target may already have closed the connection or may not reply; in that case the target's own time-out
-        // ends it.
+        // The target may already have closed the connection, or may not reply. Its own time-out then ends the
+        // connection.
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
@@ -196,7 +196,7 @@ impl Hiperdrive {
     ) -> Result<Committed, JobError> {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
-            // The values before the plan, against which a changed scale is detected.
+            // These values are from before the plan. A changed scale is detected by comparison with them.
             let rules = MotionRules::by(|base| commit.prepared.image.for_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {

@@ -33,7 +33,7 @@ struct CyclicCommands {
     lost: Mutex<Option<ConnectionLoss>>,
 }
 
-/// Item type of a channel that never carries a value and only signals, by disconnecting, that the thread has ended.
+/// Item type of a channel that never carries a value. The channel signals by disconnecting that the thread has ended.
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
@@ -49,8 +49,8 @@ pub struct CyclicRunner {
 /// Maximum time to wait for the thread to end. Covers the stop sequence, three packets with the drives off, and a
 /// margin for the operating system.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// Maximum number of received packets handled once the next send is due, so that flooding the port cannot delay
-/// sending.
+/// Maximum number of received packets handled once the next send is due. The limit keeps a flooded port from delaying
+/// the send.
 const AT_ONCE: usize = 64;
 
 impl Cyclic {
@@ -84,7 +84,8 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
-    /// Returns the reason if the connection was lost. The owner must then close it over the session's own connection.
+    /// Returns the reason for the loss if the connection was lost. The owner must then close it through the session's
+    /// own connection.
     pub fn lost(&self) -> Option<ConnectionLoss> {
         self.motion.lost()
     }
@@ -111,7 +112,7 @@ impl Drop for Cyclic {
 }
 
 impl CyclicRunner {
-    /// Creates the pump for a newly opened connection; `port` must be directed at the target.
+    /// Creates the runner for a newly opened connection. `port` must be directed at the target.
     pub fn new(
         port: Box<dyn DatagramChannel>,
         opened: &Opened,

@@ -96,11 +96,12 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Profile items that the device does not have.
     pub missing: Vec<String>,
-    /// Mounting values that differ but are left unchanged.
+    /// Parameters that depend on the mounting of the drive and differ, but are left unchanged.
     pub mounting_left: Vec<Item>,
     /// Type differences between the profile and the device or its drives.
     pub other_types: Vec<OtherType>,
-    /// Mounting values that come from another device's profile and must be set up again after writing.
+    /// Parameters that depend on the mounting and come from another device's profile. They must be set up again after
+    /// writing.
     pub mounting_written: Vec<Item>,
 }
 

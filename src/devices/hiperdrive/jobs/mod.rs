@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives behind an adapter or a hub as a device of a session: its jobs, the cyclic connection that moves
-//! the drives, and the motion handle.
+//! The session device for HIPERDRIVE drives behind an adapter or a hub: its jobs, the cyclic connection that moves the
+//! drives, and the motion handle.
 
 mod commit;
 mod control;
@@ -83,7 +83,7 @@ impl Session<Hiperdrive> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// Returns the handle that moves the drives, which stays the same for the whole session. The handle has no effect
+    /// Returns the handle that moves the drives. The handle stays the same for the whole session and has no effect
     /// while there is no cyclic connection.
     pub fn motion(&self) -> Motion {
         self.device.control.motion()

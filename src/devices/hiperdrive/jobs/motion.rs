@@ -1,5 +1,5 @@
-//! The motion handle. Requests pass through a cell that only holds the latest one; the state of the drives is returned
-//! in the same way. The thread of the cyclic connection reads requests and writes the state; neither side waits.
+//! The motion handle. Its requests pass through a cell that holds only the latest one. The state of the drives returns
+//! the same way. The thread of the cyclic connection reads the requests and writes the state. Neither side waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -29,7 +29,7 @@ struct Shared {
 
 struct Cell {
     intent: MotionIntent,
-    /// Limits of each drive, stored nowhere else.
+    /// Limits of each drive. There is no other copy of them.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
@@ -38,7 +38,7 @@ struct Cell {
     session: SessionWatch,
     punctual: bool,
     view: MotionSnapshot,
-    /// Whether the program is ending, so that no motion is allowed.
+    /// Whether the program is shutting down. No motion is allowed then.
     is_shutting_down: bool,
     /// Whether the target holds a cyclic connection that this session opened.
     connected: bool,
@@ -54,14 +54,14 @@ pub struct DrivesSnapshot {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionSnapshot {
     pub open: bool,
-    /// Drives of the connection with their latest state, by number.
+    /// Latest state of each drive of the connection, ordered by number.
     pub drives: Vec<DriveSnapshot>,
     pub link: LinkStatistics,
     /// Parameters read through the parameter words, or `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
     /// Whether the connection thread runs with priority over ordinary threads.
     pub punctual: bool,
-    /// Reason for the loss, if the connection was lost without being closed.
+    /// Reason for the loss if the connection was lost.
     pub lost: Option<ConnectionLoss>,
 }
 
@@ -73,17 +73,16 @@ pub struct DriveSnapshot {
     pub received_at: Option<Moment>,
     pub sent: Setpoint,
     pub phase: Phase,
-    /// Number of the running act, or of the last one if none is running; 0 if there has been no act.
+    /// Number of the running action, or of the last one if none is running. It is 0 before the first action.
     pub act: u64,
-    /// The last act that ended, and its outcome.
+    /// Number of the last action that ended, and how it ended.
     pub ended: Option<(u64, Ended)>,
 }
 
-/// Duration for which a parameter is read after the latest request and for which a reading counts as recent.
+/// Time for which a parameter is read after the latest request. A reading counts as recent for the same time.
 const WATCHED: Duration = Duration::from_secs(5);
 
 impl Motion {
-    /// Creates the motion state with no request and no permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let intent = MotionIntent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
@@ -100,8 +99,8 @@ impl Motion {
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
 
-    /// Requests a motion of a drive and returns the number of the new act, which replaces the previous act and stops
-    /// its motion. The act must be [refreshed](Self::refresh); without a cyclic connection it has no effect.
+    /// Requests a motion of a drive and returns the number of this action. The new action replaces the previous one and
+    /// stops its motion. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
     pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -110,7 +109,7 @@ impl Motion {
         number
     }
 
-    /// Refreshes the last request, which is required every 100 ms while anything moves. After 250 ms without a refresh
+    /// Refreshes the last request. This is required every 100 ms while anything moves. After 250 ms without a refresh
     /// the drive stops, and a later refresh has no effect, even if the connection thread was suspended in the meantime.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
@@ -189,8 +188,8 @@ impl Motion {
         }
     }
 
-    /// Requests that a parameter be read for some time through the parameter words of the cyclic connection. Returns
-    /// the latest reading, or `None` if that reading is old or there is no such connection.
+    /// Reads a parameter for some time through the parameter words of the cyclic connection. Returns the latest
+    /// reading, or `None` if that reading is old or there is no such connection.
     pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -211,7 +210,8 @@ impl Motion {
         self.lock().permitted(drive, now)
     }
 
-    /// Starts a connection and returns the number of the last act that cannot move anything over it.
+    /// Marks the start of a connection and returns the number of the latest action. Actions up to this number cannot
+    /// move a drive over the new connection.
     pub(super) fn open(&self) -> u64 {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -301,15 +301,15 @@ impl Motion {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether the last control word sent to every drive stops it, that is, whether a requested stop has been
-    /// sent. Returns `true` without a connection.
+    /// Returns whether every drive was told to stop, which means that the last control word sent to it is a stop.
+    /// Returns `true` without a connection.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
     }
 
     fn lock(&self) -> MutexGuard<'_, Cell> {
-        // Each change is complete: a panic leaves the cell consistent.
+        // Every change to the cell is complete, so a panic leaves it consistent.
         self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

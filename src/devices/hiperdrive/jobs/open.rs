@@ -17,16 +17,16 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to an adapter or a hub without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
 /// Opens a link to an adapter or a hub: `enip:` for a real device, `sim:` for a virtual one, and `replay:` for a
-/// recording, which has no cyclic connection.
+/// recording. A recording has no cyclic connection.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// Returns an [`OpenError`] if the link cannot be opened. Nothing has been sent then.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());

@@ -57,7 +57,7 @@ pub(super) fn prepare(
                     FaultReset::Nothing => plan.ops.clear(),
                     FaultReset::Acknowledgement => {}
                     FaultReset::Reset => {
-                        // It concerns all drives, and the plan shows it as a reset.
+                        // A reset concerns all drives, so the plan shows it as a reset.
                         plan = plan_service(&state.image, Service::Reset);
                         plan.ops.push(Op::Service(*service));
                     }

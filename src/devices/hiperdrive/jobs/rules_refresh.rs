@@ -1,5 +1,5 @@
-//! Repeated reading of the limits while drives may be moved, because another master may change them: limits of the
-//! displayed drive and of the drive moved last. It has its own interval, independent of other polling.
+//! Repeated reading of the limits while drives may be moved, because another master may change them. The limits read
+//! are those of the displayed drive and of the drive moved last. The interval is independent of other polling.
 
 use std::time::Duration;
 
@@ -94,7 +94,7 @@ impl Hiperdrive {
         // All limits are read before anything moves again.
         self.control.motion().invalidate_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
-            // Nothing can be queried any more: this is reported as a loss.
+            // The device can no longer be queried, which counts as a loss.
             return self.control.mark_session_lost();
         }
         if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
@@ -112,7 +112,7 @@ impl Hiperdrive {
     /// Reads the limits of all drives. Cancellation is ignored, since the new state must be known after a change.
     ///
     /// # Errors
-    /// Returns errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = context.clock.now();

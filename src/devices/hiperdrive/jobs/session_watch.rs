@@ -35,7 +35,7 @@ pub(super) struct SessionWatch {
     requested: Option<Moment>,
     /// Time at which the line was last checked and nothing had arrived.
     looked: Moment,
-    /// Slowest recent reply time; each faster reply lowers it.
+    /// Longest recent reply time. Each shorter reply lowers it by up to an eighth.
     slowest: Duration,
     /// Whether the last bytes received did not form a frame.
     broken: bool,
@@ -50,7 +50,7 @@ impl SessionWatch {
 
     pub(super) fn answer(&mut self, now: Moment) {
         self.broken = false;
-        // A parameter that takes seconds does not make the others slow.
+        // A reply that takes seconds is an exception and does not raise the time allowed for other replies.
         if let Some(took) = self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
             self.slowest = took.max(self.slowest * 7 / 8);
         }

@@ -30,7 +30,7 @@ pub enum CheckStep {
     Memory,
     Drives,
     Request(DriveNumber),
-    /// RS-485 to a drive.
+    /// RS-485 link to a drive.
     Line(DriveNumber),
     /// RS-485 time-out of a drive, which stops a drive without communication.
     Timeout(DriveNumber),
@@ -67,7 +67,7 @@ pub enum CheckFinding {
     /// Number of times a value was read, and the longest reply time.
     Replies {
         requested: u32,
-        /// The longest, in milliseconds.
+        /// Longest reply time in milliseconds.
         slowest_ms: u64,
         /// Number of frames received after their time limit.
         late: u64,
@@ -75,9 +75,9 @@ pub enum CheckFinding {
     Category(String),
     SerialNumber(String),
     Version(String),
-    /// Tenths of a volt.
+    /// Supply voltage in tenths of a volt.
     Supply(i64),
-    /// Degrees Celsius.
+    /// Temperature in degrees Celsius.
     Temperature(i64),
     Switch(AddressSwitch),
     UnknownSwitch(i64),
@@ -93,59 +93,59 @@ pub enum CheckFinding {
         serial_number: String,
     },
     NoDrives,
-    /// Parameter 152 is 1.
+    /// The drive is requested: parameter 152 is 1.
     Requested,
-    /// Parameter 152 is 0.
+    /// The drive is not requested: parameter 152 is 0.
     NotRequested,
     /// Switch S3 of a hub must be at 0 for drives to move. The program cannot read its position.
     LookAtS3,
-    /// Parameter 118 is 0.
+    /// The RS-485 link has no errors: parameter 118 is 0.
     LineGood,
-    /// Parameter 118, which is FFFFh if there is no drive, or an error.
+    /// Error of the RS-485 link, parameter 118. The value is FFFFh if there is no drive.
     LineWord(u16),
-    /// Parameter 186, in tenths of a second.
+    /// RS-485 time-out in tenths of a second, parameter 186.
     Timeout(i64),
     /// Parameter 186 is not a time, so a drive without communication continues to move.
     NoTimeout,
     State(State),
     /// The status word is implausible. The process data may use the other byte order.
     StrayStatus(u16),
-    /// Parameter 116 is not 0.
+    /// Drive error word, parameter 116, which is not 0.
     DriveWord(u16),
-    /// Parameter 117 is not 0.
+    /// Motion status, parameter 117, which is not 0.
     MotionWord(u16),
     /// The error buffer of the drive contains an error.
     Error(ErrorCode),
     /// Number of faults since the last acknowledgement.
     Faults(u8),
-    /// Numerator and denominator of the position scale, with the limits.
+    /// Position scale and limits of a drive.
     Range {
-        /// Parameter 154.
+        /// Numerator of the position scale, parameter 154.
         numerator: i64,
-        /// Parameter 156.
+        /// Denominator of the position scale, parameter 156.
         denominator: i64,
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         lower: i64,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         upper: i64,
     },
     /// Numerator and denominator do not form a valid scale.
     BadScale {
-        /// Parameter 154.
+        /// Numerator of the position scale, parameter 154.
         numerator: i64,
-        /// Parameter 156.
+        /// Denominator of the position scale, parameter 156.
         denominator: i64,
     },
     /// The upper limit is not greater than the lower limit.
     LimitsCrossed {
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         lower: i64,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         upper: i64,
     },
     /// A limit is farther from 0 than the travel of the drive.
     BeyondTravel {
-        /// Parameter 158 or 160.
+        /// Limit in scaled steps, parameter 158 or 160.
         limit: i64,
         turns: f64,
         most: i32,
@@ -153,16 +153,16 @@ pub enum CheckFinding {
     Within(i64),
     Outside {
         position: i64,
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         lower: i64,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         upper: i64,
     },
 }
 
-/// Number of readings from which the reply time is measured.
+/// Number of readings used to measure the reply time.
 const LOOKS: u32 = 20;
-/// Allowed supply voltage in tenths of a volt, which is 24 V, 15 % less or 20 % more (`U`).
+/// Allowed supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
 /// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference 8.9).
 const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
@@ -170,7 +170,7 @@ const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 /// Runs the check, which ends early only if the device fails.
 ///
 /// # Errors
-/// Returns [`Error::NotHiperdrive`], or errors of the exchange.
+/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
 pub fn check(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, CheckStep),
@@ -299,7 +299,7 @@ fn error_findings(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     }
     findings.extend((*drive != 0).then_some((Verdict::Attention, CheckFinding::DriveWord(*drive))));
     findings.extend((*motion != 0).then_some((Verdict::Attention, CheckFinding::MotionWord(*motion))));
-    // Entries of the buffer may be old: the count of faults tells whether they matter.
+    // Entries of the error buffer may be old. They matter only if faults have been counted.
     let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
     findings.extend(buffer.iter().map(|code| (of_buffer, CheckFinding::Error(*code))));
     findings.extend((*faults != 0).then_some((Verdict::Attention, CheckFinding::Faults(*faults))));

@@ -1,14 +1,14 @@
-//! Originator side of the cyclic connection: sending, receiving, counting and loss detection. Pure: packets and times
-//! are arguments, and nothing blocks.
+//! Originator side of the cyclic connection: sending, receiving, statistics and loss detection. Packets and times are
+//! arguments, and nothing blocks.
 //!
 //! ```text
 //! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a
 //! port)
 //! ```
 //!
-//! If nothing has arrived for three intervals, motion stops. If nothing arrives in a further such period of
-//! uninterrupted listening, the connection is lost: the drives are stopped, then switched off, and the connection ends.
-//! It is never restored; the user opens another.
+//! Motion stops if nothing has arrived for three intervals. The connection is lost if nothing arrives in a further such
+//! period of uninterrupted listening. The drives are then stopped and switched off, and the connection ends. It is
+//! never restored; the user opens another.
 
 mod connection;
 mod drives;

@@ -1,15 +1,15 @@
-//! The dead-man. It alone generates the control word of a drive in every interval, from the drive's report, the user's
-//! request and the drive's permit (reference 3). Pure: time is an argument, and nothing blocks.
+//! The dead-man control. It alone generates the control word of a drive in every interval, from the drive's report, the
+//! user's request and the drive's permit (reference 3). Time is an argument, and nothing blocks.
 //!
 //! Invariants for any input:
-//! - A word that could start a motion is sent only while a fresh act of the user requests that motion. All other words
-//!   are standing words ([`ControlWord::is_standing`]), which start nothing, whatever the drive reports and however
-//!   late.
+//! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other
+//!   words are standing words ([`ControlWord::is_standing`]). They start nothing for any report of the drive, even a
+//!   late one.
 //! - The call that receives a reason to stop returns a standing word.
-//! - An act that has ended never starts again; neither does one that was not refreshed until it could start.
+//! - An action that has ended never starts again. Neither does one that was not refreshed until it could start.
 //! - A motion beyond the limits, or away from its target, is stopped with the report that shows it (`watch`).
-//! - A drive that has run in speed mode is led through 0400 before anything else, which discards the job that clearing
-//!   bit 12 would start. While no job is running, the target is the present position.
+//! - A drive that has run in speed mode receives 0400h before anything else. This discards the job that clearing bit 12
+//!   would start. While no job is running, the target is the present position.
 //!
 //! A motion leads the drive up to *enabled* without further requests, but never out of a fault or the switch-on lock.
 
@@ -50,13 +50,13 @@ pub struct DeadMan {
     stage: Stage,
     level: TargetState,
     act: Option<Act>,
-    /// Number of the last act that can no longer start.
+    /// Number of the last action that is no longer allowed to start.
     spent: u64,
-    /// Effort of the last motion.
+    /// Speed and torque of the last motion.
     effort: SpeedTorque,
-    /// Whether speed mode was entered, so that the drive may remember the run and must first go below operational.
+    /// Whether speed mode was entered. The drive may remember the run and must first go below operational.
     after_run: bool,
-    /// Whether reports are missing at the moment, so that no motion may start.
+    /// Whether reports are currently missing. No motion may start then.
     is_out_of_contact: bool,
     ended: Option<(u64, Ended)>,
 }
@@ -64,7 +64,7 @@ pub struct DeadMan {
 #[derive(Clone, Copy, Debug)]
 struct Act {
     number: u64,
-    /// Latest request of the act. Pausing a job also counts as a request.
+    /// Latest request of the action. Pausing a job also counts as a request.
     request: MotionRequest,
     motion: Option<Motion>,
     watch: Option<Watch>,
@@ -86,14 +86,14 @@ const START: Duration = Duration::from_secs(1);
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// Maximum delay of a report between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
-/// Time for which positions must have arrived before they count as those of the drive (`U`: a hub first queries all its
-/// drives).
+/// Time for which positions must have arrived before they count as those of the drive. A hub first queries all its
+/// drives (`U`).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 /// Time at standstill after which a drive counts as not having reached its target.
 const SHORT: Duration = Duration::from_millis(500);
 
 impl DeadMan {
-    /// Creates the state for a newly opened connection. Acts numbered up to `spent` do not start.
+    /// Creates the state for a newly opened connection. Actions numbered up to `spent` do not start.
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,
@@ -157,12 +157,12 @@ impl DeadMan {
         self.sent
     }
 
-    /// Returns the number of the running act, or of the last act that ended; 0 if there has been none.
+    /// Returns the number of the running action, or of the last one that ended. Returns 0 before the first action.
     pub fn act(&self) -> u64 {
         self.act.map_or(self.ended.map_or(0, |(number, _)| number), |act| act.number)
     }
 
-    /// Returns the number of the last act that ended, and how it ended.
+    /// Returns the number of the last action that ended, and how it ended.
     pub const fn ended(&self) -> Option<(u64, Ended)> {
         self.ended
     }
@@ -185,12 +185,12 @@ impl DeadMan {
         matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }
 
-    /// Returns whether no act is running and the drive does not have to be stopped.
+    /// Returns whether no action is running and the drive does not have to be stopped.
     pub const fn is_idle(&self) -> bool {
         matches!(self.stage, Stage::Rest { moves: None })
     }
 
-    /// Handles the end or loss of the connection by ending the running act and stopping the motion.
+    /// Handles the end or loss of the connection by ending the running action and stopping the motion.
     pub fn connection_lost(&mut self, now: Moment) {
         if self.stage.has_motion() {
             self.stop(now, Ended::Lost);
@@ -200,7 +200,7 @@ impl DeadMan {
         }
     }
 
-    /// Handles the loss of position reports, for whatever reason. Motion is stopped, and no motion may start.
+    /// Handles missing position reports. Motion is stopped, and no motion may start.
     pub fn contact_lost(&mut self, now: Moment) {
         self.is_out_of_contact = true;
         if self.stage.has_motion() {
@@ -220,8 +220,8 @@ impl DeadMan {
         }
     }
 
-    /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time:
-    /// neither it nor an earlier one starts any more.
+    /// Marks a request as spent if it can no longer start a motion. This is a rest or a stop, a request for another
+    /// drive, or one that was not refreshed in time. Earlier requests are spent as well.
     fn drop_void_state(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -241,7 +241,7 @@ impl DeadMan {
         }
     }
 
-    /// Starts a new act if one is requested and the last act has ended.
+    /// Starts a new action if one is requested and the last action has ended.
     fn take(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.drop_void_state(now, intent);
         // A step counts from the present position.
@@ -301,8 +301,8 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Applies the last safeguard, which replaces any control word that could start a motion unless an act with a
-    /// motion is running.
+    /// Replaces a control word that could start a motion while no action with a motion is running. This is the last
+    /// safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }

@@ -22,14 +22,14 @@ impl DiscoveredDevice {
     }
 }
 
-/// Time for collecting replies. A device may delay its reply up to a requested limit, but no delay is requested.
+/// Time for collecting replies. A request may allow a device to delay its reply, but no delay is requested.
 const GATHER: Duration = Duration::from_secs(1);
 const SLICE: Duration = Duration::from_millis(50);
 
 /// Broadcasts a request and collects replies for a second. Each device is returned once, in the order of addresses.
 ///
 /// # Errors
-/// Network errors; [`Error::Cancelled`].
+/// Returns a network error, or [`Error::Cancelled`] if cancelled.
 pub fn discover(
     shout: &mut dyn BroadcastChannel,
     clock: &dyn Clock,

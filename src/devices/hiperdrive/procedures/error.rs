@@ -1,4 +1,4 @@
-//! Errors of drives behind EtherNet/IP, with the facts that a message requires.
+//! Errors of drives behind EtherNet/IP. Each contains the facts that its message needs.
 
 use std::fmt;
 use std::time::Duration;
@@ -116,7 +116,7 @@ pub enum Error {
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// Reply that arrived too late, if any.
+        /// Reply that arrived after the time limit, if any.
         late: Option<LateReplyError>,
     },
     #[error("{requested}: {cause} (attempts: {tries})")]
@@ -130,7 +130,7 @@ pub enum Error {
         /// Extended status word, either 0100h or 0106h.
         extended: u16,
     },
-    /// The device offers a longer send or receive interval than requested, which is too long to stop a drive in time.
+    /// The device offers a longer send or receive interval than requested. A drive could not be stopped in time.
     #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
     TooSlow {
         /// Requested interval in milliseconds.
@@ -139,7 +139,7 @@ pub enum Error {
     },
     #[error("the cyclic connection is open")]
     InControl,
-    /// The link has no cyclic connection, as is the case for a recording.
+    /// The link has no cyclic connection, for example because it is a recording.
     #[error("this link has no cyclic connection")]
     NoCyclic,
     /// The manual does not list a parameter with this number.
@@ -152,13 +152,13 @@ pub enum Error {
     NoPlace { drive: DriveNumber, topology: Topology },
     #[error("no drive is connected to port {}", drive.get())]
     NoDrive { drive: DriveNumber },
-    /// Parameter 152 is 0.
+    /// The drive is not requested: parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
     /// The value is out of range; nothing was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The device refuses the value. The error contains the present range.
+    /// The device refused the value. The error contains the present range.
     #[error("{0}")]
     Refuses(OutOfRange),
     /// The length of a number differs from the type of its parameter.
@@ -170,7 +170,7 @@ pub enum Error {
     /// The parameter is read-only; nothing was sent.
     #[error("parameter {number} ({name}) can only be read")]
     ReadOnly { number: ParameterNumber, name: &'static str },
-    /// Write-only parameter.
+    /// The parameter is write-only.
     #[error("parameter {number} ({name}) can only be written")]
     WriteOnly { number: ParameterNumber, name: &'static str },
     /// The parameter moves the drive and may be written only over the cyclic connection; nothing was sent.
@@ -184,13 +184,13 @@ pub enum Error {
         /// Category of the device, or the name in the identity object.
         product: String,
     },
-    /// A written value is not the one read back.
+    /// The value read back differs from the value written.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
     NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
-    /// Written network settings are not the ones read back.
+    /// The network settings read back differ from those written.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
     NetworkNotTaken { attribute: u16 },
-    /// The device stays busy, because parameter 47 does not become 0.
+    /// The device stays busy: parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy { reads: i64, milliseconds: u64 },
     #[error("{item} has changed since the plan was made")]
@@ -229,8 +229,7 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
-    /// Returns whether the value is unavailable at present or on this device, although other parameters may be
-    /// available.
+    /// Returns whether the value is unavailable at present or on this device. Other parameters may still be available.
     pub const fn is_unavailable(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }

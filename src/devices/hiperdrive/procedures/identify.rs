@@ -1,4 +1,4 @@
-//! Reading the identity, the status, and everything else that can be read (reference 4). Sets nothing.
+//! Reading of the identity, the status, and everything else that can be read. Nothing is set. See reference 4.
 
 use std::collections::BTreeMap;
 
@@ -15,17 +15,17 @@ use crate::units::Moment;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub topology: Topology,
-    /// Parameter 13.
+    /// Product category, parameter 13.
     pub category: String,
-    /// Parameter 15.
+    /// Product name, parameter 15.
     pub name: String,
-    /// Parameter 16.
+    /// Article number, parameter 16.
     pub article_number: String,
-    /// Parameter 17.
+    /// Serial number, parameter 17.
     pub serial_number: String,
     /// Production date (parameter 18), as week and year.
     pub production_date: String,
-    /// Parameter 19.
+    /// Software version, parameter 19.
     pub version: String,
     pub drives: Vec<DriveIdentity>,
 }
@@ -33,15 +33,15 @@ pub struct Identity {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveIdentity {
     pub number: DriveNumber,
-    /// Parameter 120.
+    /// Variant of the drive, parameter 120.
     pub variant: Variant,
-    /// Parameter 121.
+    /// Name of the drive, parameter 121.
     pub name: String,
-    /// Parameter 122.
+    /// Article number of the drive, parameter 122.
     pub article_number: String,
-    /// Parameter 123.
+    /// Serial number of the drive, parameter 123.
     pub serial_number: String,
-    /// Parameter 125.
+    /// Software version of the drive, parameter 125.
     pub version: String,
     /// Whether the drive is requested (parameter 152).
     pub requested: bool,
@@ -69,11 +69,12 @@ pub struct Status {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveStatus {
     pub number: DriveNumber,
-    /// Parameter 105.
+    /// Status word, parameter 105.
     pub status: StatusWord,
     /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference 4).
     pub buffer: Vec<ErrorCode>,
-    /// Parameters 116 to 118: drive, motion, communication. 0 means no error, and FFFFh means no drive.
+    /// Drive error word, motion status and communication error, parameters 116 to 118. 0 means no error, and FFFFh
+    /// means no drive.
     pub words: [u16; 3],
     /// Number of faults since the last acknowledgement, parameter 197.
     pub faults: u8,
@@ -108,7 +109,7 @@ impl Steps<'_> {
 pub struct DriveReading {
     pub at: Moment,
     pub drive: DriveNumber,
-    /// Parameters 105 to 107.
+    /// Status, speed and position, parameters 105 to 107.
     pub actual: ActualValues,
 }
 
@@ -120,7 +121,7 @@ impl Identity {
     /// Returns the identity of a drive selected by the user.
     ///
     /// # Errors
-    /// [`Error::NoPlace`], [`Error::NoDrive`].
+    /// Returns [`Error::NoPlace`] if the device has no such port, or [`Error::NoDrive`] if the port is empty.
     pub fn named(&self, drive: DriveNumber) -> Result<&DriveIdentity, Error> {
         let topology = self.topology;
         let is_place = drive.get() <= topology.drives();
@@ -132,7 +133,8 @@ impl Identity {
 /// Reads the identity of a device.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; a refusal of the device; errors of the exchange.
+/// Returns [`Error::NotHiperdrive`] for another device, or an error if the device refuses a request or the exchange
+/// fails.
 pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Identity, Error> {
     // Number of parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
@@ -164,7 +166,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// Reads a string of a drive, or an empty string if the drive does not provide it, as may be the case while the
+/// Reads a string of a drive. Returns an empty string if the drive does not provide it, which may be the case while the
 /// drive is not requested (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
@@ -187,7 +189,7 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 /// Reads identity and status of a device.
 ///
 /// # Errors
-/// As [`identify`].
+/// Returns the same errors as [`identify`].
 pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, progress)?;
     let numbers: Vec<ParameterNumber> = readable_parameters(&identity).collect();
@@ -224,10 +226,10 @@ const OF_STATUS: u64 = 15;
 /// Reads the errors and states of all drives.
 ///
 /// # Errors
-/// As [`identify`].
+/// Returns the same errors as [`identify`].
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = topology(master)?;
-    // For each drive whether it is present, and the rest.
+    // For each port, one read shows whether a drive is present. The other reads are those of its status.
     let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
@@ -248,7 +250,7 @@ pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Resu
 
 fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>) -> Result<DriveStatus, Error> {
     let mut read = |base| master.read_number(steps.next(of(base, number)?));
-    // A number of 16 bits, as bits.
+    // These parameters are words of 16 bits.
     let mut word = |base| Ok::<_, Error>(read(base)? as u16);
     let mut buffer = Vec::new();
     for error in NEWEST_ERROR..=OLDEST_ERROR {
@@ -271,16 +273,16 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
 /// Reads parameters 105, 106 and 107 of a drive.
 ///
 /// # Errors
-/// [`Error::NoPlace`], [`Error::NoDrive`]; errors of the exchange.
+/// Returns [`Error::NoPlace`] or [`Error::NoDrive`] if the drive does not exist, or an error if the exchange fails.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
     let status = StatusWord::new(word(master, STATUS, drive)?);
-    // Both have this width.
+    // The types of both parameters have this width.
     let speed = master.read_number(of(SPEED, drive)?)? as i16;
     let position = master.read_number(of(POSITION, drive)?)? as i32;
     Ok(DriveReading { at: master.now(), drive, actual: ActualValues { status, speed, position } })
 }
 
-/// Returns the topology, read once a session.
+/// Returns the topology, which is read once per session.
 pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
     if let Some(topology) = master.station().topology() {
         return Ok(topology);

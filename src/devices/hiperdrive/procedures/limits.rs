@@ -1,7 +1,8 @@
-//! Motion limits of a drive with a single owner: scale, limits, confirmation, locks and time of reading form one value.
+//! Motion limits of a drive. Scale, limits, confirmation, locks and time of reading form one value with a single owner.
 //!
-//! The worker updates it when parameters are read, the dead-man obtains a [`Permit`] from it for each packet, the
-//! window displays it, and the settings store the part that must outlast a session (limits to be confirmed).
+//! The worker updates the value when parameters are read, and the window displays it. The dead-man control obtains a
+//! [`Permit`] from it for each packet. The settings store the part that must outlast a session, which is the limits to
+//! be confirmed.
 
 use std::time::Duration;
 
@@ -20,9 +21,9 @@ pub struct DriveLimits {
     is_factory: bool,
     /// Whether the scale has changed since the user confirmed the limits.
     unconfirmed: bool,
-    /// Time at which each group of parameters was read, or `None` if they must be read because they may have changed.
+    /// Time at which each group of parameters was read, or `None` if they may have changed and must be read.
     read: Option<[Moment; GROUPS]>,
-    /// Time at which the readings were doubted; all groups must be read after it before the next motion starts.
+    /// Time at which the readings became doubtful. All groups must be read after it before the next motion starts.
     doubted: Option<Moment>,
 }
 
@@ -53,8 +54,8 @@ impl DriveLimits {
         limits
     }
 
-    /// Adopts parameter readings; `times` contains the start of reading each group. If the scale has changed, the
-    /// limits must be confirmed, since they denote other positions. Readings older than a doubt do not clear it.
+    /// Adopts parameter readings. `times` contains the time at which the reading of each group began. If the scale has
+    /// changed, the limits denote other positions and must be confirmed. Readings older than a doubt do not clear it.
     pub fn take(&mut self, rules: MotionRules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.has_factory_settings(topology, variant);
@@ -75,28 +76,26 @@ impl DriveLimits {
     /// Requires the parameters to be read again before the next motion begins, because another master may have changed
     /// them. A running motion continues while the last reading is valid.
     pub fn doubt(&mut self, now: Moment) {
-        // The clock is read before the doubt is stored: of two threads, the one with the later time may come first.
+        // Each thread reads the clock before it stores the doubt, so the later time may be stored first.
         self.doubted = self.doubted.max(Some(now));
     }
 
     /// Discards the parameter readings. Unconfirmed limits remain unconfirmed.
     pub fn forget(&mut self) {
-        // The scale stays, so that a change can be detected.
+        // The scale is kept, so that a change can be detected.
         let rules = MotionRules { scale: self.rules.scale, ..MotionRules::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
-    /// Requires the limits to be confirmed before the drive moves.
     pub const fn require_confirmation(&mut self) {
         self.unconfirmed = true;
     }
 
-    /// Returns whether the limits must be confirmed before the drive moves.
     pub const fn is_unconfirmed(&self) -> bool {
         self.unconfirmed
     }
 
-    /// Confirms the limits as shown to the user. If the limits have changed since, returns `false` without effect.
+    /// Confirms the limits as shown to the user. Returns `false` and has no effect if the limits have changed since.
     pub fn confirm(&mut self, seen: DisplayedLimits) -> bool {
         let counts = self.seen() == Some(seen);
         self.unconfirmed &= !counts;
@@ -108,14 +107,15 @@ impl DriveLimits {
         Some(DisplayedLimits { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
-    /// Returns parameters 158 and 160 in scaled steps, or `None` if they have not been read or do not form a range.
+    /// Returns the limits (parameters 158 and 160) in scaled steps. Returns `None` if they have not been read or do not
+    /// form a range.
     pub fn limits(&self) -> Option<(i32, i32)> {
         let (lower, upper) = self.rules.limits?;
         let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
         (limits.0 < limits.1).then_some(limits)
     }
 
-    /// Returns the scale of parameters 154 and 156, or `None` if they have not been read or do not form a scale.
+    /// Returns the position scale (parameters 154 and 156). Returns `None` if it has not been read or is invalid.
     pub fn scale(&self) -> Option<PositionScale> {
         let (numerator, denominator) = self.rules.scale?;
         PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
@@ -151,7 +151,7 @@ impl DriveLimits {
         .collect()
     }
 
-    /// Returns the permit of the drive at this moment; `expert` indicates whether the user has allowed an endless run.
+    /// Returns the permit of the drive at the given time. `expert` tells whether the user has allowed an endless run.
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));

@@ -1,8 +1,8 @@
-//! Host side of explicit messages (reference 7): one session per connection; requests and replies are matched by a
-//! numbered context. Late replies are skipped and counted.
+//! Host side of explicit messages (reference 7). There is one session per connection. A numbered context matches
+//! replies to requests. Late replies are skipped and counted.
 //!
-//! Reads are repeated. A request that sets a value is sent once; if its reply is lost, the value is read back, which
-//! the device answers after the lost request because the stream keeps the order.
+//! Reads are repeated. A request that sets a value is sent once. If its reply is lost, the value is read back. The
+//! stream keeps the order, so the device answers this read after the lost request.
 
 mod connection;
 mod refused;
@@ -54,7 +54,7 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RetryPolicy {
     Always,
-    /// The request is sent once. The reply may take `takes` if that is longer than usual.
+    /// The request is sent once. `takes` is the time limit of the reply if it is longer than usual.
     Never {
         takes: Option<Duration>,
     },
@@ -84,7 +84,7 @@ impl<'a> Master<'a> {
     /// Waits, but returns early if cancelled.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// Returns [`Error::Cancelled`] if cancelled.
     pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         Ok(self.line.wait(duration)?)
     }
@@ -93,7 +93,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work`, which leads to a safe state, ignoring cancellation until it ends.
+    /// Runs `work` to its end and ignores cancellation meanwhile. `work` must lead to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -104,8 +104,9 @@ impl<'a> Master<'a> {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`];
-    /// [`Error::Length`] for a number of the wrong length; errors of the exchange.
+    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
+    /// if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length, or an error if the
+    /// exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == Access::Write {
@@ -126,7 +127,7 @@ impl<'a> Master<'a> {
     /// Reads a numeric parameter.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// Returns the same errors as [`read`](Self::read).
     pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
         match self.read(number)? {
             Value::Number(value) => Ok(value),
@@ -137,7 +138,7 @@ impl<'a> Master<'a> {
     /// Reads a string parameter.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// Returns the same errors as [`read`](Self::read).
     pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),
@@ -149,11 +150,11 @@ impl<'a> Master<'a> {
     /// value yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], with nothing sent; [`Error::Refuses`],
-    /// [`Error::Refused`]; errors of the exchange.
+    /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything. Returns
+    /// [`Error::Refuses`] or [`Error::Refused`] if the device refuses the value, or an error if the exchange fails.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
-        // The plan has checked the travel.
+        // The plan has already checked the travel.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let requested = RequestedItem::Set(number);
@@ -181,7 +182,7 @@ impl<'a> Master<'a> {
     /// Reads the identity object, which every EtherNet/IP device has.
     ///
     /// # Errors
-    /// [`Error::Refused`]; errors of the exchange.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
         let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), RetryPolicy::Always)?;
@@ -196,11 +197,11 @@ impl<'a> Master<'a> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), RetryPolicy::Always)?.data)
     }
 
-    /// Sets an attribute of the TCP/IP object, sending the request once. The device stores the attribute before
-    /// replying.
+    /// Sets an attribute of the TCP/IP object. The request is sent once. The device stores the attribute before it
+    /// replies.
     ///
     /// # Errors
-    /// [`Error::Refused`]; errors of the exchange.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub(super) fn set_attribute(
         &mut self,
         requested: RequestedItem,
@@ -221,7 +222,8 @@ impl<'a> Master<'a> {
         self.request_with_items(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
-    /// Sends a request to an object, with additional items beside the message. Also returns the items beside the reply.
+    /// Sends a request to an object, together with additional items. Returns the reply and the items sent along with
+    /// it.
     fn request_with_items(
         &mut self,
         requested: RequestedItem,
@@ -261,7 +263,7 @@ impl<'a> Master<'a> {
     /// Ends the session. The device does not reply.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub fn unregister(&mut self) -> Result<(), Error> {
         let Some(session) = self.station.session.take() else { return Ok(()) };
         let bytes = Frame::unregister(session).emit();
@@ -294,11 +296,11 @@ impl<'a> Master<'a> {
                 ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
-            // A refusal of the session was immediate.
+            // The device refuses a session at once.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_retry(&mut self.station.line, tries, took);
             match trouble {
-                // The request was not carried out: the device has forgotten the session.
+                // The device has forgotten the session, so the request was not carried out.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
                     if may && requested != RequestedItem::Session =>
                 {
@@ -365,7 +367,7 @@ impl<'a> Master<'a> {
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
             }
-            // Requests that set something are always awaited.
+            // The reply to a request that sets something is always awaited.
             if repeats == RetryPolicy::Always {
                 self.line.check_cancel()?;
             }
@@ -394,7 +396,8 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, ItemList), Exchange
     }
 }
 
-/// Returns the table row of a settable parameter. A parameter that moves a drive is refused.
+/// Returns whether a refusal contains the session number. A stream has a single session. If the reply to the first
+/// RegisterSession was lost, the device refuses the next one and returns the number of the existing session.
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {

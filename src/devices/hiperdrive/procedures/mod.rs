@@ -1,5 +1,5 @@
-//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for all reading and writing,
-//! and the cyclic connection for motion. Reading changes nothing. "Reference" is the project's "hiperdrive".
+//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub. Explicit messages do all reading and writing,
+//! and the cyclic connection does all motion. Reading changes nothing. "Reference" is the project's "hiperdrive".
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)

@@ -32,7 +32,7 @@ impl Network {
 /// Reads the switches and the TCP/IP object.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(own(12)?)?;
     let control = none_if_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
@@ -47,7 +47,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
 /// Returns the network settings that a plan can change.
 ///
 /// # Errors
-/// [`Error::Refused`] if the device has no such settings; errors of the exchange.
+/// Returns [`Error::Refused`] if the device has no such settings, or an error if the exchange fails.
 pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
     let control = attribute(master, control, ConfigurationControl::parse)?;

@@ -10,20 +10,20 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 /// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionRules {
-    /// Parameter 152.
+    /// Request of the drive by the bus, parameter 152.
     pub requested: Option<i64>,
-    /// Parameters 154 and 156.
+    /// Numerator and denominator of the position scale, parameters 154 and 156.
     pub scale: Option<(i64, i64)>,
-    /// Parameters 158 and 160.
+    /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: Option<(i64, i64)>,
-    /// Parameter 186.
+    /// RS-485 time-out, parameter 186.
     pub timeout: Option<i64>,
-    /// Parameter 198. A change of the reference shifts every position.
+    /// Reference, parameter 198. A change of the reference shifts every position.
     pub reference: Option<i64>,
 }
 
 impl MotionRules {
-    /// Creates the rules from parameters; `read` is called with the parameter numbers of drive 1.
+    /// Creates the rules from parameters. `read` is called with the parameter numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
         MotionRules {
             requested: read(REQUESTED),
@@ -38,7 +38,7 @@ impl MotionRules {
 /// Reads the parameters that limit a drive's motion.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionRules, Error> {
     let mut values = Vec::new();
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
@@ -57,7 +57,7 @@ pub const GROUPS: usize = 4;
 /// Reads one group of a drive's limit parameters again.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn read_rule(
     master: &mut Master<'_>,
     drive: DriveNumber,

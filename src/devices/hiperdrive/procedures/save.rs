@@ -1,4 +1,4 @@
-//! Reading of the values that are saved or required for planning.
+//! Reading of the values that are saved or needed for planning.
 
 use super::identify::{IdentifyProgress, identify, of};
 use super::{DriveIdentity, Error, Identity, Master};
@@ -45,18 +45,17 @@ impl Identity {
 /// Reads everything that can be restored. Parameters that the device refuses to report are left out.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; errors of the exchange.
+/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
 pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, progress)?;
     let image = read_image(master, identity.stored_parameters().collect(), progress)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
-/// Reads everything that a plan requires: all stored values, the given additional parameters, and the drive
-/// positions.
+/// Reads everything that a plan requires: all stored values, the given additional parameters, and the drive positions.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; errors of the exchange.
+/// Returns [`Error::NotHiperdrive`] for another device, or an error if the exchange fails.
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,
@@ -70,7 +69,7 @@ pub fn read_state(
     let mut positions = Positions::new();
     for drive in &identity.drives {
         match master.read_number(of(POSITION, drive.number)?) {
-            // Of 32 bits.
+            // The position has 32 bits.
             Ok(position) => {
                 positions.insert(drive.number, position as i32);
             }
@@ -95,7 +94,7 @@ fn read_image(
             Ok(value) => {
                 image.values.insert(number, value);
             }
-            // A missing value cannot be stored; texts never are.
+            // A missing value cannot be stored, and strings never are.
             Err(Error::NoPlace { .. } | Error::Unknown(_) | Error::Value { .. } | Error::WriteOnly { .. }) => {}
             Err(error) if error.is_unavailable() => {}
             Err(error) => return Err(error),

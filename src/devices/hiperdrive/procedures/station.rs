@@ -41,9 +41,10 @@ pub struct Station {
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// Last unanswered requests: the number, the time of sending, and whether the operation takes the device long.
+    /// Last unanswered requests, each with its number, its time of sending, and whether the operation takes the device
+    /// long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Reply times including late replies, but excluding operations that take the device long.
+    /// Reply times, including late replies. Operations that take the device long are excluded.
     pub(super) replies: ReplyTimes,
     /// Received bytes that do not yet form a complete frame.
     pub(super) receiver: Receiver,
@@ -62,12 +63,12 @@ pub(super) struct KnownState {
 
 impl Station {
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Number of unanswered requests whose late replies are recognised. More than are sent before the connection is
-    /// abandoned.
+    /// Number of unanswered requests whose late replies are recognised. The connection is abandoned before there are
+    /// more.
     const OPEN: usize = 8;
 
     pub fn new(margin: Duration) -> Self {
-        // Two studios in a network must not open their connections under the same name.
+        // Two programs in one network must not open their connections with the same originator ID.
         let random = RandomState::new().build_hasher().finish();
         Station {
             link: LinkParameters::default(),
@@ -86,19 +87,18 @@ impl Station {
         }
     }
 
-    /// Creates the station from link parameters; `tcp` is the port for explicit messages. Parameters that do not
+    /// Creates the station from link parameters. `tcp` is the port for explicit messages. Parameters that do not
     /// concern the connection are ignored.
     ///
     /// # Errors
-    /// A value is invalid; the error lists the allowed ones.
+    /// Returns an error with the allowed values if a value is invalid.
     pub fn from_query(query: &UrlQuery, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
-        // A server with its own port for messages uses it for cyclic data as well.
+        // A server with a different port for messages uses this port for cyclic data as well.
         let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 
-    /// Returns the topology, or `None` if it has not been read yet.
     pub const fn topology(&self) -> Option<Topology> {
         self.known.topology
     }

@@ -1,4 +1,4 @@
-//! Temperatures watched together with the position: of the device (parameter 11) and of a drive (119).
+//! Temperatures of the device (parameter 11) and of a drive (119), which are watched together with the position.
 
 use super::identify::{of, own};
 use super::{DriveReading, Error, Master};
@@ -7,9 +7,9 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Temperature {
-    /// Parameter 11.
+    /// Temperature of the device, parameter 11.
     Device,
-    /// Parameter 119.
+    /// Temperature of a drive, parameter 119.
     Drive(DriveNumber),
 }
 
@@ -31,7 +31,7 @@ impl Temperature {
     /// Returns the number of the temperature parameter.
     ///
     /// # Errors
-    /// [`Error::NoNumber`].
+    /// Returns [`Error::NoNumber`] if there is no such parameter.
     pub fn parameter(self) -> Result<ParameterNumber, Error> {
         match self {
             Temperature::Device => own(11),
@@ -44,7 +44,7 @@ impl Temperature {
 /// refuses the request does not provide the temperature.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn temperature(master: &mut Master<'_>, what: Temperature) -> Result<TemperatureReading, Error> {
     let celsius = match master.read_number(what.parameter()?) {
         Ok(celsius) => Some(celsius),

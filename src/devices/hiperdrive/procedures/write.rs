@@ -1,4 +1,5 @@
-//! Execution of a plan: reads its base again, carries out each operation and reads it back (reference 4).
+//! Execution of a plan. The values on which the plan is based are read again. Each operation is then carried out and
+//! read back (reference 4).
 
 use std::time::Duration;
 
@@ -22,8 +23,8 @@ use crate::profile::{Confirmed, Write};
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
 
 impl Interrupted {
-    /// Returns the change made by the operation if it is unknown how far it got, or `None` if the operation did not
-    /// start, for example after cancellation by the user.
+    /// Returns the change made by the unfinished operation if it may have been carried out in part. Returns `None` if
+    /// the operation did not start, for example after a cancellation.
     pub fn uncertain_write(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
     }
@@ -31,7 +32,7 @@ impl Interrupted {
 
 /// Interval between two reads of parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
-/// Wait before the first read after an operation that includes a reset, which may not have started yet.
+/// Wait before the first read after an operation that includes a reset. The reset may not have started before that.
 const BEGINS: Duration = Duration::from_millis(100);
 
 pub struct DeviceWrite<'w, 'm> {
@@ -60,7 +61,7 @@ impl Write for DeviceWrite<'_, '_> {
                 return changed(format!("drive {}", drive.get()));
             }
             let status = master.read_number(of(STATUS, drive)?)?;
-            // Of 16 bits.
+            // The status word has 16 bits.
             if StatusWord::new(status as u16).state() == State::Moving {
                 return Err(Error::Moving { drive });
             }
@@ -108,7 +109,7 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 }
 
 /// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
-/// there, since the same limits denote other positions under another scale.
+/// there, because the same limits denote other positions under another scale.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
@@ -149,7 +150,8 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     let number = of(POSITION, drive)?;
     let (numerator, denominator) =
         (master.read_number(of(NUMERATOR, drive)?)?, master.read_number(of(DENOMINATOR, drive)?)?);
-    // A drive at standstill re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
+    // A drive at standstill readjusts its position by less than five degrees, which is 1/72 of a turn. A turn has 256 ·
+    // 154 / 156 steps.
     let near = (256 * numerator / denominator.max(1) / 72).max(64);
     let position = master.read_number(number)?;
     if (position - reads).abs() <= near {
@@ -173,7 +175,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0, since the device may reply before it has finished.
+/// Waits until parameter 47 is 0. The device may reply before it has finished.
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
@@ -181,7 +183,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
     loop {
         let waited = master.now().since(begun);
-        // During a reset it may refuse reads.
+        // During a reset the device may refuse reads.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,
@@ -209,10 +211,10 @@ pub enum FaultReset {
 /// Determines how to clear a drive's fault.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the exchange fails.
 pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset, Error> {
     let status = drive_status(master, drive)?;
-    // Older ones are already acknowledged.
+    // Older errors are already acknowledged.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
     let word = status.status;
     let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
@@ -223,7 +225,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset,
     })
 }
 
-/// Clears a drive's fault with 197 = 0. If a reset is required first, it is a separate operation.
+/// Clears a drive's fault by writing 197 = 0. If a reset is required first, it is a separate operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = of(ACKNOWLEDGE, drive)?;
     master.set(number, 0)?;
@@ -233,8 +235,8 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     }
 }
 
-/// Writes the address source, then the addresses, since setting the source to *stored* stores the present address
-/// (reference 1).
+/// Writes the address source, then the addresses. The order matters because setting the source to *stored* stores the
+/// present address (reference 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

@@ -1,5 +1,5 @@
-//! Planning of changes. Each is checked against the rules of the device before anything is sent, followed by a single
-//! save.
+//! Planning of changes. Each change is checked against the rules of the device before anything is sent. A single save
+//! follows the changes.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -13,21 +13,22 @@ use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
 };
 
-/// Positions of the drives, in scaled steps (107).
+/// Positions of the drives in scaled steps, parameter 107.
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
-/// Plans the changes that give a device the wanted values. Only differences are written, and saved where possible;
-/// values missing from the wanted image are left unchanged. `device` must contain all values of the wanted image and,
-/// for each drive whose scale or limits change, all four of them (154 to 160). The position is checked if it is known,
-/// and the travel if the variant is known.
+/// Plans the changes that give a device the wanted values. Only differences are written, and they are saved where
+/// possible. Values missing from the wanted image stay unchanged.
 ///
-/// A drive is requested before anything else is written, because requesting resets it, and its request is removed last.
-/// In between, the values are written drive by drive: the position scale, the speed scale and the maximum speed, then
-/// the limits in an order that the drive accepts at its present position, then all other values. The position in a new
-/// scale is calculated.
+/// `device` must contain all values of the wanted image. For each drive whose scale or limits change, it must contain
+/// all four of them (154 to 160). The position is checked if it is known, and the travel if the variant is known.
+///
+/// A drive is requested before anything else is written, because requesting resets it. Its request is removed last. In
+/// between, the values are written drive by drive. The position scale, the speed scale and the maximum speed come
+/// first. The limits follow in an order that the drive accepts at its present position, then all other values. The
+/// position in a new scale is calculated.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if a change is not allowed.
 pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan, PlanError> {
     let DeviceState { image: device, positions, .. } = state;
     let after = device.with(wanted);
@@ -67,7 +68,8 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
 /// its value is unchanged, since writing it sets the position.
 ///
 /// # Errors
-/// The rounded position is outside the limits or beyond the travel of the drive, or the drive is missing.
+/// Returns an error if the rounded position is outside the limits or the travel of the drive, or if the drive is
+/// missing.
 pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
     let device = &state.image;
     let own = |number| ParameterNumber::for_drive(number, drive);
@@ -78,12 +80,12 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     };
     let (number, old) = known(REFERENCE).ok_or_else(|| not_read(REFERENCE))?;
     let (lower, upper) = device.limits(drive).ok_or_else(|| not_read(LOWER))?;
-    // At this end the next multiple of 64 may not fit.
+    // Near the end of the 32-bit range, the next multiple of 64 may not fit.
     let becomes = nearest_reference(position).map_or(i64::from(i32::MAX) + 1, i64::from);
     if !(lower..=upper).contains(&becomes) {
         return Err(PlanError::ReferenceOutside { drive, position, becomes, lower, upper });
     }
-    // Limits beyond the travel after a change of scale do not limit anything.
+    // After a change of scale, limits beyond the travel do not limit anything.
     if let Some(row) = number.row() {
         row.check(number, becomes, state.travel(number, device))?;
     }
@@ -93,7 +95,7 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
 }
 
 /// Plans a service. The plan is based on everything that the device stores, since the old values cannot be determined
-/// afterwards; the base of an acknowledgement is empty.
+/// afterwards. The base of an acknowledgement is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),
@@ -140,7 +142,7 @@ impl Write {
         };
         let is_first = match base {
             UPPER => upper_first,
-            // In between, a turn never has more steps than before or after.
+            // Between the two writes, a turn never has more steps than before or after.
             DENOMINATOR => self.new > self.old,
             _ => false,
         };
@@ -172,7 +174,7 @@ fn check_position_limits(
     for number in missing {
         device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;
     }
-    // All four are known.
+    // All four values are known.
     let (Some((lower, upper)), Some(new), Some((_, old_upper))) =
         (after.limits(drive), after.scale(drive), device.limits(drive))
     else {
@@ -190,7 +192,7 @@ fn check_position_limits(
             return Err(PlanError::PositionOutside { drive, position, lower, upper });
         }
     }
-    // With the old upper limit, the new lower one would be above it, or the drive outside.
+    // With the old upper limit, the new lower limit would be above it, or the drive would be outside.
     let too_low = old_upper <= lower || position.is_some_and(|position| position > old_upper);
     Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
 }
@@ -201,7 +203,7 @@ fn rescale_position(position: i32, old: PositionScale, new: PositionScale) -> i6
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());
     let steps = (i128::from(position) * times).div_euclid(by);
-    // At most 2^31 · 2^32.
+    // The product is at most 2^31 · 2^32.
     i64::try_from(steps).unwrap_or(if steps < 0 { i64::MIN } else { i64::MAX })
 }
 

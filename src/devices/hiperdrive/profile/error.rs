@@ -4,8 +4,8 @@ use super::Item;
 use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
 
-/// A type difference between profile and device: the adapter or hub (parameter 13) or the variant of a drive (parameter
-/// 120), which determines travel, speed and torque.
+/// A type difference between profile and device. Either the adapter or hub differs (parameter 13), or the variant of a
+/// drive (parameter 120). The variant determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
     /// The profile is for another type of device. Adapters, hubs with four ports and hubs with eight ports are different
@@ -66,25 +66,25 @@ pub enum PlanError {
     /// The parameter is read-only.
     #[error("parameter {item} ({}) can only be read", item.name())]
     ReadOnly {
-        /// The item.
+        /// Read-only parameter.
         item: Item,
     },
     /// Parameters 101 to 104 move drives and may be written only over the cyclic connection.
     #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
     Moves {
-        /// The item.
+        /// Parameter that moves a drive.
         item: Item,
     },
     /// Parameters 47 and 197 to 199 trigger actions, which are planned as services instead.
     #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
     Acts {
-        /// The item.
+        /// Parameter that triggers an action.
         item: Item,
     },
     /// The present value is unknown because it has not been read or its drive is missing.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
-        /// The item.
+        /// Parameter whose present value is unknown.
         item: Item,
     },
     /// The upper limit would not be greater than the lower limit.

@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, 
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
 
 /// Parameter values by absolute number. The image of a device holds all saved and writable parameters of the device and
-/// its drives; values that were not read, are not in the profile, or belong to empty ports are missing.
+/// its drives. Values are missing if they were not read, are not in the profile, or belong to an empty port.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Values by parameter number.
@@ -14,7 +14,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Returns whether an image contains a parameter, that is, whether the parameter is saved and writable.
+    /// Returns whether an image contains a parameter. The parameter must be saved and writable.
     pub fn holds(row: &ParameterRow) -> bool {
         row.saved && row.access == Access::ReadWrite
     }

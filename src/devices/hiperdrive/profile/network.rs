@@ -1,5 +1,5 @@
-//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference 1). They apply if the address
-//! switch is at 0; the addresses also if it is at 97.
+//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference 1). The settings apply if the
+//! address switch is at 0. The addresses also apply if it is at 97.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
@@ -14,8 +14,8 @@ pub struct NetworkSettings {
     pub interface: InterfaceConfiguration,
 }
 
-/// Plans a change of the address source. Addresses are written only if the source is *stored*; otherwise they are
-/// ignored. `switch` is parameter 12, if known.
+/// Plans a change of the address source. Addresses are written only if the source is *stored*, since they are ignored
+/// otherwise. `switch` is parameter 12, if known.
 ///
 /// # Errors
 /// Fails if the device would be unreachable at the addresses, or if the source is unknown.

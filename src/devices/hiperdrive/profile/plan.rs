@@ -11,8 +11,8 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// Values on which a plan is based, that is, everything that its operations change or depend on. Drive positions are
-/// excluded, since they change on their own.
+/// Values on which a plan is based: everything that its operations change or depend on. Drive positions are excluded,
+/// since they also change without a write.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Values by parameter number.
@@ -49,7 +49,7 @@ pub enum Op {
         /// New value.
         new: i64,
     },
-    /// Execute a service.
+    /// Executes a service.
     Service(Service),
     /// Writes the TCP/IP object, attribute 3 before attribute 5, because setting attribute 3 to 0 stores the present
     /// address.
@@ -75,7 +75,7 @@ pub enum Service {
     FactoryAll,
     /// 47 = −4: tests for the presence of the drives and resets them.
     Reset,
-    /// Clears the fault of a drive by writing 197 = 0, preceded by 47 = −4 if that alone does not suffice.
+    /// Clears the fault of a drive by writing 197 = 0. A reset (47 = −4) comes first if that alone does not suffice.
     Acknowledge(DriveNumber),
 }
 
@@ -119,7 +119,7 @@ impl Operation for Op {
     fn write_cycles(&self) -> u64 {
         match self {
             Op::Service(Service::Save | Service::FactoryAll) | Op::Network { .. } => 1,
-            // Not saved.
+            // These operations do not save.
             Op::Write { .. } | Op::Service(_) => 0,
         }
     }
@@ -145,8 +145,8 @@ impl Op {
         }
     }
 
-    /// Returns the old and new values of the changes as one line for the logbook. The terms are those of the manual,
-    /// whatever the window language.
+    /// Returns the old and new values of the changes as one line for the logbook. The terms are those of the manual in
+    /// every window language.
     pub fn note(&self) -> String {
         match self {
             Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),

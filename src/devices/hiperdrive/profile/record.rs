@@ -14,7 +14,7 @@ pub struct HiperdriveProfile {
     pub identity: ProfileIdentity,
     /// Stored parameter values. Parameters that are not in the profile are missing.
     pub image: Image,
-    /// Marks of the values that belong to the mounting.
+    /// Marks of the values that depend on how a drive is mounted.
     pub mounting: Vec<MountingMark>,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
@@ -66,7 +66,7 @@ pub type MountingMark = crate::profile::MountingMark<Item>;
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
-    /// Creates a profile from the values read and marks those that belong to the mounting.
+    /// Creates a profile from the values read and marks those that depend on how a drive is mounted.
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
@@ -74,7 +74,7 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks the items that belong to the mounting, namely the reference of each drive (198), unless already marked.
+    /// Marks the reference of each drive (198), since it depends on how the drive is mounted. Existing marks are kept.
     pub fn mark_mounting_values(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
@@ -85,7 +85,8 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item belongs to the mounting, because it is marked or is the reference of a drive.
+    /// Returns whether an item depends on how the drive is mounted. It does if it is marked or is the reference of a
+    /// drive.
     pub fn is_mounting_value(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }

@@ -1,5 +1,5 @@
-//! Planning of a restore: differences only, a single save at the end, and never the reference of a drive, which belongs
-//! to its machine.
+//! Planning of a restore. Only differences are written, with a single save at the end. The reference of a drive is
+//! never written, since it is valid for one machine only.
 
 pub use crate::profile::RestoreOptions;
 
@@ -32,11 +32,12 @@ impl DeviceState {
 /// Result of planning a restore.
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
-/// Plans a restore for the ports that profile and device have in common. On another device, mounting values are left
-/// out: items marked by the user, and the reference of each drive (198), which is never written.
+/// Plans a restore for the ports that profile and device have in common. On another device, values that depend on the
+/// mounting are left out. These are the items marked by the user and the reference of each drive (198), which is never
+/// written.
 ///
 /// # Errors
-/// See [`PlanError`]; nothing has been written.
+/// Returns a [`PlanError`] if the restore is not possible. Nothing has been written then.
 pub fn plan_restore(
     profile: &HiperdriveProfile,
     device: &DeviceState,
@@ -65,10 +66,10 @@ pub fn plan_restore(
 }
 
 /// Refuses an adapter, hub or drive that differs in type or identity from the profile. A profile without an identity
-/// fits any device; an empty port is accepted.
+/// fits any device. An empty port is accepted.
 ///
 /// # Errors
-/// [`PlanError::OtherType`], [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
+/// Returns [`PlanError::OtherType`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first difference.
 pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
@@ -118,7 +119,7 @@ fn is_kept_on_device(
     item.0.base() == REFERENCE || !options.with_mounting && is_from_different_mounting(profile, device, item)
 }
 
-/// Returns whether an item belongs to the mounting of another device or drive.
+/// Returns whether an item depends on the mounting of another device or drive.
 fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.is_mounting_value(item) && !is_same_place(profile, device, item)
 }

@@ -1,7 +1,7 @@
-//! The text format of a HIPERDRIVE profile, which people read and edit. Errors name the entry.
+//! The text format of a HIPERDRIVE profile, which is readable and editable by hand. Errors name the entry.
 //!
 //! The parameters of a drive have the numbers of drive 1. A profile without a hub may list them together with those of
-//! the device, which are below 100; there, the number of another drive refers to that drive.
+//! the device, which are below 100. In such a list, the number of another drive refers to that drive.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};
@@ -41,7 +41,7 @@ impl Profile for HiperdriveProfile {
     }
 
     fn write(&self, writer: &mut Writer) {
-        // A profile made by hand belongs to no device.
+        // A profile made by hand belongs to no particular device.
         if !self.identity.has_no_device() {
             self.identity.write(writer);
         }
@@ -190,7 +190,7 @@ fn parse_mounting_item(text: &str) -> Result<Item, EntryError> {
 }
 
 /// Parses the parameters of the device, or those of a drive by the numbers of drive 1. A number that does not belong
-/// there is an error; a name is preserved as an unknown entry.
+/// there is an error. A name is preserved as an unknown entry.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
@@ -220,7 +220,7 @@ fn read_parameters(
         let value: i64 = value
             .into_rust()
             .map_err(|_| ProfileError::Shape { path: path.clone(), expected: AllowedValues::Whole })?;
-        // The turns depend on the drive to be written: the plan checks them.
+        // The travel depends on the drive to be written, so the plan checks it.
         let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
         if image.values.insert(number, value).is_some() {
             return Err(wrong(EntryError::Twice(Item(number))));

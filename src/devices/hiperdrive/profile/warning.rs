@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Parameter
 /// Consequence of a plan that the user should know.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// The same limits mean different positions, in turns, under a different scale (reference 3, *Scaling moves soft
+    /// The scale changes, so the same limits mean different positions in turns (reference 3, *Scaling moves soft
     /// limits*).
     LimitsMove {
         /// Number of the drive.
@@ -56,7 +56,7 @@ fn moved(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
         return None;
     }
     let turns = |image: &Image, scale: PositionScale| {
-        // Exact to the step: limits have 32 bits.
+        // Limits have 32 bits, so the conversion is exact.
         let turns = |steps: i64| steps as f64 / scale.steps_per_turn();
         image.limits(drive).map(|(lower, upper)| (turns(lower), turns(upper)))
     };

@@ -1,5 +1,5 @@
-//! The control word (STW, reference 3), built from the action a host requests. No word built here has a reserved bit or
-//! a jog bit set, because a stop might not end a jog step.
+//! The control word (STW, reference 3), built from the action that a host requests. Words built here have no reserved
+//! bits set. They have no jog bits set either, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 
@@ -15,12 +15,12 @@ pub enum ControlBit {
     On = 0,
     /// Enables operation.
     Enable = 3,
-    /// In positioning, no stop. In speed mode, clockwise rotation.
+    /// No stop in positioning; clockwise rotation in speed mode.
     NoStop = 4,
-    /// In positioning, no pause. In speed mode, an endless run past the end of the range.
+    /// No pause in positioning; an endless run past the end of the range in speed mode.
     NoPause = 5,
-    /// In positioning, a job starts when this bit differs from status bit 12. In speed mode, the drive runs while it is
-    /// set.
+    /// Start of a job in positioning, or of a run in speed mode. A job starts when this bit differs from status bit 12.
+    /// A run lasts while this bit is set.
     Start = 6,
     /// Acknowledgement of a fault on the falling edge.
     Acknowledge = 7,
@@ -129,15 +129,15 @@ impl ControlBit {
 impl ControlWord {
     /// Control word 0000h, which requests no control.
     pub const OFF: ControlWord = ControlWord(0);
-    /// Control word 0400h (ready). Speed mode is left through this word: below the operational state the drive discards
-    /// the job that clearing bit 12 would start.
+    /// Control word 0400h (ready). Speed mode is left through this word. Below the operational state, the drive
+    /// discards the job that clearing bit 12 would start.
     pub const READY: ControlWord = ControlWord::OFF.with(ControlBit::Control);
-    /// 0401h: operational.
+    /// Control word 0401h (operational).
     pub const OPERATIONAL: ControlWord = ControlWord::READY.with(ControlBit::On);
-    /// 0409h: enabled.
+    /// Control word 0409h (enabled).
     pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Enable);
-    /// Control word 0481h, sent before [`OPERATIONAL`](Self::OPERATIONAL), which completes the acknowledgement. Bit 0
-    /// stays set, so that its falling edge remains available for the switch-on lock.
+    /// Control word 0481h, the first of two words that acknowledge a fault. [`OPERATIONAL`](Self::OPERATIONAL) must
+    /// follow. Bit 0 stays set, so its falling edge remains available for the switch-on lock.
     pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Acknowledge);
 
     /// Parses a received control word.
@@ -153,8 +153,8 @@ impl ControlWord {
         self.0
     }
 
-    /// Returns the control word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by
-    /// the drive.
+    /// Returns the control word that prepares a job without starting one: 0439h or 0479h. Bit 6 has the level that the
+    /// drive has acknowledged.
     pub const fn hold_present_state(status: StatusWord) -> Self {
         ControlWord::position_mode(status.has(StatusBit::SetpointAcknowledged))
     }
@@ -183,15 +183,15 @@ impl ControlWord {
         ControlWord::speed_mode(direction, end).with(ControlBit::Start)
     }
 
-    /// Returns this control word with a stop for its mode: speed mode clears bit 6; positioning clears bit 4 and
+    /// Returns this control word with a stop for its mode. Speed mode clears bit 6. Positioning clears bit 4 and
     /// discards the job. Torque stays on, and jog bits are cleared in both modes.
     pub const fn with_stop(self) -> Self {
         let word = self.without(ControlBit::JogOne).without(ControlBit::JogTwo);
         if self.has(ControlBit::SpeedMode) { word.without(ControlBit::Start) } else { word.without(ControlBit::NoStop) }
     }
 
-    /// Returns this control word with the job paused; [`without_pause`](Self::without_pause) continues it. In speed mode, where bit
-    /// 5 has another meaning, the word is returned unchanged.
+    /// Returns this control word with the job paused; [`without_pause`](Self::without_pause) continues it. In speed
+    /// mode, bit 5 has another meaning, so the word is returned unchanged.
     pub const fn with_pause(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.without(ControlBit::NoPause) }
     }
@@ -213,9 +213,9 @@ impl ControlWord {
         set.map(move |bit| (bit.number(), bit.name(speed_mode)))
     }
 
-    /// Returns the motion that starts when this control word follows `before`, for an operational drive that reports
-    /// `status`. A job starts on a difference of levels, not on an edge (reference 8.10), so clearing bit 12 after a
-    /// run starts a job to a stale target.
+    /// Returns the motion that starts when this control word follows `before`. The drive must be operational and report
+    /// `status`. A job starts on a difference of levels, not on an edge (reference 8.10). Clearing bit 12 after a run
+    /// therefore starts a job to a stale target.
     pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
         let rises = |bit: ControlBit| self.has(bit) && !before.has(bit);
         let acknowledged = status.has(StatusBit::SetpointAcknowledged);
@@ -238,8 +238,8 @@ impl ControlWord {
         }
     }
 
-    /// Returns whether this control word starts no motion and brings a moving drive to a standstill, whatever status
-    /// the drive reports and however late.
+    /// Returns whether this control word starts no motion and brings a moving drive to a standstill. This holds for any
+    /// status that the drive reports, even late.
     pub const fn is_standing(self) -> bool {
         let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
         let moves = if self.has(ControlBit::SpeedMode) {

@@ -1,4 +1,4 @@
-//! Numbers of the parameters that the code refers to by name: those of drive 1, and the device parameter that saves and
+//! Numbers of the parameters that the code refers to by name. Most belong to drive 1; the device parameter saves and
 //! resets.
 
 use std::ops::RangeInclusive;

@@ -44,9 +44,9 @@ pub struct LedRow {
 /// Network LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkLed {
-    /// MS.
+    /// Module status LED, MS.
     Module,
-    /// NS.
+    /// Network status LED, NS.
     Network,
 }
 
@@ -63,14 +63,14 @@ pub enum NetworkLedState {
     Red,
     /// Red, flashing.
     RedFlashing,
-    /// Green, red, green.
+    /// Sequence of green, red and green.
     Alternating,
 }
 
 /// Meaning and remedy of a state of a network LED.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkLedRow {
-    /// The LED.
+    /// LED to which the row applies.
     pub lamp: NetworkLed,
     /// State of the LED.
     pub light: NetworkLedState,
@@ -83,11 +83,11 @@ pub struct NetworkLedRow {
 /// State of the two LEDs of a network port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PortLedState {
-    /// Both are off.
+    /// Both LEDs are off.
     Off,
-    /// Green.
+    /// The green LED is lit.
     Link,
-    /// Green lit, yellow flashing ten times per second.
+    /// The green LED is lit, and the yellow LED flashes ten times per second.
     Active,
 }
 

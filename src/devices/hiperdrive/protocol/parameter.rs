@@ -36,11 +36,12 @@ pub struct ParameterRow {
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: Range,
-    /// Range in turns of the drive around 0, in addition to `range`, or `None` if turns do not limit the value.
+    /// Limit given by the turns of the drive around 0, in addition to `range`. It is `None` if turns do not limit the
+    /// value.
     pub reach: Option<StepLimit>,
     /// Factory value.
     pub factory: FactoryValue,
-    /// Values that the device takes long to apply. The reply to writing any other value takes as long as the reply to a
+    /// Values that the device takes long to apply. The reply to writing any other value comes as soon as the reply to a
     /// read.
     pub slow: &'static [SlowValue],
 }
@@ -94,9 +95,9 @@ pub enum FactoryValue {
         /// Factory value for each drive of a hub.
         hub: i64,
     },
-    /// Number of turns of the drive in either direction, multiplied by −1 or 1.
+    /// The factory number of turns of the drive family, in the direction given by the sign −1 or 1.
     Turns(i32),
-    /// Determined by the drive.
+    /// A value determined by the drive.
     Automatic,
 }
 
@@ -205,8 +206,8 @@ impl fmt::Display for ParameterNumber {
 }
 
 impl ParameterRow {
-    /// Returns the allowed values from the table or, if it gives none, from the data type, restricted to the turns of
-    /// the drive as far as they are known. Returns `None` for strings.
+    /// Returns the allowed values, or `None` for strings. They come from the table or, if it gives none, from the data
+    /// type. The turns of the drive restrict them as far as they are known.
     pub fn allowed(&self, travel: Travel) -> Option<Range> {
         let (low, high) = self.kind.limits()?;
         Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
@@ -217,7 +218,7 @@ impl ParameterRow {
     }
 
     /// Checks a value against the range of a parameter. The drive itself checks dependencies between parameters: 160 is
-    /// above 158; position, target and 198 lie between them.
+    /// above 158, and position, target and 198 lie between them.
     ///
     /// # Errors
     /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.

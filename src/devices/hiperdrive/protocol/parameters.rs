@@ -1,4 +1,5 @@
-//! All parameters of the device and of drive 1 (reference 4). The names are the program's: the manual's are German.
+//! All parameters of the device and of drive 1 (reference 4). The names are those of the program, since the manual has
+//! German names.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -37,7 +38,8 @@ impl ParameterRow {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
     }
 
-    /// Marks a drive parameter that the adapter or hub stores (manual, 152: sections 3.4 and 4.5; 190: its table row).
+    /// Marks a drive parameter whose value the adapter or hub stores. See the manual, sections 3.4 and 4.5 for 152, and
+    /// the table row of 190.
     const fn with_device_storage(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }
@@ -55,10 +57,10 @@ impl ParameterRow {
     }
 }
 
-/// Maximum time for storing to EEPROM (manual 6.2, parameter 47). It also applies to the TCP/IP object, which is stored
-/// on every change (5).
+/// Maximum time for storing to EEPROM. It also applies to the TCP/IP object, which is stored on every change. See
+/// manual 6.2, parameter 47, and 5.
 pub const STORES: Duration = Duration::from_millis(200);
-/// Maximum time for resetting a single drive, as for the value −4 of parameter 47 on an adapter.
+/// Maximum time for resetting a single drive. The value −4 of parameter 47 takes this time on an adapter.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time for resetting all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
@@ -75,12 +77,12 @@ const fn one_drive(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
-/// Slow values of parameter 47. The manual states no time for −3, −2 and −1; the time for −4 is used, since all of them
-/// send all parameters to all drives over RS-485 (`D`).
+/// Slow values of parameter 47. The manual states no time for −3, −2 and −1. The time for −4 is used instead, since all
+/// of them send all parameters to all drives over RS-485 (`D`).
 const SAVE_AND_RESET: &[SlowValue] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
-/// Slow values of parameter 152. A change from 0 to 1 resets the drive (`D`: the time).
+/// Slow values of parameter 152. A change from 0 to 1 resets the drive. The time is derived (`D`).
 const REQUEST: &[SlowValue] = &[one_drive(1)];
-/// Slow values of parameter 199 (`D`: the time).
+/// Slow values of parameter 199. The time is derived (`D`).
 const RESET_DRIVE: &[SlowValue] = &[one_drive(0), one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
@@ -107,8 +109,7 @@ const fn within(range: RangeInclusive<u16>) -> Range {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
-/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`), since the manual gives only their
-/// width.
+/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`). The manual gives only their width.
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),

@@ -113,13 +113,13 @@ impl Pkw {
         Pkw { pke: (task.number() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
     }
 
-    /// Parses eight bytes.
+    /// Parses parameter words from eight bytes.
     pub const fn parse(bytes: [u8; 8], order: ByteOrder) -> Self {
         let [k0, k1, i0, i1, value @ ..] = bytes;
         Pkw { pke: order.u16([k0, k1]), ind: order.u16([i0, i1]), pwe: order.u32(value) }
     }
 
-    /// Returns the bytes.
+    /// Encodes the parameter words as eight bytes.
     pub const fn emit(self, order: ByteOrder) -> [u8; 8] {
         let [k0, k1] = order.encode_u16(self.pke);
         let [i0, i1] = order.encode_u16(self.ind);
@@ -149,7 +149,7 @@ impl Pkw {
         }
     }
 
-    /// Returns the answer if this reply belongs to `request`, which must be repeated until then. Before the same
+    /// Returns the answer if this reply belongs to `request`. The request must be repeated until then. Before the same
     /// request is sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
@@ -163,21 +163,21 @@ impl Pkw {
 }
 
 impl PkwError {
-    /// 0: no such parameter.
+    /// Error 0: the parameter does not exist.
     pub const NO_PARAMETER: PkwError = PkwError(0);
-    /// 1: read-only parameter.
+    /// Error 1: the parameter is read-only.
     pub const READ_ONLY: PkwError = PkwError(1);
     /// Error 2: the value is outside the limits.
     pub const RANGE: PkwError = PkwError(2);
     /// Error 3: the element is beyond the end of the string or array.
     pub const NO_ELEMENT: PkwError = PkwError(3);
-    /// 4: parameter without elements.
+    /// Error 4: the parameter has no elements.
     pub const NO_ARRAY: PkwError = PkwError(4);
     /// Error 5: a word was used instead of a double word or vice versa, or the parameter is a string.
     pub const TYPE: PkwError = PkwError(5);
     /// Error 17: the request is not possible in this state.
     pub const STATE: PkwError = PkwError(17);
-    /// 18: any other reason.
+    /// Error 18: any other reason.
     pub const OTHER: PkwError = PkwError(18);
 
     /// Creates an error from any error code.

@@ -5,7 +5,7 @@ use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Words;
 
-/// Byte order of numbers in the process data. The manual does not define it (reference 8.11), so it is little-endian
+/// Byte order of numbers in the process data. The manual does not define it (reference 8.11). It is little-endian
 /// unless a device is observed to differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ByteOrder {
@@ -17,7 +17,7 @@ pub enum ByteOrder {
 }
 
 impl ByteOrder {
-    /// Spelling in link URLs.
+    /// Spelling of the byte orders in link URLs.
     pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
@@ -112,7 +112,7 @@ pub struct ProcessImageError {
     pub got: usize,
 }
 
-/// Length in bytes of the data of one drive and of the parameter words.
+/// Length in bytes of the data of one drive, which is also that of the parameter words.
 const PLACE: usize = 8;
 
 impl ByteOrder {
@@ -225,8 +225,8 @@ impl Percent {
 }
 
 impl Setpoint {
-    /// Returns the setpoint that follows speed mode and starts every connection. It is ready, with zero speed and
-    /// torque and the target at the actual position, so that no stale target remains.
+    /// Returns the setpoint that follows speed mode and starts every connection. Its control word is ready, with zero
+    /// speed and torque. The target is the actual position, so no stale target remains.
     pub const fn standing(actual: ActualValues) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }

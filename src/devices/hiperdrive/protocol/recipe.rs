@@ -20,11 +20,11 @@ const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (Status
 const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
 const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
-/// Steps from off to enabled. [`ControlWord::hold_present_state`] follows them.
+/// Steps from off to enabled, followed by [`ControlWord::hold_present_state`].
 pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
-/// Steps from a fault to enabled. Bit 0 stays set during the acknowledgement, so that its falling edge remains
-/// available for the lock; [`ControlWord::hold_present_state`] follows them.
+/// Steps from a fault to enabled, followed by [`ControlWord::hold_present_state`]. Bit 0 stays set during the
+/// acknowledgement, so its falling edge remains available for the switch-on lock.
 pub const ACKNOWLEDGE: [Step; 5] = [
     step(ControlWord::ACKNOWLEDGE, &[]),
     step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),
@@ -33,7 +33,8 @@ pub const ACKNOWLEDGE: [Step; 5] = [
     ENABLED,
 ];
 
-/// Steps out of the lock if bit 0 is already clear. Bit 0 is set first, since the lock needs its falling edge.
+/// Steps out of the switch-on lock if bit 0 is already clear. Bit 0 is set first, since the lock needs its falling
+/// edge.
 pub const UNLOCK: [Step; 2] = [step(ControlWord::OPERATIONAL, &[]), READY];
 
 impl Step {

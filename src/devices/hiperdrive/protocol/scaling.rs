@@ -1,6 +1,6 @@
 //! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference 5).
 
-/// Conversion between transmitted steps and turns, with 256 · numerator / denominator steps per turn. The formula in
+/// Conversion between transmitted steps and turns. A turn has 256 · numerator / denominator steps. The formula in
 /// section 8.4 of the manual is garbled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PositionScale {
@@ -8,7 +8,7 @@ pub struct PositionScale {
     denominator: u16,
 }
 
-/// Conversion between transmitted speed and rpm, with numerator / denominator per 1 rpm.
+/// Conversion between transmitted speed and rpm. A speed of 1 rpm is transmitted as numerator / denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpeedScale {
     numerator: u16,
@@ -25,7 +25,7 @@ pub struct Length {
 /// Drive family, which determines the number of turns in either direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
-    /// HDA30, HDA45; HRA (`U`).
+    /// HDA30 and HDA45. HRA is assumed to belong to this family (`U`).
     Short,
     /// HDA70.
     Long,
@@ -75,7 +75,7 @@ impl PositionScale {
     }
 
     /// Returns the scale in which a step has the given length on a spindle of the given pitch. If a turn has a whole
-    /// number of steps, that number is the numerator and 256 the denominator, where possible.
+    /// number of steps, the numerator is that number and the denominator is 256, where possible.
     ///
     /// # Errors
     /// Returns [`ScaleError`] if either length is 0, or if no scale yields exactly this step.
@@ -95,12 +95,12 @@ impl PositionScale {
         whole.or_else(|| exact(numerator, denominator)).ok_or(ScaleError::TooFine { steps, numerator, denominator })
     }
 
-    /// Returns parameter 154.
+    /// Returns the numerator, parameter 154.
     pub const fn numerator(self) -> u16 {
         self.numerator
     }
 
-    /// Returns parameter 156.
+    /// Returns the denominator, parameter 156.
     pub const fn denominator(self) -> u16 {
         self.denominator
     }
@@ -138,7 +138,7 @@ impl PositionScale {
 }
 
 impl SpeedScale {
-    /// 10/1: tenths of rpm.
+    /// Factory scale of 10/1, which transmits tenths of rpm.
     pub const FACTORY: SpeedScale = SpeedScale { numerator: 10, denominator: 1 };
 
     /// Creates a scale from parameters 162 and 164.
@@ -190,8 +190,8 @@ pub const fn turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// Rounds to a value that parameter 198 accepts, which is the nearest multiple of 64, away from 0 in a tie (`U`).
-/// Returns `None` if the result exceeds 32 bits.
+/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`). Returns `None`
+/// if the result exceeds 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const GRAIN: i64 = 64;
     let position = i64::from(position);

@@ -1,5 +1,5 @@
-//! States of the drive and the transitions between them (reference 3, reconstructed from the manual's 6.4 and 6.5,
-//! `D`).
+//! States of the drive and the transitions between them (reference 3). They are reconstructed from sections 6.4 and 6.5
+//! of the manual (`D`).
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ pub enum Trigger {
     Set(ControlBit),
     /// A bit of the control word is clear.
     Clear(ControlBit),
-    /// A bit of the control word falls while another bit, if any, has the given level.
+    /// A bit of the control word falls. If another bit is given, it must have the given level.
     Falls(ControlBit, Option<(ControlBit, bool)>),
     /// A job or a run starts.
     Starts,
@@ -107,8 +107,8 @@ impl State {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// Returns the state after the control word changes from `before` to `now`, which is at most one transition away.
-    /// The control word alone does not determine motion.
+    /// Returns the state after the control word changes from `before` to `now`. At most one transition takes place.
+    /// Motion does not follow from the control word alone.
     pub fn after(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.has(bit),

@@ -26,7 +26,7 @@ pub enum StatusBit {
     SwitchOnLock = 6,
     /// A fault is present in any state.
     Warning = 7,
-    /// Following error bit, which the manual describes both as set and as cleared by a following error (reference 8.1).
+    /// Following error bit. The manual describes it both as set and as cleared by a following error (reference 8.1).
     /// Use error 8203 and bit 3 instead.
     NoFollowingError = 8,
     /// Same as bit 4.
@@ -135,8 +135,8 @@ impl StatusWord {
         found == 0 || found == StatusWord::FOUND.0
     }
 
-    /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over all other states (`D`;
-    /// bits 0 to 2 of a fault `U`).
+    /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over all other states
+    /// (`D`). Bits 0 to 2 during a fault are not documented (`U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};
         if self.has(Fault) {

@@ -6,17 +6,17 @@ use core::net::Ipv4Addr;
 /// Source of the IP address, selected by the two address switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSwitch {
-    /// Switch position 0: the source from the TCP/IP object (class F5h, attribute 3), which is stored, BOOTP or, by
-    /// factory setting, DHCP.
+    /// Switch position 0: the source in the TCP/IP object (class F5h, attribute 3). It is stored, BOOTP or DHCP. The
+    /// factory setting is DHCP.
     Object,
     /// Switch positions 1 to 96: address 192.168.1.n with the mask 255.255.255.0 and no gateway.
     Fixed(Ipv4Addr),
     /// Switch position 97: the stored address. If the switches are turned to 97 at runtime, the device also stores its
     /// present address.
     Stored,
-    /// 98: BOOTP.
+    /// Switch position 98: BOOTP.
     Bootp,
-    /// 99: DHCP.
+    /// Switch position 99: DHCP.
     Dhcp,
 }
 

@@ -1,9 +1,9 @@
-//! Travel of a drive in the steps of its scale (manual 6.2, last table; 9.2), which limits positions in addition to
-//! their 32 bits.
+//! Travel of a drive in the steps of its scale. It limits positions in addition to their 32 bits. See manual 6.2, last
+//! table, and 9.2.
 
 use super::scaling::{Family, PositionScale};
 
-/// Turns of a drive and the scale of its steps, which together limit its values. Unknown values impose no limit.
+/// Turns of a drive and the scale of its steps. Together they limit its values. Unknown values impose no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
     /// Drive family, which determines the number of turns.
@@ -17,8 +17,8 @@ pub struct Travel {
 pub enum StepLimit {
     /// Limit of a position: the number of turns of the drive in either direction (158, 160, 198).
     Position,
-    /// Limit of a step, which is no longer than the whole travel (170, 176; `D`: the manual gives only 32 bits, and a
-    /// longer step ends outside from any start).
+    /// Limit of a step, which is no longer than the whole travel (170, 176). The manual gives only 32 bits, but a
+    /// longer step ends outside the travel from any start (`D`).
     Step,
 }
 

@@ -13,7 +13,7 @@ pub struct VariantRow {
     pub variant: Variant,
     /// Product name.
     pub name: &'static str,
-    /// Drive family, which determines the travel (for HRA `U`).
+    /// Drive family, which determines the travel. It is assumed for HRA (`U`).
     pub family: Family,
 }
 
@@ -39,7 +39,7 @@ pub const VARIANTS: [VariantRow; 13] = [
 ];
 
 impl Variant {
-    /// 0: no drive.
+    /// Variant 0, which means that no drive is connected.
     pub const NONE: Variant = Variant(0);
     /// Variant FFFFh, which the manual does not list.
     pub const OTHER: Variant = Variant(0xFFFF);

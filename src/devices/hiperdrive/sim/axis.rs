@@ -1,5 +1,4 @@
-//! The spindle: it accelerates, brakes, and hits obstacles. Units are milliseconds and steps, of which a turn has
-//! 65536.
+//! The spindle: it accelerates, brakes, and hits obstacles. Units are milliseconds and steps of 1/65536 turn.
 
 use std::time::Duration;
 
@@ -35,24 +34,24 @@ impl Default for SpindleLoad {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Axis {
     place: f64,
-    /// Steps per second.
+    /// Speed in steps per second.
     speed: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AxisSetpoint {
     Rest,
-    /// Move to a position at a maximum speed.
+    /// Moves to a position at no more than a maximum speed.
     Place {
         at: f64,
         speed: f64,
     },
-    /// Turn at a signed speed.
+    /// Turns at a signed speed.
     Speed(f64),
 }
 
 impl AxisSetpoint {
-    /// Returns the effective demand on a drive at the given position, taking a defect into account.
+    /// Returns the effective demand on a drive at the given position after applying a defect.
     pub(super) fn with(self, defect: Option<DriveDefect>, place: f64) -> AxisSetpoint {
         let turned = |speed: f64| if defect == Some(DriveDefect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -73,11 +72,11 @@ pub(super) enum TickOutcome {
     },
 }
 
-/// Steps of a turn.
+/// Number of steps per turn.
 pub(super) const TURN: f64 = 65536.0;
 pub(super) const TICK: Duration = Duration::from_millis(1);
 const TICK_S: f64 = 1e-3;
-/// Acceleration (assumed), by which 35 rpm are reached or lost in a tenth of a second.
+/// Assumed acceleration. At this rate, 35 rpm are reached or lost in a tenth of a second.
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
@@ -97,7 +96,6 @@ impl Axis {
         self.speed == 0.0
     }
 
-    /// Stops at once.
     pub(super) const fn halt(&mut self) {
         self.speed = 0.0;
     }
@@ -107,7 +105,7 @@ impl Axis {
         let aim = match wanted {
             AxisSetpoint::Rest => 0.0,
             AxisSetpoint::Speed(speed) => speed,
-            // No faster than it can still brake, millisecond by millisecond.
+            // The speed is limited to one from which the drive can still brake, in steps of a millisecond.
             AxisSetpoint::Place { at, speed } => {
                 let (way, half) = (at - self.place, gain / 2.0);
                 way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)
@@ -133,7 +131,7 @@ impl Axis {
     }
 }
 
-/// Returns the obstacle beyond which a position lies, and whether it is the upper obstacle.
+/// Returns the obstacle beyond which a position lies. The flag tells whether it is the upper obstacle.
 fn blocking_wall(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))

@@ -1,4 +1,4 @@
-//! Settings of virtual drives and their adapter or hub in the query of a `sim:` link, such as
+//! Settings of virtual drives and their adapter or hub in the query of a `sim:` link. An example is
 //! `hub=4&drives=1,0,1&position=65536`. Nothing is opened here.
 
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual adapter or hub and its drives, by default an adapter with a single drive HDA30A at rest,
+    /// Settings of a virtual adapter or hub and its drives. The default is an adapter with a single HDA30A at rest,
     /// with factory settings and without faults. Drive settings apply to all drives.
     pub struct Config: ConfigError {
         /// Topology, by default an adapter with one drive.
@@ -33,8 +33,8 @@ parameters! {
         /// Spindle load in percent; no drive can move a load above 100.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
-        /// Defect of the drives, which then do not stop at a target or limit, turn in the wrong direction, or always
-        /// set status bit 15.
+        /// Defect of the drives. They do not stop at a target or limit, turn in the wrong direction, or always set
+        /// status bit 15.
         defect: Option<DriveDefect> = None, "defect" => OptionalValue(Words(&[
             ("runs-on", DriveDefect::RunsOn), ("reversed", DriveDefect::Reversed), ("says-outside", DriveDefect::SaysOutside),
         ]));
@@ -46,16 +46,16 @@ parameters! {
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
         /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
-        /// Parameter 17.
+        /// Serial number, parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
-        /// Parameter 15.
+        /// Product name, parameter 15.
         pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(AllowedValues::Ascii { most: 32 }, name);
         /// Byte order of numbers in process data (`U`).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// Whether parameter strings are preceded by their length (`U`).
         pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Injected faults: `drop` is the fraction of replies and of packets in both directions that are lost; `flip`
+        /// Injected faults. `drop` is the fraction of replies, and of packets in both directions, that are lost. `flip`
         /// and `garbage` are the fractions of replies and returned packets with an inverted bit or replaced by random
         /// bytes. `silent-after` counts frames and packets.
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -63,11 +63,11 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key occurs twice, the last value applies; numbers are decimal or
-    /// `0x…`.
+    /// Parses percent-decoded keys and values. Numbers are decimal or `0x…`. If a key occurs twice, the last value
+    /// applies.
     ///
     /// # Errors
-    /// Names the key and the allowed values.
+    /// Returns an error that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
         config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;
@@ -76,7 +76,7 @@ impl Config {
 
     /// Returns the control supply voltage, in tenths of a volt.
     pub(super) fn supply_in_tenths_of_volt(&self) -> u16 {
-        // At most 1000.
+        // The result is at most 1000.
         (self.volts * 10.0).round() as u16
     }
 

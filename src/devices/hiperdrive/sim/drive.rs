@@ -1,9 +1,14 @@
 //! A virtual drive: effects of control words, motion and faults (reference 2 to 5).
 //!
-//! Assumptions (`U`): words with reserved bits are ignored; at 0 % speed or torque nothing starts, without an error; a
-//! drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the limits is
-//! fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one hotter
-//! than 80 °C at once (8202); a lost master is fault 8601; a moving drive that loses operation brakes as for a stop.
+//! Assumptions (`U`):
+//! - Words with reserved bits are ignored.
+//! - At 0 % speed or torque nothing starts, and there is no error.
+//! - A drive never leaves "not ready" if it is not requested (152 = 0) or if S3 selects it.
+//! - A target beyond the limits is fault 8503.
+//! - A blocked drive fails after 200 ms (8300, 8301), a drive that is too weak after 500 ms (8203), and a drive hotter
+//!   than 80 °C at once (8202).
+//! - A lost master is fault 8601.
+//! - A moving drive that loses operation brakes as for a stop.
 
 use std::collections::VecDeque;
 
@@ -27,7 +32,7 @@ pub struct Drive {
     pub(super) offset: f64,
     pub(super) out: OutputData,
     pub(super) errors: VecDeque<ErrorCode>,
-    /// Since the acknowledgement.
+    /// Number of faults since the last acknowledgement.
     pub(super) faults: u8,
     pub(super) celsius: f64,
     load: SpindleLoad,
@@ -38,7 +43,7 @@ pub struct Drive {
     target_reached: bool,
     acknowledged: bool,
     over_current: bool,
-    /// Milliseconds without getting on.
+    /// Time without progress in milliseconds.
     stuck_ms: u32,
     allowed: bool,
     at: Moment,
@@ -47,12 +52,12 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
     Rest,
-    /// A move to a position, or a jog step, which a stop does not end.
+    /// A move to a position, or a jog step. A stop does not end a jog step.
     Job {
         at: f64,
         jog: Option<Jog>,
     },
-    /// A paused job that waits for bit 5.
+    /// A paused job, which continues when control bit 5 is set.
     Paused {
         at: f64,
     },
@@ -70,7 +75,7 @@ struct Jog {
     torque: u8,
 }
 
-/// Parameters 108 to 115.
+/// Number of stored errors, parameters 108 to 115.
 const ERRORS: usize = 8;
 const HELD_MS: u32 = 200;
 const WEAK_MS: u32 = 500;
@@ -136,7 +141,7 @@ impl Drive {
         let Ok(control) = out.control_word() else { return };
         self.out = out;
         let before = std::mem::replace(&mut self.control, control);
-        // A run and a jog step start on an edge; a job is a level, and starts with the next millisecond.
+        // A run and a jog step start on an edge. A job starts on a level, with the next millisecond.
         let begins = control.motion_start(before, self.status()).filter(|begins| *begins != MotionStart::Job);
         self.enter(self.next(before));
         self.apply_command();
@@ -145,7 +150,7 @@ impl Drive {
         }
     }
 
-    /// Sets whether the drive may move over the bus (whether S3 is at 0).
+    /// Sets whether the drive may move over the bus. It may while S3 is at 0.
     pub(super) const fn set_motion_allowed(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -253,7 +258,7 @@ impl Drive {
         }
     }
 
-    /// Returns whether nothing except the temperature will change.
+    /// Returns whether everything except the temperature is constant.
     fn is_settled(&self) -> bool {
         let begins = self.control.motion_start(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
@@ -364,7 +369,7 @@ impl Drive {
         let (target, jog) = match begins {
             MotionStart::Run => {
                 let clockwise = self.control.has(ControlBit::NoStop);
-                // Beyond the end it runs no further, and not back either.
+                // A drive beyond the end of its range runs neither further nor back.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
                 let to = (!self.control.has(ControlBit::NoPause)).then(|| self.location_of(end));
                 return self.moves(Motion::Run { to, clockwise });

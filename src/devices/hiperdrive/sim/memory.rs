@@ -53,8 +53,8 @@ impl Memory {
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// Restores the saved values after a power failure or a reset; values that are never saved get their factory
-    /// settings. A position that was set is kept (manual, 198: a reset has no effect on it).
+    /// Restores the saved values after a power failure or a reset. Values that are never saved get their factory
+    /// settings. A position that was set is kept, since a reset has no effect on it (manual, 198).
     pub(super) fn restart(&mut self) {
         let reference = self.get(REFERENCE);
         self.now = self.kept.clone();

@@ -58,7 +58,7 @@ impl Drive {
                 self.errors.get(usize::from(number - NEWEST_ERROR)).map_or(0, |code| code.code().into())
             }
             116..=118 => 0,
-            // Between −273 and a few hundred.
+            // The temperature is between −273 °C and a few hundred degrees.
             119 => self.celsius.round() as i64,
             VARIANT => self.variant.number().into(),
             121 => return text(self.variant.row().map_or("", |row| row.name)),
@@ -77,7 +77,8 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// Returns whether writing this value restarts the drive, as do a change of 152 from 0 to 1 and writing 199.
+    /// Returns whether writing this value restarts the drive. A change of 152 from 0 to 1 does, and so does any write
+    /// to 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == RESET || (number, value) == (REQUESTED, 1) && self.memory.get(REQUESTED) == Some(0)
     }
@@ -156,7 +157,7 @@ impl Drive {
     }
 }
 
-/// Returns an element of a string, which contains four of its characters.
+/// Returns four characters of a string as one element.
 pub(super) fn string_element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;

@@ -1,9 +1,12 @@
 //! All drives of an adapter or a hub: process data, parameters, saving, loss of the master.
 //!
-//! Assumptions (`U`): a connection that ends for any reason is a lost master; a packet with an idle header stops like
-//! control words of 0; during a save or a reset, 47 is 1 and nothing is written; a reset drive has its saved
-//! parameters; in an empty port only 120 and 152 can be read, both 0; a string is read in elements of four characters,
-//! the first one lowest.
+//! Assumptions (`U`):
+//! - A connection that ends for any reason is a lost master.
+//! - A packet with an idle header stops like control words of 0.
+//! - During a save or a reset, 47 is 1 and nothing is written.
+//! - A reset drive has its saved parameters.
+//! - In an empty port, only 120 and 152 can be read. Both are 0.
+//! - A string is read in elements of four characters, the first one lowest.
 
 use std::time::Duration;
 
@@ -25,7 +28,7 @@ pub struct StationConfig {
     pub topology: Topology,
     /// Drives by port, with `None` for an empty port.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
-    /// Parameter 17.
+    /// Serial number, parameter 17.
     pub serial_number: u16,
 }
 
@@ -36,7 +39,7 @@ pub struct Station {
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// Time at which the last write is answered, if it resets drives.
+    /// Time of the reply to the last write, if the write resets drives.
     answers_at: Option<Moment>,
     /// Last received parameter words, and the answer in the process data.
     words: (Pkw, Pkw),
@@ -63,7 +66,7 @@ struct Store {
     /// Number of the save during which the supply is lost, counted from 1.
     dies_in: Option<u32>,
     dies_at: Option<Moment>,
-    /// The supply was lost.
+    /// Whether the supply was lost.
     dead: bool,
 }
 
@@ -258,7 +261,7 @@ impl Station {
     /// Writes a parameter.
     ///
     /// # Errors
-    /// Returns [`Refused`]; nothing was written.
+    /// Returns [`Refused`] if the write is refused. Nothing was written then.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
         self.advance(now);
         self.answers_at = None;
@@ -304,7 +307,7 @@ impl Station {
         }
     }
 
-    /// Parameter 47 is written.
+    /// Handles a write to parameter 47.
     fn save_or_reset(&mut self, now: Moment, value: i64) {
         if value == -4 {
             self.reset(now);
@@ -368,8 +371,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Executes timed events, such as a loss of supply during a save or a time-out of the master, at the time they are
-    /// due rather than at the next access.
+    /// Executes timed events at the time they are due rather than at the next access. Examples are a loss of supply
+    /// during a save and a time-out of the master.
     fn advance(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

@@ -18,7 +18,7 @@ impl Station {
             (Some(Task::None), _) => Pkw::default(),
             (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),
             (Some(Task::Read), _) => match self.read(now, number) {
-                // The lower bits contain the whole of a shorter number.
+                // A shorter number is completely in the lower bits.
                 Ok(Value::Number(value)) => {
                     reply(if wide { 2 } else { 1 }, if wide { value as u32 } else { (value as u16).into() })
                 }
@@ -46,7 +46,7 @@ impl Station {
                     Err(why) => return refused(why.error()),
                 };
                 if request.task() == Some(Task::Count) {
-                    // A text has a few dozen characters.
+                    // A string has a few dozen characters.
                     return reply(6, text.len().div_ceil(4) as u32);
                 }
                 string_element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 pub enum WriteFault {
     /// The write is refused as not possible in this state.
     Refused,
-    /// The line is lost after a write that takes effect.
+    /// The line is lost after a write that has taken effect.
     CutOff,
 }
 

@@ -1,4 +1,4 @@
-//! Actions of the user on a device and its drives: edits and motion take effect at once, everything else is a job of
+//! Actions of the user on a device and its drives. Edits and motion take effect at once. Everything else is a job of
 //! the session or a task.
 
 use std::time::Duration;
@@ -116,7 +116,7 @@ impl Unit {
             Motor::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.check_motion_allowed(drive, request) {
-            // The present act continues: nothing else has started.
+            // The present motion continues, because nothing else has started.
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         for ended in explain::MOTION_ENDS {
@@ -130,7 +130,7 @@ impl Unit {
         }
     }
 
-    /// Opens the cyclic connection, after which the selected drive is read continuously.
+    /// Opens the cyclic connection. The selected drive is then read continuously.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.check_can_take_control() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));

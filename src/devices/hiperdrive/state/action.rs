@@ -17,16 +17,16 @@ pub enum HiperdriveAction {
     SelectDrive(DriveNumber),
     Watch(Temperature, bool),
     SetMeasure(PositionUnit),
-    /// Set the pitch of a drive's spindle, if it has one.
+    /// Sets the pitch of a drive's spindle, or removes it.
     SetPitch(DriveNumber, Option<Length>),
     Edit(Box<Edit>),
     Plan(Box<Change>),
-    /// Open the cyclic connection, which does not move anything.
+    /// Opens the cyclic connection. Nothing moves.
     Take,
     Give,
-    /// Move the selected drive, or change its state.
+    /// Moves the selected drive, or changes its state.
     Drive(Motor),
-    /// Set up the axis of the selected drive.
+    /// Sets up the axis of the selected drive.
     Axis(axis::AxisAction),
     Save(PathBuf),
 }
@@ -38,43 +38,43 @@ pub enum Motor {
     Acknowledge,
     JogPress {
         direction: Direction,
-        /// Whether this is an automatic key repetition, which starts nothing.
+        /// Whether the press is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Press of a jog button in the axis set-up. Jogging there is slow and weak, independent of other jog settings.
+    /// Presses a jog button in the axis set-up. The jog is slow and weak there, independent of other jog settings.
     SlowJogPress {
         direction: Direction,
-        /// Whether this is an automatic key repetition, which starts nothing.
+        /// Whether the press is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Allow the next jog in this direction to lead further outside the limits.
+    /// Allows the next jog in this direction to lead further outside the limits.
     FreeOutward(Direction),
-    /// Confirm that the jog is still held. Sent in every frame.
+    /// Confirms that the jog is still held. It is sent in every frame.
     JogHold,
     JogRelease,
-    /// Move by this number of steps from the present position and stop there.
+    /// Moves by this number of steps from the present position and stops there.
     Step {
-        /// In scaled steps.
+        /// Signed distance in scaled steps.
         by: i32,
     },
     Move {
-        /// In scaled steps.
+        /// Target position in scaled steps.
         target: i32,
     },
     Run {
         direction: Direction,
         end: RunEnd,
     },
-    /// The job waits.
+    /// Pauses the job.
     Pause,
     Resume,
     Stop,
     JogEffort(SpeedTorque),
-    /// Set the effort for moves, steps and runs.
+    /// Sets the speed and torque of moves, steps and runs.
     MoveEffort(SpeedTorque),
-    /// Confirm or revoke the warning about endless runs.
+    /// Confirms or revokes the warning about endless runs.
     Expert(bool),
-    /// Confirm the limits after checking them in the user's own unit.
+    /// Confirms the limits after the user has checked them in the user's own unit.
     ConfirmLimits(DriveNumber),
 }
 

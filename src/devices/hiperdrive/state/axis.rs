@@ -1,10 +1,10 @@
-//! Axis set-up as one run: from an unknown drive to limits in millimetres that have survived a power cycle. A state
-//! machine between the facts that were read ([`DriveFacts`]) and the requests to the drive ([`DriveRequest`]); it
-//! performs no I/O, and no step continues before the drive confirms it.
+//! Axis set-up as one procedure, from an unknown drive to limits in millimetres that have survived a power cycle. It is
+//! a state machine between the facts that were read ([`DriveFacts`]) and the requests to the drive ([`DriveRequest`]).
+//! It performs no I/O, and no step continues before the drive confirms it.
 //!
-//! The results of the steps form a chain: each depends on facts of the drive (scale, pitch, reference, limits) and
-//! becomes void when they change, together with all later results, even if another program changed them. The displayed
-//! step is independent of that: it changes only when the user presses a button.
+//! The results of the steps form a chain. Each depends on facts of the drive: scale, pitch, reference, limits. When
+//! these change, the result becomes void together with all later results, even if another program made the change. The
+//! displayed step is independent of that: it changes only when the user presses a button.
 //!
 //! Parameters are tried first: they are written and read back, but not saved. Saving is a separate step, the last but
 //! one. The manual does not guarantee that unsaved values are lost at power-off, so the previous ones are written back.
@@ -66,7 +66,7 @@ pub enum Reached {
     Now,
     Skipped,
     Failed,
-    /// A later step.
+    /// The step follows later.
     Ahead,
 }
 
@@ -96,13 +96,12 @@ pub struct RunSummary {
 struct Confirmed {
     scale: Option<PositionScale>,
     seen: (i32, i32),
-    /// Limits seen by the user, or the limits taught and written since by a reviewed plan.
+    /// Limits seen by the user, or the taught limits that a reviewed plan has written since.
     agreed: (i32, i32),
-    /// Taught limits of an interrupted plan, each of which may have been written.
+    /// Taught limits of an interrupted plan. Each of them may have been written.
     begun: Option<(i32, i32)>,
 }
 
-/// Set-up of the axis of one drive.
 #[derive(Clone, Debug)]
 pub struct Axis {
     drive: DriveNumber,
@@ -117,10 +116,10 @@ pub struct Axis {
     standstill: StandstillMonitor,
     /// Number of times the position jumped at standstill.
     jumps: u32,
-    /// Steps by which the position changed while it was not read, since the reference.
+    /// Number of steps by which the position has changed while it was not read, since the reference.
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
-    /// Running test move: which target, its position, and the act that started the move.
+    /// Running test move: the target, its position, and the number of the action that started the move.
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
@@ -161,7 +160,7 @@ impl AxisStep {
     }
 
     pub const fn index(self) -> usize {
-        // In the order of `ALL`.
+        // The variants are in the order of `ALL`.
         self as usize
     }
 
@@ -227,7 +226,7 @@ impl Axis {
         &self.changes
     }
 
-    /// Returns whether a write ended early, so that some of the changes may not have been made.
+    /// Returns whether a write ended early. Some of the changes may then not have been made.
     pub const fn is_partly_written(&self) -> bool {
         self.partly
     }
@@ -261,7 +260,8 @@ impl Axis {
         self.power
     }
 
-    /// Returns an earlier step whose result the drive no longer has. That step and all later steps must be repeated.
+    /// Returns the earliest step whose result the drive no longer has, if it is before the current step. That step and
+    /// all later steps must be repeated.
     pub fn invalidated_text(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }

@@ -27,8 +27,8 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// Entries of the connection form, where an empty entry selects the default. Entries of other connection types are
-/// preserved but left out of the link.
+/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are preserved
+/// but left out of the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
@@ -65,7 +65,7 @@ impl VirtualHub {
 impl FormModel for HiperdriveForm {
     type Finder = DiscoveryFinder;
 
-    // The virtual drive initially offered by the window: an adapter.
+    // The window initially offers a virtual adapter.
     fn usual() -> LinkUrl {
         LinkUrl::sim()
     }
@@ -113,7 +113,8 @@ impl HiperdriveForm {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
-    /// Returns the entries of the virtual device. An adapter has a single drive.
+    /// Returns the entries of the virtual device. An adapter has a single drive, so it has no entry for the plugged
+    /// ports.
     pub fn of_the_virtual(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()

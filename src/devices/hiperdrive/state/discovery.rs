@@ -30,7 +30,6 @@ pub struct FoundDevice {
     pub port: u16,
     pub name: String,
     pub serial_number: u32,
-    /// Whether the vendor is the manufacturer of HIPERDRIVE.
     pub is_hiperdrive: bool,
 }
 
@@ -48,7 +47,7 @@ impl FoundDevice {
 }
 
 impl Discovery {
-    /// Answers are still coming.
+    /// Returns whether replies are still being collected.
     pub fn is_running(&self) -> bool {
         self.found.is_none()
     }
@@ -80,7 +79,7 @@ impl fmt::Debug for DiscoveryStub {
 /// Broadcasts a discovery request and collects replies for a second.
 ///
 /// # Errors
-/// The request could not be sent.
+/// Returns an error if the request cannot be sent.
 fn broadcast_discovery() -> Result<Vec<DiscoveredDevice>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut shout = UdpBroadcast::on_all_networks(EXPLICIT_PORT, clock.clone())?;
@@ -94,7 +93,7 @@ pub struct DiscoveryFinder {
 
 pub enum DiscoveryAction {
     Discover,
-    /// Fill in the address of a device that replied, so that the Connect button connects to it.
+    /// Fills in the address of a device that replied. The Connect button then connects to it.
     Choose(usize),
 }
 
@@ -132,7 +131,7 @@ impl Finder for DiscoveryFinder {
         }
     }
 
-    /// Handles the discovery replies, placing HIPERDRIVE devices first.
+    /// Handles the discovery replies. HIPERDRIVE devices come first.
     fn done(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
         let DiscoveryReplies { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());

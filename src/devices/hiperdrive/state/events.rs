@@ -85,8 +85,7 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// Requests missing data as soon as the line is free, namely the cause of a fault and the position of the selected
-    /// drive.
+    /// Requests missing data as soon as the line is free: the cause of a fault and the position of the selected drive.
     fn request_missing_data(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -111,8 +110,8 @@ impl Unit {
 
     fn control_lost(&mut self, services: &mut Services) {
         self.moves.stop();
-        // The last data of the drives, including those not yet taken, are from before the loss; their present state is not
-        // known.
+        // The last data of the drives, including those not yet taken, are from before the loss. The present state is
+        // not known.
         self.take_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
@@ -121,7 +120,7 @@ impl Unit {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Ends the fault notice, which all drives share, once no drive has a fault.
+    /// Ends the fault notice once no drive has a fault. All drives share one notice.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
@@ -173,7 +172,7 @@ impl SessionEvents for Unit {
         super::trace::meaning(frame)
     }
 
-    /// Processes the session events since the last call and refreshes the acts that the window must keep alive.
+    /// Processes the session events since the last call and refreshes the actions that the window must keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.send_heartbeat();
@@ -248,19 +247,19 @@ impl SessionEvents for Unit {
                     services.log.settle(lost, Some(&self.session.name()));
                 }
                 self.poll();
-                // Another master may have changed limits and scaling since they were read: no motion uses the old ones.
-                // They are read as soon as the line is free.
+                // Another master may have changed limits and scaling since they were read, so no motion uses the old
+                // ones. They are read as soon as the line is free.
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
                 self.moves.send_heartbeat();
-                // They are no longer read.
+                // The limits are no longer read.
                 services.log.settle(RULES, Some(&self.session.name()));
-                // Values not read while another master was in control are read now.
+                // Values that were not read while another master was in control are read now.
                 self.looks_at_all |= self.is_stale;
             }
             HiperdriveOutput::Watched(drive) => self.watched = drive,
-            // Only the command line requests it.
+            // Only the command line requests the identity.
             HiperdriveOutput::Identity(_) => {}
         }
     }
@@ -278,7 +277,7 @@ impl SessionEvents for Unit {
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             EarlyEnd::Failed(_) => self.moves.stop(),
-            // Values required before a controlled drive moves are read, however the job ended.
+            // Values required before a controlled drive moves are read even if the job ended early.
             EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             EarlyEnd::Lost => {}
         }
@@ -292,7 +291,7 @@ impl SessionEvents for Unit {
         self.moves.stop();
     }
 
-    /// Ends every motion first.
+    /// Ends every motion before the release.
     fn prepare_release(&mut self) {
         self.moves.end();
     }

@@ -37,7 +37,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, if no further requests are possible over it.
+/// Returns why the connection failed, or `None` if further requests are possible over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),

@@ -9,10 +9,10 @@ use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, Scale
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Parses the distance of a step; `sign` is −1 for backward.
+/// Parses the distance of a step. `sign` is −1 for backward.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn step(unit: &Unit, text: &str, measure: PositionUnit, sign: i32) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     if steps == 0 {
@@ -24,7 +24,7 @@ pub fn step(unit: &Unit, text: &str, measure: PositionUnit, sign: i32) -> Result
 /// Parses a position within the limits of the selected drive.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
@@ -41,7 +41,7 @@ pub fn target(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Tex
 /// Parses a position without checking the limits, as needed for entering limits and for setting the position.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text> {
     if text.trim().is_empty() {
         return Err(TEXTS.text("hd_entry.empty"));
@@ -63,7 +63,7 @@ pub fn steps(unit: &Unit, text: &str, measure: PositionUnit) -> Result<i32, Text
 /// Parses a percentage from 1 to 100.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn percent(text: &str) -> Result<Percent, Text> {
     let digits = text.trim().trim_end_matches('%').trim();
     let percent = digits.parse().ok().filter(|percent| *percent >= 1).and_then(Percent::new);
@@ -73,7 +73,7 @@ pub fn percent(text: &str) -> Result<Percent, Text> {
 /// Parses a parameter value, decimal or with `0x`. An empty entry removes the value from a profile.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");
@@ -89,10 +89,10 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
 
-/// Parses a length in millimetres, which must be above 0 and is exact to the nanometre.
+/// Parses a length in millimetres, exact to the nanometre. The length must be above 0.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// Returns the reason if the entry is invalid.
 pub fn length(text: &str) -> Result<Length, Text> {
     let millimetres = number(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
@@ -104,7 +104,7 @@ pub fn length(text: &str) -> Result<Length, Text> {
 /// Returns the scale that gives a step the required length for a spindle pitch.
 ///
 /// # Errors
-/// Explains why there is no such scale.
+/// Returns the reason if there is no such scale.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
         ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),

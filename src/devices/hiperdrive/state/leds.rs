@@ -12,9 +12,9 @@ pub struct Leds {
     pub hub: bool,
     /// Position of switch S3 of a hub: 0 for all drives, otherwise the number of the drive shown by the RS485 LED.
     pub s3: u8,
-    /// RS485.
+    /// State of the RS485 LED.
     pub drives: DriveLedState,
-    /// MS.
+    /// State of the MS LED.
     pub module: NetworkLedState,
     pub network: NetworkLedState,
     pub port: PortLedState,
@@ -23,11 +23,11 @@ pub struct Leds {
 /// An LED of the device, or the two LEDs of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Led {
-    /// RS485.
+    /// The RS485 LED.
     Drives,
-    /// MS or NS.
+    /// The MS or NS LED.
     Bus(NetworkLed),
-    /// P1 or P2.
+    /// The two LEDs of port P1 or P2.
     Port,
 }
 

@@ -1,5 +1,5 @@
 //! State of the HIPERDRIVE tab: data known about an adapter or a hub and its drives, edits, and motion of the drives.
-//! Complete without a window.
+//! It works without a window.
 
 mod act;
 mod action;

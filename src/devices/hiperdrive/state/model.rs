@@ -34,7 +34,7 @@ impl DeviceModel for Unit {
         if let Some(line) = self.session.line() {
             services.brakes.add(Box::new(motion), line.stopper());
         }
-        // The identity is read first, then everything else: nothing is set, and nothing moves.
+        // The identity is read first, then everything else. Nothing is set, and nothing moves.
         self.submit(HiperdriveJob::Hello, services);
     }
 

@@ -1,9 +1,9 @@
-//! Motion of the drives requested in the window: the held button, the running act, and the outcome of the last one. The
-//! dead-man behind [`Motion`] alone decides what is sent to a drive; this module sends its refreshes and ends them at
-//! once when required.
+//! Motion of the drives requested in the window: the held button, the running action, and the outcome of the last one.
+//! The dead-man control behind [`Motion`] alone decides what is sent to a drive. This module refreshes its requests and
+//! ends them at once when required.
 //!
-//! A jog is refreshed by its held button in every frame; a move, a step and a run by the frames themselves. A window
-//! that hangs refreshes nothing, and the drives stop 250 ms later.
+//! A held button refreshes its jog in every frame. A move, a step and a run are refreshed by the frames themselves. A
+//! window that hangs refreshes nothing, and the drives stop 250 ms later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +21,7 @@ pub struct DriveMotion {
     motion: Option<Motion>,
     view: MotionSnapshot,
     act: Option<Act>,
-    /// Effort of jogs, for drives on which it differs from the default.
+    /// Speed and torque of jogs, for drives on which they differ from the default.
     jogs: BTreeMap<DriveNumber, SpeedTorque>,
     jobs: BTreeMap<DriveNumber, SpeedTorque>,
     /// Drives for which the user has allowed an endless run.
@@ -45,16 +45,16 @@ struct Act {
     drive: DriveNumber,
     number: u64,
     kind: Kind,
-    /// Whether the drive is moving because of the act or has a waiting job.
+    /// Whether the action moves the drive or has paused its job.
     moves: bool,
     is_reported: bool,
 }
 
-/// Kind of an act, which determines how it is refreshed.
+/// Kind of an action, which determines how it is refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Held,
-    /// An act that is refreshed in every frame and does not end without a stop.
+    /// An action that is refreshed in every frame and does not end without a stop.
     Run,
     Other,
 }
@@ -80,7 +80,7 @@ impl Default for DriveMotion {
 }
 
 impl DriveMotion {
-    /// Begins a session. Unconfirmed limits remain unconfirmed, endless runs are not allowed yet, and jogs are slow
+    /// Begins a session. Unconfirmed limits remain unconfirmed. Endless runs are not allowed yet, and jogs are slow
     /// ([`SpeedTorque::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
@@ -113,7 +113,8 @@ impl DriveMotion {
         }
     }
 
-    /// Fetches the state of the drives and refreshes the acts that frames keep alive. Must be called in every frame.
+    /// Fetches the state of the drives and refreshes the actions that frames keep alive. This function must be called
+    /// in every frame.
     pub(super) fn send_heartbeat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
@@ -170,7 +171,7 @@ impl DriveMotion {
     }
 
     fn intend(&mut self, drive: DriveNumber, request: MotionRequest, kind: Kind) -> Option<u64> {
-        // For one press: the next request needs it enabled again.
+        // The permission is for one press. The next request needs it again.
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, request);
         let moves = request.moves() || request == MotionRequest::Pause;
@@ -189,7 +190,7 @@ impl DriveMotion {
         }
     }
 
-    /// Returns whether the jog of the held button has ended by itself, so that the button has no effect until its release.
+    /// Returns whether the jog of the held button has ended by itself. The button then has no effect until its release.
     pub fn has_held_jog_ended(&self) -> bool {
         self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
     }
@@ -209,7 +210,7 @@ impl DriveMotion {
         self.stop_matching(|kind| kind == Kind::Held);
     }
 
-    /// Ends any act that lasts until it is stopped, that is, a jog or a run.
+    /// Ends an action that lasts until it is stopped: a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_matching(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -220,7 +221,7 @@ impl DriveMotion {
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
             motion.intend(act.drive, MotionRequest::Stop);
         }
-        // Its end is still to be reported; nothing refreshes it any more.
+        // The end of the action is still to be reported, but the action is no longer refreshed.
         self.act = Some(Act { kind: Kind::Other, ..act });
     }
 
@@ -234,8 +235,8 @@ impl DriveMotion {
         self.freed == way || self.used == way && self.is_held()
     }
 
-    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act, or `None` while
-    /// the session is not open.
+    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the action, or `None`
+    /// while the session is not open.
     pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         let number = self.intend(drive, request, kind)?;
@@ -255,7 +256,6 @@ impl DriveMotion {
         }
     }
 
-    /// Requires the limits of a drive to be confirmed before it moves.
     pub(super) fn require_confirmation(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().require_confirmation();
         if let Some(motion) = &self.motion {
@@ -293,7 +293,6 @@ impl DriveMotion {
         }
     }
 
-    /// Returns the motion handle of the session, or `None` while it is not open.
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
     }
@@ -357,7 +356,7 @@ impl DriveMotion {
 
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
         let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
-        // Without control nothing moves: the limits are read when it is taken, and a slow reply ends nothing.
+        // Without control nothing moves. The limits are read when control is taken, and a slow reply ends no motion.
         locks.retain(|lock| !matches!(lock, Lock::Outdated | Lock::NoAnswer) || self.view.open);
         locks
     }
@@ -367,7 +366,7 @@ impl DriveMotion {
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
     }
 
-    /// Returns the act and direction of a held jog button of a drive.
+    /// Returns the action number and direction of a held jog button of a drive.
     pub fn held_motion(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
@@ -388,7 +387,7 @@ impl DriveMotion {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_motion_active()
     }
 
-    /// Returns whether an act that must be refreshed is running.
+    /// Returns whether an action that must be refreshed is running.
     pub fn is_motion_active(&self) -> bool {
         let own = |act: &Act| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
@@ -415,17 +414,16 @@ impl DriveMotion {
         self.jogs.get(&drive).copied().unwrap_or(SpeedTorque::JOG)
     }
 
-    /// Returns the speed and torque for moves, steps and runs.
     pub fn move_effort(&self, drive: DriveNumber) -> SpeedTorque {
         self.jobs.get(&drive).copied().unwrap_or(SpeedTorque::MOVE)
     }
 
-    /// Returns the effort of a running jog, if any.
+    /// Returns the speed and torque of a running jog, if any.
     pub fn running_jog_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_effort(drive).filter(|_| self.is_jog(drive))
     }
 
-    /// Returns the effort of a running move, step or run, if any.
+    /// Returns the speed and torque of a running move, step or run, if any.
     pub fn running_move_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         self.active_effort(drive).filter(|_| !self.is_jog(drive))
     }

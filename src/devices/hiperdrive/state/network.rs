@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Attribute 3.
+    /// Address source, attribute 3 of the TCP/IP object.
     pub source: AddressSource,
     pub address: String,
     pub mask: String,
@@ -65,7 +65,7 @@ impl Form {
     /// Returns the edited settings. If a server assigns the addresses, the present addresses are kept.
     ///
     /// # Errors
-    /// Explains why an entry is invalid.
+    /// Returns the reason if an entry is invalid.
     pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
         if !self.has_addresses() {
             return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
@@ -117,8 +117,8 @@ pub fn refused(error: &AddressError) -> Text {
 }
 
 impl PowerUpAddress {
-    /// Returns the address source for the given switches and settings. Unreadable switches count as 0, since not all
-    /// devices have switches.
+    /// Returns the address source for the given switches and settings. Unreadable switches count as 0, because some
+    /// devices have no switches.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUpAddress::NothingStored,
@@ -172,7 +172,7 @@ pub fn consequence_texts(
     let after = PowerUpAddress::of(switch, wanted);
     let mut texts = Vec::new();
     let decides = switch.filter(|own| *own != AddressSwitch::Object);
-    // At 97 the stored addresses count, and their source does not.
+    // At 97 the stored addresses apply, whatever their source is.
     let is_lost = decides.is_some_and(|own| own != AddressSwitch::Stored || now.source != wanted.source);
     if let Some(own) = decides.filter(|_| is_lost) {
         texts.push((Severity::Warning, TEXTS.text("hd_net.switch_decides").with("digits", own.number())));

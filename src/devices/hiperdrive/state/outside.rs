@@ -1,5 +1,5 @@
-//! A drive outside its limits: how far outside, the direction back in, and the direction further out, which the user
-//! can enable for one press because a wrong reference may leave no other way.
+//! A drive outside its limits: how far outside it is, the direction back in, and the direction further out. The user
+//! can enable the outward direction for one press, because a wrong reference may leave no other way.
 
 use super::unit::Unit;
 use crate::app::services::Services;
@@ -12,18 +12,18 @@ use crate::devices::hiperdrive::state::TEXTS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutOfRangePosition {
     pub outside: Outside,
-    /// In scaled steps.
+    /// Position in scaled steps.
     pub position: i32,
-    /// Parameters 158 and 160.
+    /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Whether the drive is outside its limits by more than its repeatability, and therefore not merely at the end of
-    /// its range.
+    /// Whether the drive is outside its limits by more than its repeatability. Otherwise it is merely at the end of its
+    /// range.
     pub is_far: bool,
 }
 
 impl Unit {
-    /// Returns how a drive is outside its limits according to its position or status bit 15, or `None` if it is inside
-    /// or position or limits are unknown.
+    /// Returns how a drive is outside its limits according to its position or status bit 15. Returns `None` if the
+    /// drive is inside, or if position or limits are unknown.
     pub fn outside(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.steps_per_degree());
@@ -47,7 +47,7 @@ impl Unit {
     /// Checks whether a drive may be jogged in this direction now.
     ///
     /// # Errors
-    /// Explains why the drive may not be jogged.
+    /// Returns the reason if the drive may not be jogged.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_outward_enabled(drive, direction);
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward })
@@ -75,7 +75,7 @@ impl Unit {
     /// Returns the change that assigns a position in scaled steps to the present location of a drive and saves it.
     ///
     /// # Errors
-    /// Explains why the drive would not accept a position outside the limits.
+    /// Returns the reason if the drive would not accept a position outside the limits.
     pub fn reference_change(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

@@ -48,7 +48,7 @@ impl Record {
             is_warned: status.has(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
         self.track.add(&[sighting], &meaning(ruler));
-        // Without control, a recorded target stays among the watched values.
+        // Without control, a target recorded earlier stays among the watched values.
         let has_target =
             target.is_some() || self.track.watched().iter().any(|own| matches!(own, RecordedValue::Target(_)));
         let mut beside = vec![RecordedValue::Speed];
@@ -71,7 +71,7 @@ impl Record {
         self.track.watch(&others.chain(wished).collect::<Vec<_>>());
     }
 
-    /// Records a temperature. Temperatures that are not being recorded are ignored, since they belong to another drive.
+    /// Records a temperature. A temperature that is not being recorded is ignored, since it belongs to another drive.
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);
@@ -114,7 +114,7 @@ impl Watchable for RecordedValue {
     }
 
     /// Returns whether the recording can continue under another meaning. The pitch changes only how steps are
-    /// displayed, whereas a step is a different distance under another scale.
+    /// displayed. Under another scale, a step is a different distance.
     fn can_continue_as(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

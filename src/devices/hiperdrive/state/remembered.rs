@@ -44,7 +44,7 @@ impl DriveMemory for Unit {
             next.mark(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
-            // A limit marked again elsewhere is not the one confirmed here.
+            // Limits that were marked again elsewhere are not the ones confirmed here.
             if kept.marks(drive) == before.kept.marks(drive) {
                 next.set_unconfirmed(drive, false);
             }
@@ -59,7 +59,7 @@ impl DriveMemory for Unit {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.newly_marked(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.require_confirmation(drive);
-            // It is not a mark of this session.
+            // The mark was not set in this session.
             before.unconfirmed.insert(drive);
         }
     }

@@ -1,4 +1,4 @@
-//! Requests that a drive accepts at present, the reasons against others, and the state of the last one.
+//! Requests that a drive accepts at present, the reasons against others, and the state of the last request.
 
 use super::action::Motor;
 use super::ruler::PositionUnit;
@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain as words;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
     pub words: Text,
-    /// Needs no action.
+    /// Whether no action is needed.
     pub is_well: bool,
 }
 
@@ -25,7 +25,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
-    /// Explains why the connection cannot be opened.
+    /// Returns the reason if the connection cannot be opened.
     pub fn check_can_take_control(&self) -> Result<(), Text> {
         match self.session.not_ready_reason() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -39,9 +39,9 @@ impl Unit {
     /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
-    /// Explains why the connection cannot be closed.
+    /// Returns the reason if the connection cannot be closed.
     pub fn check_can_release_control(&self) -> Result<(), Text> {
-        // Also while the device does not answer.
+        // Control can be released even while the device does not answer.
         match self.session.line() {
             _ if !self.moves.is_open() => Err(TEXTS.text("hd_refused.not_taken")),
             None => Err(Text::new("session.not_connected")),
@@ -53,7 +53,7 @@ impl Unit {
     /// Checks whether a drive may be moved now.
     ///
     /// # Errors
-    /// Explains why the drive may not be moved.
+    /// Returns the reason if the drive may not be moved.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.check_controllable()?;
         if let Phase::Silent(why) = &self.session.phase {
@@ -75,7 +75,7 @@ impl Unit {
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
-    /// Explains why the drive may not do so.
+    /// Returns the reason if the drive may not do so.
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
@@ -85,7 +85,7 @@ impl Unit {
     /// Checks whether an endless run can be enabled, which requires factory limits and scaling.
     ///
     /// # Errors
-    /// Explains why an endless run cannot be enabled.
+    /// Returns the reason if an endless run cannot be enabled.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -118,8 +118,8 @@ impl Unit {
         permit.check(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
-    /// Checks that a request may end the present motion. A stop or a jog of the same drive may; other requests must not
-    /// end the motion of another drive, nor replace a step or move before its end.
+    /// Checks that a request may end the present motion. A stop and a jog of the same drive may. Other requests must
+    /// not end the motion of another drive, or replace a step or move before its end.
     fn may_stop_other_drive(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
@@ -165,8 +165,8 @@ impl Unit {
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// Formats a position in all units, since the same number of steps may be another position under another scale.
-    /// Degrees are included only if selected.
+    /// Formats a position in all units. The same number of steps may be another position under another scale. Degrees
+    /// are included only if selected.
     pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &PositionUnit| *own != PositionUnit::Degrees || *own == self.measure;
@@ -194,7 +194,7 @@ impl Unit {
         (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
-    /// Returns the states that a single control word can reach from the present state; none without control.
+    /// Returns the states that a single control word can reach from the present state. There are none without control.
     pub fn reachable_states(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
@@ -213,8 +213,8 @@ impl Unit {
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// Returns the request that leads a drive to a [`reachable_states`](Self::reachable_states) state, or `None` if no request does.
-    /// A fault is left by acknowledging it, which leads to the lock.
+    /// Returns the request that leads a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
+    /// no request does. A fault is left by acknowledging it, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
             State::NotReady => Some(Motor::Lead(TargetState::Off)),
@@ -226,8 +226,8 @@ impl Unit {
         }
     }
 
-    /// Describes the running act of a drive, or the end of the last act. Returns `None` without a cyclic connection and
-    /// before the first act.
+    /// Describes the running action of a drive, or how the last one ended. Returns `None` without a cyclic connection
+    /// and before the first action.
     pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {

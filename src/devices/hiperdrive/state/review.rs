@@ -118,8 +118,7 @@ pub(super) fn operation_texts(
     words
 }
 
-/// Describes the meaning of a value. Positions are given in millimetres, or else in turns, under the scale in effect at
-/// that time.
+/// Describes a value. Positions are given in millimetres, or else in turns, under the scale in effect at that time.
 fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
         (LOWER | UPPER | 170 | 176 | REFERENCE, Some(drive)) => {

@@ -47,7 +47,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Explains why the parameter cannot be edited as a value, or returns `None` if it can.
+    /// Returns why the parameter cannot be edited as a value, or `None` if it can.
     pub fn not_editable_reason(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
@@ -124,7 +124,6 @@ impl Unit {
         Some(Value::Number(value))
     }
 
-    /// Returns the factory setting of a parameter, depending on device and drive.
     pub fn factory_value(&self, number: ParameterNumber, kind: &ParameterRow) -> Option<i64> {
         let profile = || self.profile_identity().and_then(|own| own.topology);
         let topology = self.identity().map(|own| own.topology).or_else(profile).unwrap_or(Topology::Adapter);
@@ -132,7 +131,6 @@ impl Unit {
         kind.factory_value(topology, family)
     }
 
-    /// Returns the family of a drive, if its variant is known.
     fn family(&self, drive: DriveNumber) -> Option<Family> {
         let in_profile = || self.profile()?.drive(drive)?.variant;
         let variant = self.drive_identity(drive).map(|own| own.variant).or_else(in_profile)?;
@@ -155,7 +153,7 @@ impl Unit {
         };
         let drive = number.drive();
         match (number.base(), drive) {
-            // Positions in the edited scale.
+            // Positions are shown in the edited scale.
             (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
                 let ruler = self.requested_ruler(drive);
                 let measure = if ruler.pitch.is_some() { PositionUnit::Millimetres } else { PositionUnit::Turns };

@@ -5,9 +5,9 @@ use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ruler {
-    /// Parameters 154 and 156.
+    /// Position scale, parameters 154 and 156.
     pub scale: PositionScale,
-    /// Millimetres per turn, if entered by the user.
+    /// Pitch of the spindle, if entered by the user.
     pub pitch: Option<Length>,
 }
 
@@ -17,7 +17,7 @@ pub enum PositionRangeError {
     /// The position exceeds 32 bits. The fields are minimum and maximum.
     #[error("a position is between {least} and {most}")]
     Bits { least: f64, most: f64 },
-    /// Millimetres without a pitch.
+    /// A position in millimetres requires a pitch.
     #[error("the spindle's pitch is not known")]
     NoPitch,
 }
@@ -73,7 +73,7 @@ impl Ruler {
 
     /// Converts the steps of a position to another scale. The result may not fit in 32 bits.
     pub fn rescale_position(self, steps: i64, to: PositionScale) -> i64 {
-        // Two 32-bit products of 16-bit numbers and a 33-bit one.
+        // The product of a position and two 16-bit numbers fits in 128 bits.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());
         let below = i128::from(to.denominator()) * i128::from(self.scale.numerator());
         let half = if above < 0 { -below / 2 } else { below / 2 };

@@ -23,7 +23,6 @@ use crate::store::write_atomically;
 const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
 impl Unit {
-    /// Returns the set-up of the selected drive, if one has begun.
     pub fn axis(&self) -> Option<&Axis> {
         self.axes.get(&self.drive())
     }
@@ -31,7 +30,7 @@ impl Unit {
     /// Checks whether the selected drive can be set up.
     ///
     /// # Errors
-    /// Explains why the drive cannot be set up.
+    /// Returns the reason if the drive cannot be set up.
     pub fn check_can_set_up(&self) -> Result<(), Text> {
         match self.session.not_ready_reason() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -47,7 +46,7 @@ impl Unit {
     /// Checks whether a change can be planned now.
     ///
     /// # Errors
-    /// Explains why no change can be planned.
+    /// Returns the reason if no change can be planned.
     pub fn check_can_plan(&self) -> Result<(), Text> {
         self.session.not_ready_reason().map_or(Ok(()), Err)
     }
@@ -119,7 +118,7 @@ impl Unit {
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
-                // Until now the entries served only for a preview. From now on positions are measured on this spindle
+                // Until now the entries served only for a preview. From now on, positions are measured on this spindle
                 // everywhere.
                 let confirms =
                     axis.step() == AxisStep::Scale && axis.end().is_none() && axis.check_can_continue(&seen).is_ok();
@@ -243,7 +242,8 @@ impl Unit {
         if self.axes.is_empty() {
             return;
         }
-        // `None` if the review is closed; after its end, whether it was carried out.
+        // `None` means that the review is closed. After the review has ended, the value tells whether it was carried
+        // out.
         let write = self.review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),

@@ -1,8 +1,8 @@
-//! Values of an adapter or a hub (or a profile of one), and the edited ones. Nothing is written to a device here; a
+//! Values of an adapter or a hub (or a profile of one), and the edited ones. Nothing is written to a device here. A
 //! plan is made from the difference.
 //!
 //! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
-//! and all others follow the device, in earlier states as well. Values that were not read cannot be edited; earlier
+//! and all others follow the device, in earlier states as well. Values that were not read cannot be edited. Earlier
 //! edits of them wait until they are read. A profile can gain values that it did not have.
 
 mod edit;
@@ -36,7 +36,7 @@ enum BaseSource {
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     base_source: BaseSource,
-    /// Values of the device or the profile, and the edited values; either both are present or neither is.
+    /// Values of the device or the profile. They are present exactly if the edited values are.
     base: Option<Image>,
     wanted: Option<Image>,
     earlier: Option<Image>,
@@ -62,8 +62,8 @@ pub struct Differs {
     pub to: Option<i64>,
 }
 
-/// Returns whether a parameter can be edited as a value: stored parameters, and the steps of the keys on the drive,
-/// which are not stored. Setting the position (198) is a separate change.
+/// Returns whether a parameter can be edited as a value. The stored parameters can, and so can the steps of the keys on
+/// the drive, which are not stored. Setting the position (198) is a separate change.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
     row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
@@ -75,13 +75,13 @@ impl Staged {
         Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 
-    /// Sets the families of the drives, whose travel limits the positions from now on.
+    /// Sets the families of the drives. Their travel limits the positions from now on.
     pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
-    /// Adopts the new content of the profile. If it equals the edited values, the profile was saved and the undo
-    /// history is kept; otherwise another program wrote it, and only the values edited here keep their edits.
+    /// Adopts the new content of the profile. If it equals the edited values, the profile was saved, and the undo
+    /// history is kept. Otherwise another program wrote it, and only the values edited here keep their edits.
     pub fn saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
@@ -136,7 +136,7 @@ impl Staged {
         self.wanted.as_ref()?.get(number)
     }
 
-    /// Returns the value in the previous reading, if it was different.
+    /// Returns the previous value of a parameter, or `None` if the last reading did not change it.
     pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
         let was = self.earlier.as_ref()?.get(number)?;
         (self.base.as_ref()?.get(number)? != was).then_some(was)
@@ -164,16 +164,16 @@ impl Staged {
     /// Makes an edit as a single undo step. Returns whether anything changed.
     ///
     /// # Errors
-    /// Explains why the edit is not possible; nothing is changed in that case.
+    /// Returns the reason if the edit is not possible. Nothing is changed in that case.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
     }
 
-    /// Returns the values that an edit would produce, for a preview, without making the edit.
+    /// Returns the values that an edit would produce, for a preview. The edit is not made.
     ///
     /// # Errors
-    /// Explains why the edit is not possible.
+    /// Returns the reason if the edit is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
         edit::edited((base, wanted), edit, self.base_source, &self.families)
@@ -189,7 +189,7 @@ impl Staged {
         edited.chain(self.waiting.iter().copied()).collect()
     }
 
-    /// Adopts the edits of a draft as a single undo step. Edits of parameters that were not read are deferred; invalid
+    /// Adopts the edits of a draft as a single undo step. Edits of parameters that were not read are deferred. Invalid
     /// edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
@@ -204,7 +204,7 @@ impl Staged {
             match value {
                 _ if !is_editable(row) => {}
                 Some(value) if is_read => {
-                    // Invalid values stay as they were entered, and are marked.
+                    // Invalid values stay as entered and are marked.
                     wanted.values.insert(number, value);
                 }
                 Some(_) => self.waiting.push(SavedEdit(number.get(), value)),

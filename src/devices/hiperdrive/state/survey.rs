@@ -1,4 +1,4 @@
-//! The reading of a device: adopting it, updating it from the data of the drives, and detecting changes by other
+//! The reading of a device. It is adopted, updated from the data of the drives, and used to detect changes by other
 //! masters.
 
 use super::staged::is_editable;
@@ -63,8 +63,8 @@ impl Unit {
         }
     }
 
-    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters;
-    /// also when control is taken.
+    /// Reads everything again when control is taken, or if the limits that the worker reads under control differ from
+    /// the table of parameters.
     pub(super) fn handle_limit_change(&mut self) {
         if self.moves.take_control_taken() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
@@ -90,7 +90,7 @@ impl Unit {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Explains why the known parameters of a drive are not sufficient to move it, or returns `None` if they are.
+    /// Returns why the known parameters of a drive are not sufficient to move it, or `None` if they are.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
@@ -107,7 +107,7 @@ impl Unit {
     /// as these are known.
     ///
     /// # Errors
-    /// Explains why the limits cannot be confirmed.
+    /// Returns the reason if the limits cannot be confirmed.
     pub fn check_can_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
         self.limits_to_confirm_now(drive).map(|_| ())
     }
@@ -119,9 +119,9 @@ impl Unit {
         seen.ok_or_else(|| words::lock(Lock::Unread))
     }
 
-    /// Confirms the displayed limits. Returns whether this took effect, and reports a message if it did not.
+    /// Confirms the displayed limits. Returns whether this took effect. Otherwise a message is reported.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
-        // As shown, before another update: later changes were not seen.
+        // The limits are taken as shown, before another update. The user has not seen later changes.
         let shown = self.limits_to_confirm_now(drive);
         self.moves.look();
         self.handle_limit_change();
@@ -148,7 +148,6 @@ impl Unit {
         }
     }
 
-    /// Returns whether the device is different from the one read before.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| {
             (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)

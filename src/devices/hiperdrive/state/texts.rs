@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Text catalogue of HIPERDRIVE. Names not found here are those of common texts.
+/// Text catalogue of HIPERDRIVE. IDs not found here are looked up in the common texts.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperdrive.ron"));

@@ -59,7 +59,7 @@ pub struct Unit {
     pub(super) marks: SettingsReadState,
     /// Last reading of each drive while it was not under control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
-    /// Whether limits and scaling may have changed since they were read, as is the case after control is taken.
+    /// Whether limits and scaling may have changed since they were read. This is the case after control is taken.
     pub(super) is_stale: bool,
     pub(super) watched: DriveNumber,
     /// Whether polling has been started automatically since the link was opened.
@@ -122,7 +122,6 @@ impl Unit {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number of the device, or `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -163,7 +162,6 @@ impl Unit {
         record
     }
 
-    /// Returns the identity of a drive, or `None` if it has not been read yet.
     pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
         self.identity()?.drive(drive)
     }

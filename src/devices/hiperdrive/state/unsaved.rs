@@ -1,5 +1,5 @@
 //! Values written to a device and not saved since, with the previous value of each parameter. A device does not reveal
-//! its saved values, and an interrupted run may date from the previous day.
+//! its saved values, and an interrupted set-up may date from the previous day.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(super) struct Unsaved {
 }
 
 impl Unsaved {
-    /// Records that execution of a plan is starting, so that its parameters may differ from the saved values.
+    /// Records that the execution of a plan is starting. Its parameters may differ from the saved values from then on.
     pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -44,7 +44,7 @@ impl Unsaved {
         }
     }
 
-    /// Records that a plan ended early; `begun` tells whether part of it was or may have been written.
+    /// Records that a plan ended early. `begun` tells whether part of it was or may have been written.
     pub(super) fn ended(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
@@ -86,7 +86,6 @@ impl Unit {
         self.unsaved.for_drive(drive)
     }
 
-    /// Returns how often this program has set the position of a drive.
     pub(super) fn position_set_count(&self, drive: DriveNumber) -> u32 {
         self.unsaved.set.get(&drive).copied().unwrap_or_default()
     }

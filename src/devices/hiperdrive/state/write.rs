@@ -95,7 +95,7 @@ impl HasProfile for Unit {
 
     fn last_read_profile(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
-        // Values that the device refuses are in no profile; damaged ones should have been in this one.
+        // Values that the device refuses are in no profile. Values of the wrong length should have been in this one.
         let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();
         if !missing.is_empty() {
             return Some(Err(missing));

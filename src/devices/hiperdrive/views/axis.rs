@@ -1,5 +1,5 @@
-//! Axis set-up as one run: the steps on the left, and on the right the selected step with its task, the axis position
-//! and the findings.
+//! Axis set-up as one procedure. The steps are on the left. The selected step is on the right, with its task, the axis
+//! position and the findings.
 //!
 //! No clickable widget moves while a step is shown, whatever the drive reports: changing messages are below all of
 //! them. Only the user changes the step.
@@ -25,12 +25,12 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// The step drawn, with the time since when, on the window's clock.
+    /// The displayed step, and the time on the window's clock since which it has been displayed.
     since: Option<(AxisStep, f64)>,
 }
 
 impl AxisUiState {
-    /// Returns how long a step has been drawn, or zero for a new step.
+    /// Returns how long a step has been displayed, or zero for a new step.
     fn age(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
@@ -42,7 +42,7 @@ pub(crate) struct AxisPanel<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a DriveFacts,
-    /// How long the current step has been shown.
+    /// Time for which the current step has been shown.
     looked_at: Duration,
 }
 
@@ -87,7 +87,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     }
     let goes_on = axis.end().is_none();
     if ui.available_width() < BESIDE {
-        // Nothing is beside the step; at the end the list is the result.
+        // In a narrow window, the list is not beside the step. At the end, the list is the result.
         if goes_on {
             step_ui(ui, theme, &shown, actions);
         } else {
@@ -117,7 +117,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
         paragraph(ui, say(theme, "hd_axis.words"));
         ui.add_space(theme.space.between);
-        // Before the list: in a low window it is visible without scrolling.
+        // The button comes before the list, so it is visible without scrolling in a low window.
         let allowed = unit.check_can_set_up();
         ui.horizontal(|ui| {
             if primary_button(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
@@ -128,7 +128,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
             }
         });
         ui.add_space(theme.space.between);
-        // Lines of text, not of buttons.
+        // The rows have the height of text, not of buttons.
         ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
         for (number, step) in (1..).zip(AxisStep::ALL) {
             ui.horizontal(|ui| {
@@ -251,7 +251,7 @@ fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     });
 }
 
-/// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled, which stops the motion.
+/// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled. Cancel stops the motion.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::check_step_settled(shown.looked_at).is_ok();
@@ -291,8 +291,8 @@ fn with_nonbreaking_spaces(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Draws content as high as a button at the right end of a line, beside other buttons if there is room and below them
-/// otherwise.
+/// Draws content as high as a button at the right end of a line. If there is no room beside other buttons, the content
+/// is below them.
 fn at_the_right_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY { rest } else { ui.available_width() };
@@ -300,7 +300,6 @@ fn at_the_right_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// Draws the end of the procedure: possible next steps, what was written, and whether it is saved.
 fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };

@@ -1,4 +1,4 @@
-//! The bar above every page: drive selection of a hub, control, STOP, and the note that it is not an emergency stop.
+//! The bar above every page: drive selection of a hub, control, STOP, and the note that STOP is not an emergency stop.
 
 use egui::{RichText, Stroke, Ui, vec2};
 
@@ -45,8 +45,8 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
     });
 }
 
-/// Draws whether this window has control of the drives or why it lost control, with alarms first. The height is
-/// constant, so that no button moves when control is lost.
+/// Draws whether this window has control of the drives, or why it lost control. Alarms come first. The height is
+/// constant, so no button moves when control is lost.
 fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let palette = theme.palette;
     let (words, ink) = match (unit.loss_reason(), outside::badge(theme, unit)) {
@@ -58,14 +58,14 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     message_label(ui, theme, words, ink.into());
 }
 
-/// Draws the STOP button, which can be pressed only if it has an effect.
+/// Draws the STOP button. It can be pressed only if it has an effect.
 fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (palette, active) = (theme.palette, studio.can_stop_motion());
     let word = theme.say("hd_bar.stop");
     let (ink, fill) = if active { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.bold_font(theme.sizes.section)).color(ink);
     let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
-    // Pressing down counts: a stop does not wait for the release.
+    // The button acts when it is pressed down. A stop does not wait for the release.
     let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP, button)).inner;
     let response = response
         .on_hover_text(theme.say("hd_bar.stop_hint"))
@@ -78,7 +78,6 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     }
 }
 
-/// Draws the drives of a hub. Draws nothing for an adapter, which has only one drive.
 fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drives = unit.drives();
     if drives.len() < 2 {
@@ -100,7 +99,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
 fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.polled_state(drive) };
-    // All signs have the same width: no button moves when a drive changes its state.
+    // All signs have the same width, so no button moves when a drive changes its state.
     let (sign, colour) = match state {
         Some(State::Moving) => (icons::PLAY, palette.accent),
         Some(State::Fault) => (icons::WARNING_CIRCLE, palette.bad),

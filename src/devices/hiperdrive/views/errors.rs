@@ -26,7 +26,6 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
     );
 }
 
-/// Draws the eight stored errors, newest first.
 fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let drive = unit.drive();

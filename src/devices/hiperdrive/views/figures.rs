@@ -104,7 +104,7 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, theme.palette.line));
     let font = FontId::monospace(theme.sizes.caption);
     let ink = theme.palette.muted.into();
-    // Position of the middle, and the distance of the ends.
+    // The labels are the middle and both ends of the scale.
     let first = buckets.first().map(span).unwrap_or_default();
     let last = buckets.last().map(span).unwrap_or_default();
     painter.text(pos2(rect.left(), rect.bottom()), Align2::LEFT_BOTTOM, first, font.clone(), ink);
@@ -112,7 +112,7 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     painter.text(pos2(rect.right(), rect.bottom()), Align2::RIGHT_BOTTOM, last, font, ink);
 }
 
-/// Microseconds off.
+/// Formats a bucket as a deviation in microseconds.
 fn span(bucket: &Bucket) -> String {
     match (bucket.from_us, bucket.below_us) {
         (None, Some(below)) => format!("< {below} µs"),

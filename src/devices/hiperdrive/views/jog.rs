@@ -1,4 +1,4 @@
-//! Jogging: hold to run, and steps that run to their end.
+//! Jogging: buttons that move a drive while they are held, and steps that run to their end.
 
 use egui::{FontId, RichText, Ui, Vec2, vec2};
 
@@ -18,7 +18,6 @@ const PAD: f32 = 56.0;
 /// Speeds of the preset buttons, in percent.
 const PRESETS: [u8; 4] = [1, 10, 50, 100];
 
-/// Draws the travel of the drive and the jog controls.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
         travel_ui(ui, theme, unit, &view.target);
@@ -121,7 +120,7 @@ pub(super) fn pad_ui(
     (button, size): (&HoldButton<'_>, Vec2),
     actions: &mut Vec<Action>,
 ) {
-    // It is another button for another drive: holding it or its keyboard focus does not carry over.
+    // Each drive has its own button, so a press or the keyboard focus does not carry over to another drive.
     let event = ui.push_id((session, drive), |ui| hold_button(ui, theme, button, size)).inner;
     let motor = match event {
         Some(HoldEvent::Press) => press,

@@ -26,7 +26,6 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsU
     });
 }
 
-/// Draws the selection of the device and the position of its switch S3.
 fn device_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
     let word = say(theme, "hd_led.device");

@@ -17,7 +17,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);
     let in_measure = |steps: i32, measure: PositionUnit| {
-        // Measuring beyond a thousandth is useless.
+        // More than three decimals are useless.
         let decimals = ruler.decimals(measure).min(3);
         ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
     };
@@ -28,14 +28,14 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         let shown = main.unwrap_or_else(|| "–".to_owned());
         let ink = if unit.outside_limits_text(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
-        // On the same line: nothing below it moves when it appears.
+        // The unit and the warning are on the same line, so nothing below moves when the warning appears.
         let measure = theme.label(say(theme, unit.measure.unit()));
         ui.label(measure);
         if let Some(badge) = warning.take_if(|own| fits(ui, own)) {
             ui.label(badge);
         }
     });
-    // If there is no space there, it is drawn before the state.
+    // If there is no space for the warning, it is drawn before the state.
     let is_told_below = warning.is_some();
     let Some(actual) = actual else { return };
     let state = actual.status.state();
@@ -47,7 +47,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
     let word = theme.words(&explain::state(state));
-    // Short enough for one line beside the widest state: the rows below do not move.
+    // The text fits on one line beside the widest state, so the rows below do not move.
     let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
     let word = if is_told_below { theme.words(&told_below) } else { word };
     let rpm = theme.number(unit.speed_scale(drive).rpm(actual.speed), 1);
@@ -60,7 +60,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     }
     row(ui, theme, &say(theme, "hd_live.state"), RichText::new(word).color(colour));
     row(ui, theme, &say(theme, "hd_effort.speed"), theme.monospace(speed));
-    // Also without one: the buttons below stay in place when control is taken.
+    // The row is drawn even without a target, so the buttons below stay in place when control is taken.
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     let target = target.map(|target| format!("{target} {}", say(theme, unit.measure.unit())));
     let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));

@@ -52,7 +52,6 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page has a bar for writing edits.
     fn has_edit_bar(self) -> bool {
         self == Page::Parameters
     }
@@ -110,7 +109,7 @@ impl TypedDeviceView for HiperdriveView {
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
         if unit.profile().is_none() {
-            // Fixed while the rest scrolls: STOP and its note.
+            // The bar with STOP and its note stays fixed while the rest scrolls.
             egui::Panel::top(id.with("hiperdrive_bar"))
                 .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
                 .show(ui, |ui| bar::bar_ui(ui, theme, studio, unit, actions));

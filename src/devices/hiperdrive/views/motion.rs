@@ -45,8 +45,8 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         empty_placeholder(ui, theme, &say(theme, "hd_motion.offline"), None);
         return;
     }
-    // In a low window the pads come before the state diagram, except if that shows a failure. The height of the
-    // window counts, not the remaining height: nothing moves when a notice appears.
+    // In a low window the pads come before the state diagram, unless the diagram shows a failure. The height of the
+    // window counts, not the remaining height, so nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW && !has_failed;
     locks_ui(ui, theme, unit, actions);
@@ -54,7 +54,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         states_ui(ui, theme, unit, actions);
         theme.gap(ui);
     }
-    // A unique id: widgets that appear above do not take the keyboard focus from an entry.
+    // With a unique ID, widgets that appear above do not take the keyboard focus from an entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         jog::card_ui(ui, theme, unit, view, actions);
@@ -79,7 +79,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
                 });
             },
         );
-        // Below: nothing that can be clicked moves away when it comes.
+        // The card is below the pads, so nothing that can be clicked moves when it appears.
         outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
     theme.gap(ui);
@@ -122,8 +122,8 @@ fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     }
 }
 
-/// Draws the state diagram and the current activity of the drive, shown beside the heading or, in a narrow window,
-/// below it. The height is constant, since nothing may move under a pointer that holds a drive's button.
+/// Draws the state diagram and the current activity of the drive. The activity is beside the heading or, in a narrow
+/// window, below it. The height is constant, since nothing may move under a pointer that holds a drive's button.
 fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= BESIDE;
     let mut acts = Vec::new();
@@ -154,7 +154,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
     actions.append(&mut acts);
 }
 
-/// Draws a fault and how to clear it, or the outcome of the last act.
+/// Draws a fault and how to clear it, or the outcome of the last action.
 fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -214,7 +214,7 @@ fn to_position_ui(
                 let response =
                     button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
-                // It replaces the pause button: a hasty second click was meant for that.
+                // The button replaces the pause button. A hasty second click was meant for that one.
                 if response.clicked() && !counts_as_stop(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
@@ -232,7 +232,7 @@ fn to_position_ui(
             ui.add(egui::Label::new(theme.caption(theme.words(&estimate))).truncate());
         }
     });
-    // What keeps the drive from moving at all stands once, below the pads.
+    // A reason that blocks all motion is shown only once, below the pads.
     let target = target.err().filter(|_| !view.target.trim().is_empty());
     show_error_below(ui, theme, target.as_ref().or(entered.as_ref().err()));
     allowed
@@ -253,7 +253,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     });
     paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_run.words")));
     let endless = unit.could_run_endlessly(unit.drive());
-    // It can always be switched off.
+    // The option can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
         if ui.checkbox(&mut expert, say(theme, "hd_run.expert")).changed() {
             motor(actions, id, Motor::Expert(expert));
@@ -265,12 +265,11 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     }
 }
 
-/// Draws speed and torque in percent, with buttons for the speed `presets`, in one row if there is room. An entry takes
-/// effect for the next motion at once; a running motion keeps its own values, which are shown, and a preset starts
-/// nothing.
+/// Draws speed and torque in percent, in one row if there is room. Buttons offer the speed `presets`, which start
+/// nothing. An entry takes effect at once for the next motion. A running motion keeps its own values, which are shown.
 ///
 /// # Errors
-/// The entry is not a percentage, so no motion may start with it.
+/// Returns the reason if an entry is not a percentage. No motion may start with it.
 pub(super) fn effort_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -302,7 +301,7 @@ pub(super) fn effort_ui(
         let row = ui.horizontal(|ui| {
             ui.label(theme.label(speed_word));
             let drawn = speed_ui(ui);
-            // Constant width: the entry of the torque does not move when the note changes.
+            // The width is constant, so the torque entry does not move when the note changes.
             let height = ui.spacing().interact_size.y;
             let place = egui::Layout::left_to_right(egui::Align::Center);
             let speed = ui.allocate_ui_with_layout(vec2(NOTE, height), place, |ui| {
@@ -336,7 +335,7 @@ pub(super) fn effort_ui(
 /// Draws the entry field of a percentage and its presets, and sets `to` to the value entered or chosen.
 ///
 /// # Errors
-/// The entry is not a percentage.
+/// Returns the reason if the entry is not a percentage.
 fn percent_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -345,7 +344,7 @@ fn percent_ui(
     presets: &[Percent],
     to: &mut Percent,
 ) -> Result<(), Text> {
-    // What was typed gives way where another value counts since: of a preset, or of a new session.
+    // Typed text is dropped if another value has taken effect since: a preset, or the value of a new session.
     let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
     let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
     let response = text_entry(ui, &mut text, PERCENT, word, "");
@@ -357,7 +356,7 @@ fn percent_ui(
     *draft = keeps.then_some((text, own));
     ui.label(theme.label("%"));
     if !presets.is_empty() {
-        // None is chosen while what is typed counts for nothing: each of them replaces it.
+        // No preset is selected while the typed text is invalid, since each of them replaces it.
         let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
         let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
         if options(ui, &say(theme, "hd_jog.speed"), &mut chosen, shown) {
@@ -368,7 +367,7 @@ fn percent_ui(
     typed.map(|_| ())
 }
 
-/// Draws the note next to a percentage: why it cannot be used, the value that a running motion started with, or
+/// Draws the note next to a percentage. This is why it cannot be used, the value that a running motion started with, or
 /// `beside`.
 fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
@@ -387,13 +386,12 @@ fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Pe
     }
 }
 
-/// Returns a text with the speed and torque of moves, steps and runs.
 pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
     let SpeedTorque { speed, torque } = unit.moves.move_effort(unit.drive());
     theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
-/// Draws the entry of a position or distance and its unit, and marks it if `problem` finds something in it.
+/// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds something in it.
 pub(super) fn length_ui(
     ui: &mut Ui,
     theme: &Theme,

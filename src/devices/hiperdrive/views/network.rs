@@ -99,7 +99,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
         sources.push(before.source);
     }
     let named = sources.into_iter().map(|own| (own, theme.words(&network::source(own))));
-    // Below its name: in a narrow column there is no space beside it.
+    // The options are below their name, since a narrow column has no space beside it.
     ui.label(theme.label(word.as_str()));
     options(ui, &word, &mut form.source, named);
     ui.add_space(theme.space.inside);
@@ -157,7 +157,6 @@ fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     });
 }
 
-/// Draws the meaning of each switch position, with the present one highlighted.
 fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     folding_card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();

@@ -53,7 +53,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
             (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
         };
         paragraph(ui, theme.caption(say(theme, words)));
-        // The buttons stay after one was pressed: the widgets below them do not move under the pointer.
+        // The buttons stay after a press, so the widgets below them do not move under the pointer.
         let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
         ui.horizontal_wrapped(|ui| {
             for way in ways {

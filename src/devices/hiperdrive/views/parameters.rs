@@ -140,7 +140,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Adjusts the view to changed rows, so that selection and typed value stay with their parameter.
+    /// Adjusts the view to changed rows. Selection and typed value stay with their parameter.
     fn follow(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {

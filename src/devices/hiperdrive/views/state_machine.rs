@@ -16,7 +16,6 @@ use crate::ui::widgets::focus_ring;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
-    /// Current state of the drive, if known.
     pub(crate) present: Option<State>,
     /// States that can be reached from the current state.
     pub(crate) reachable: &'a [State],
@@ -54,7 +53,7 @@ impl Plan {
     fn new(rect: Rect) -> Self {
         let gap = GAP.min(rect.width() / 20.0);
         let width = ((rect.width() - 4.0 * gap) / 5.0).clamp(1.0, MOST);
-        // Excess width goes between the boxes, up to a maximum.
+        // Excess width goes between the boxes, up to a limit.
         let gap = ((rect.width() - 5.0 * width) / 4.0).clamp(gap, GAP * 2.0);
         Plan { origin: rect.min, width, gap }
     }
@@ -141,7 +140,7 @@ fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxSty
 /// lock.
 fn paint_arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
-    // The arrows from the present state.
+    // Arrows from the present state are highlighted.
     let ink = |from: &[State]| {
         let own = present.is_some_and(|present| from.contains(&present));
         Stroke::new(if own { 1.5 } else { 1.0 }, if own { theme.palette.accent.into() } else { faint })

@@ -40,7 +40,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Creates a scale that shows both limits, and a position outside them with some margin.
+    /// Creates a scale that shows both limits. A position outside them is shown with some margin.
     fn new((low, high): (i32, i32), position: Option<i32>, bar: Rect) -> Self {
         let (low, high) = (f64::from(low), f64::from(high));
         let position = position.map_or(low, f64::from);
@@ -65,12 +65,12 @@ struct Shown {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
-    /// How the drive is outside its limits, or `None` if it is inside or at the end of its range.
+    /// How the drive is outside its limits. `None` if it is inside or at the end of its range.
     outside: Option<Outside>,
     is_moving: bool,
 }
 
-/// Draws the travel of the displayed drive; `typed` is the target entered for the next move.
+/// Draws the travel of the displayed drive. `typed` is the target entered for the next move.
 pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     let drive = unit.drive();
     let typed = || forms::target(unit, typed, unit.measure).ok();
@@ -150,7 +150,7 @@ fn line_ui(
     let strong = theme.bold_font(theme.sizes.section);
     let whole = painter.layout_no_wrap(words.clone(), strong, ink);
     let room = line.width() - painter.layout_no_wrap(position.to_owned(), font.clone(), ink).size().x - 16.0;
-    // In a narrow window and a long language it is smaller, not cut.
+    // In a narrow window, a long text is drawn smaller instead of being cut.
     let galley = if whole.size().x <= room {
         whole
     } else {

@@ -1,4 +1,4 @@
-//! `do`: preset, factory settings, device check, and returning an encoder to its previous mode.
+//! The command `do` with preset, factory settings, device check and the return to the previous mode.
 
 use serde_json::json;
 

@@ -53,7 +53,7 @@ impl From<WordMode> for EncoderMode {
 pub(super) enum InterbusAction {
     /// rate gateway, word order, handshake and identity
     Check,
-    // Brackets in what rustdoc reads would be links.
+    // Rustdoc would read brackets in a doc comment as links.
     #[value(
         help = "[POSITION]: store a preset value and set the present position to it, at standstill; without a value, use the stored one"
     )]

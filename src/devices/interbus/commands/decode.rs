@@ -1,4 +1,5 @@
-//! `decode interbus`: explains process data words, with all possible meanings or the one selected by options.
+//! The command `decode interbus`, which explains process data words with all meanings or with the one that options
+//! select.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -33,15 +34,15 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
 
 #[derive(Clone, Copy)]
 enum Captured {
-    /// 4 digits.
+    /// Word with 4 digits.
     K1(u16),
-    /// 8 digits.
+    /// Word with 8 digits.
     Long(u32),
 }
 
 fn parse_captured(text: &str) -> Result<Captured> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
-    // A sign is not a digit, though the number parser accepts one.
+    // The number parser would also accept a sign.
     let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
     let word = match (number, digits.len()) {
         (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(Captured::K1),
@@ -55,7 +56,7 @@ fn parse_captured(text: &str) -> Result<Captured> {
     })
 }
 
-/// Parses a read-out, given as a hyphenated name or a number.
+/// Parses a read-out from its hyphenated name or its number.
 fn read_out(text: &str) -> Result<ReadOutNumber> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOutNumber::new);
@@ -89,7 +90,7 @@ fn long_word_meanings(
     match direction {
         Some(Direction::In) => Ok(meaning::in_word_meanings(word, known)),
         Some(Direction::Out) => meaning::out_word_meanings(word, known),
-        // Any word can come from the encoder; one without a meaning in any OUT mode can only be an IN word.
+        // The encoder may send any word. If it has no meaning as an OUT word, it can only be an IN word.
         None => Ok(meaning::out_word_meanings(word, known)
             .unwrap_or_else(|_| meaning::refused(word, known))
             .into_iter()

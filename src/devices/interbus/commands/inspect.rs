@@ -1,4 +1,4 @@
-//! Read-only commands: `identify`, `status` and `read`.
+//! The commands `identify`, `status` and `read`, which only read.
 
 use serde_json::{Value as Json, json};
 
@@ -53,7 +53,7 @@ fn turns(turns: u32) -> String {
     if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
 }
 
-/// Returns a mode for scripts: K2, K3, velocity, or `cam 3`.
+/// Returns the name of a mode in output for scripts, such as `velocity` or `cam 3`.
 pub(super) fn mode(mode: StartupMode) -> String {
     match mode {
         StartupMode::K2 => "K2".to_owned(),
@@ -91,7 +91,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the bits of a position word that should be 0.
+/// Returns the bits of a position word that are set although they should be 0, with a message.
 fn unexpected_bits(status: &Status) -> Option<(u32, String)> {
     let bits = u32::from(status.reading.unexpected_bits()) << Value::BITS;
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))

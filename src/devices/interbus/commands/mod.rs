@@ -1,4 +1,4 @@
-//! Commands for INTERBUS encoders behind a gateway; process data words are also explained offline.
+//! Commands for INTERBUS encoders behind a gateway, and offline explanations of process data words.
 
 mod act;
 mod args;
@@ -30,7 +30,7 @@ use crate::link::LinkScheme;
 
 pub(crate) struct InterbusCommands;
 
-/// Warning that reading cam programs affects the machine.
+/// Warning in the help of commands that read cam programs.
 const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
                         the encoder. On a terminal the command first asks whether the machine stands still; without \
                         a terminal it prints a note to stderr and continues.";
@@ -102,7 +102,7 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// Parses an item named by the user. A program or cam that does not exist is reported as out of range.
+/// Parses the name of an item. A program or cam that does not exist is reported as out of range.
 fn item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -110,19 +110,19 @@ fn item(text: &str) -> Result<Item> {
     })
 }
 
-/// The extent to which a command disturbs the process data used by a machine.
+/// Effect of a command on the process data that a machine uses.
 #[derive(Clone, Copy)]
 enum DisturbanceLevel {
     Reading,
-    /// All cam programs are selected one after another.
+    /// All cam programs are selected one after the other.
     Programs,
-    /// A state left by another program is ended and its settings are stored.
+    /// The state that another program has left is ended, and its settings are stored.
     LeadingBack,
 }
 
 impl DisturbanceLevel {
-    /// Announces the disturbance in advance. On a terminal, switching live outputs requires a confirmation, unless a
-    /// write was already approved or the encoder is virtual; without a terminal, the command continues.
+    /// Announces the effect before a command begins. If live outputs switch, the user has to confirm on a terminal.
+    /// This is not required after a write was approved, for a virtual encoder or without a terminal.
     fn begin(self, common: &CommonArgs, output: &Output, consent: Option<&ConsentArgs>) -> Result<()> {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == LinkScheme::Sim);

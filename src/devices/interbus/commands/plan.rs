@@ -16,7 +16,7 @@ use crate::devices::interbus::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Plans a change without writing anything.
+/// Plans a change. Nothing is written.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => required_programs(profile).len() == ProgramNumber::COUNT,
@@ -37,7 +37,7 @@ fn reduces_steps(op: &Op) -> bool {
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Asks for consent if required, then executes the plan. Nothing is sent for an empty plan.
+/// Executes a plan after consent, if consent is required. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -57,7 +57,7 @@ pub(super) fn commit(
     let text = format!("{}{stop}", shown(&prepared).text);
     let mut texts = vec![text.as_str()];
     if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(wear_text)) = (wear, &wear_text) {
-        // Above the maker's limit: asked once more.
+        // Stores above the manufacturer's limit require a second confirmation.
         texts.push(wear_text);
     }
     let agreed = confirm_plan(output, consent, prepared, &texts)?;
@@ -65,18 +65,18 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the plan as text and JSON, with the old and new value of each item and the cost.
+/// Returns the plan as text and JSON. It contains the cost and the old and new value of each item.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// Returns the operations as JSON. Items that are stored together have no cost of their own.
+/// Returns the operations as JSON. Items that are stored together share one cost.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-/// Returns the operations with old and new values, one per line.
+/// Returns the operations as text with the old and new values, one per line.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
     plan::lines(plan.ops.iter().flat_map(steps)).text()
 }

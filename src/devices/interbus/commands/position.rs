@@ -1,4 +1,4 @@
-//! `position`: prints IN words, converted with the gear of the encoder.
+//! The command `position`, which prints IN words that are converted with the gear of the encoder.
 
 use serde_json::json;
 
@@ -14,14 +14,13 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::result_of;
 
-/// Reads positions. The encoder is identified once, since a position depends on the gear; after that, only the IN word
-/// is read.
+/// Reads positions. The encoder is only identified once to determine its gear. After that, only the IN word is read.
 pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     DisturbanceLevel::Reading.announce(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
-        // The window determines the visible bits of the position; no program is selected to read it.
+        // Reads only the window shift, which determines the bits of the position in the word.
         programs(&mut runner, Vec::new())?;
     }
     if position.csv {

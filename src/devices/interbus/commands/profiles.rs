@@ -1,4 +1,4 @@
-//! Profile commands for INTERBUS encoders: `save`, `restore`, and reading for a comparison.
+//! The commands `save` and `restore` for INTERBUS profiles, and reading for a comparison.
 
 use serde_json::json;
 
@@ -49,8 +49,8 @@ impl ProfileCommands for InterbusCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    /// Reads the encoder for a comparison, limited to the contents of the profile if one is given. Reading a cam
-    /// program switches the encoder's outputs.
+    /// Reads the encoder for a comparison. If a profile is given, only its items are read. Reading a cam program
+    /// switches the outputs of the encoder.
     fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,
@@ -59,7 +59,7 @@ impl ProfileCommands for InterbusCommands {
         Ok(Body::new(profile))
     }
 
-    /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches no
+    /// Returns a message if two profiles belong to different encoders. A profile without a serial number belongs to no
     /// encoder.
     fn device_mismatch(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =

@@ -1,4 +1,4 @@
-//! Running jobs on an INTERBUS encoder.
+//! Execution of jobs on an INTERBUS encoder.
 
 use super::InterbusCommands;
 use crate::app::Given;
@@ -14,7 +14,7 @@ use crate::worker::Session;
 
 pub(super) type Runner = runner::Runner<Interbus>;
 
-// Steps of the handshake are shown in the window only; a recording has their bytes.
+// Only the window shows the steps of the handshake. A recording contains their bytes.
 impl Runs for Interbus {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
@@ -32,7 +32,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(identity)
 }
 
-/// Reads everything that can be read without selecting a cam program.
+/// Reads all values that are available without selecting a cam program.
 pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
     survey.identity.gear().map_err(|why| failed(&words::implausible(why)))?;

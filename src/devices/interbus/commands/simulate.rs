@@ -1,4 +1,4 @@
-//! `simulate interbus`: the virtual gateway with its encoders, as a Modbus/TCP server.
+//! The command `simulate interbus`, which runs the virtual gateway and its encoders as a Modbus/TCP server.
 
 use std::net::Ipv4Addr;
 
@@ -24,7 +24,7 @@ pub(super) fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box
 }
 
 impl Simulated for Gateway {
-    /// Returns another connection to the gateway, which serves several masters at once.
+    /// Returns a further connection to the gateway, since it serves several masters at once.
     fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection()))
     }

@@ -1,4 +1,4 @@
-//! `write`: writes a single item.
+//! The command `write`, which writes a single item.
 
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;

@@ -13,51 +13,52 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::DeviceKey;
 
-/// Store count from which the user is warned of wear (reference 3: about 200, at most 500).
+/// Number of stores from which the user is warned of wear. The EEPROM is designed for about 200 and at most 500. See
+/// reference 3.
 pub const WEAR_WARNING: u64 = 150;
-/// Store count beyond which the user has to confirm once more.
+/// Number of stores above which the user has to confirm a second time.
 pub const WEAR_ASK: u64 = NOMINAL_STORES as u64;
 /// Maximum number of stores that the manufacturer guarantees.
 pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
-/// Store count at which the EEPROM is considered worn.
+/// Number of stores from which the EEPROM counts as worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the store limit for a plan with the given cost, unless forced. The EEPROM is worn once the limit is
-/// reached, and a plan that stores nothing causes no wear.
+/// Returns the limit of the stores at which a plan may still start without being forced. A plan with a cost of 0 causes
+/// no wear, so it has no limit.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// A job for a session with an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and
-/// [`Position`](Self::Position) briefly replace the position and make cam outputs invalid; reading a cam program
-/// selects it. Afterwards the encoder returns to its previous mode, unless the job selects another one.
+/// A job of a session with an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and [`Position`](Self::Position)
+/// briefly replace the position and make the cam outputs invalid. Reading a cam program selects it. After the job, the
+/// encoder returns to its previous mode unless the job selects another one.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// Reads the IN word for a window that has just connected, without sending anything to the encoder.
+    /// Reads the IN word when a window has just connected. Nothing is sent to the encoder.
     Hello,
-    /// Reads everything that can be read without selecting a cam program.
+    /// Reads all values that are available without selecting a cam program.
     Survey,
     /// Reads the given cam programs and the window shift.
     Programs(Vec<ProgramNumber>),
     Identify,
     Status,
-    /// Checks the gateway and the encoder, with one verdict per line.
+    /// Checks the gateway and the encoder. Each line of the result has a verdict.
     Check,
-    /// Reads the IN word once, without sending anything to the encoder.
+    /// Reads the IN word once. Nothing is sent to the encoder.
     Position,
     Read(Item),
-    /// Reads a single read-out, which may also be a register of the chip.
+    /// Reads a single read-out or a register of the chip.
     ReadOut(ReadOutNumber),
-    /// Selects another mode (position, speed, or a cam program), in which the encoder stays.
+    /// Selects the position, the speed or a cam program. The encoder stays in this mode.
     Select(StartupMode),
     Save {
         programs: bool,
     },
-    /// Plans a change without writing anything.
+    /// Plans a change. Nothing is written.
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Ends an earlier parameterisation, error or read-out. This stores values that were set but not stored, and counts
-    /// as a store.
+    /// Ends an earlier parameterisation, error or read-out. Values that were set but not stored are now stored, which
+    /// counts as one store.
     LeadBack,
 }
 
@@ -67,14 +68,14 @@ pub enum Change {
         profile: Box<InterbusProfile>,
         options: RestoreOptions,
     },
-    /// Writes the values in the image; items not in the image are left unchanged and are not read.
+    /// Writes the values of the image. Items that the image lacks are neither read nor changed.
     Write(Box<Image>),
     Item(Item, ItemValue),
-    /// Stores the preset and assigns it to the current shaft position, only at standstill.
+    /// Stores the preset and sets the position at the present shaft angle to it. This requires a standstill.
     Preset {
         value: u32,
     },
-    /// Restores the factory settings. Experimental (reference 6.10).
+    /// Restores the factory settings. This is experimental, see reference 6.10.
     Default,
 }
 
@@ -82,7 +83,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited values; those not yet written remain as edits.
+    /// Edited values. Values that were not written yet remain as edits.
     Edits,
     Preset,
     Default,
@@ -104,36 +105,36 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
     pub identity: Identity,
-    /// Position parameters as read for the plan.
+    /// Position parameters of the encoder that were read for the plan.
     pub parameters: Parameters,
-    /// Number of stores recorded for the encoder on this computer, or `None` if the logbook has no record.
+    /// Number of stores that the logbook of this computer contains for the encoder, or `None` if it has no record.
     pub cycles_seen: Option<u64>,
-    /// Number of items that already have the desired value.
+    /// Number of items that already have the planned value.
     pub unchanged: u64,
-    /// Items of a profile that the encoder does not have.
+    /// Items that the profile contains but the encoder lacks.
     pub missing: Vec<String>,
-    /// Mounting values that differ and are left unchanged.
+    /// Mounting values that differ from the profile and are left unchanged.
     pub mounting_left: Vec<Item>,
     pub other_type: Option<OtherType>,
-    /// Mounting values that are written although they come from another device, and must therefore be set up again.
+    /// Mounting values of another device that are written nevertheless. They must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
-/// Wear of an EEPROM.
+/// Wear of the EEPROM after a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wear {
-    /// Store count after the plan. The user should be told that stores are limited.
+    /// Number of stores after the plan. The user should be informed that stores are limited.
     Known(u64),
-    /// Store count after the plan, which exceeds the manufacturer's specification.
+    /// Number of stores after the plan. It exceeds the specification of the manufacturer, so the user has to confirm.
     Ask(u64),
-    /// Store count after the plan. The plan is refused unless forced.
+    /// Number of stores after the plan. The plan is refused unless it is forced.
     Worn(u64),
-    /// The number of earlier stores is unknown, so the plan is refused unless forced.
+    /// The number of earlier stores is unknown. The plan is refused unless it is forced.
     Unknown,
 }
 
 impl Wear {
-    /// Returns the wear after the given number of stores, or `None` if it is not worth mentioning.
+    /// Returns the wear after the given number of stores, or `None` if it is too low for a message.
     pub const fn of(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(Wear::Worn(stores)),
@@ -145,7 +146,7 @@ impl Wear {
 }
 
 impl Prepared {
-    /// Returns the wear after the plan, or `None` if it is not worth mentioning.
+    /// Returns the wear after the plan, or `None` if it is too low for a message.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
@@ -208,8 +209,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key that identifies an encoder in backups and the logbook. The manufacturer and type are always the
-/// same.
+/// Returns the key of an encoder in backups and in the logbook. It is derived from the serial number, since the
+/// manufacturer and type are always the same.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }

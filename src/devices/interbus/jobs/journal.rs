@@ -1,5 +1,5 @@
-//! Logbook notes that outlast a job: the mode in which the encoder was found, and store cycles that reading may have
-//! cost.
+//! Records that outlast a job. They are the mode in which an encoder was found, and the store cycles that reading may
+//! have cost.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, S
 
 use super::job::key_of;
 
-/// Description of the logbook entry.
+/// Description in the entry of the logbook.
 const WHAT: &str = "cam programs read, each of which may be stored when it is left";
 
 pub(super) struct Notes {
@@ -29,7 +29,8 @@ impl Notes {
         self.store.excursions()
     }
 
-    /// Returns the name used in notes. A virtual encoder is marked, since it may have the serial number of a real one.
+    /// Returns the name of an encoder in the records. A virtual encoder is marked, since it may have the serial number
+    /// of a real one.
     fn name(&self, serial_number: &str) -> String {
         format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
     }
@@ -45,7 +46,7 @@ impl Notes {
     }
 }
 
-/// Logs a recording error, which does not stop anything.
+/// Logs an error of recording and returns `None` in this case. The job continues.
 fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }
@@ -87,8 +88,8 @@ impl Journal for Notes {
     }
 }
 
-/// Formats an excursion: the mode in which the encoder was found, then the modes to which it was switched, with the
-/// numbers of read-out 9.
+/// Formats a mode switch as mode numbers of read-out 9. The first is the mode in which the encoder was found, followed
+/// by the modes to which it was switched.
 fn emit(excursion: &ModeSwitch) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();

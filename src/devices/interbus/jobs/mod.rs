@@ -1,4 +1,4 @@
-//! The INTERBUS encoder behind its gateway as a device of a session, and its jobs.
+//! An INTERBUS encoder behind its gateway as the device of a session, and its jobs.
 
 mod commit;
 mod job;
@@ -44,7 +44,7 @@ impl fmt::Debug for Interbus {
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
-    /// Returns the process data master, which reports each step of the handshake.
+    /// Returns the master of the encoder. It calls `on_step` for each step of the handshake.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
         Master::new(context.ctx(&mut *self.wire), &mut self.station).with_reporter(on_step).with_journal(notes)
@@ -52,8 +52,8 @@ impl Interbus {
 }
 
 impl Session<Interbus> {
-    /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process, and
-    /// its stores are counted separately.
+    /// Creates a session from an open connection. `motor` is given for a virtual encoder in this process, whose stores
+    /// are counted separately.
     pub fn for_gateway(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -69,7 +69,7 @@ impl Session<Interbus> {
         &self.device.station
     }
 
-    /// Returns the motor on the shaft, or `None` if the encoder is not simulated in this process.
+    /// Returns the motor on the shaft of a virtual encoder in this process. Other encoders have none.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -81,7 +81,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = WordReading;
-    /// Values that can be watched. There are none, since reading any other value replaces the position.
+    /// There are no values to watch, since reading any value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -155,12 +155,12 @@ impl Device for Interbus {
     }
 }
 
-/// Progress callback, given the current step, the number of steps, and the step's name.
+/// Progress callback with the number of completed steps, the total number of steps and the present step.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// Runs jobs that only read, or that return the encoder to its mode. All of them except reading the IN word briefly
-    /// replace the position.
+    /// Runs a job that only reads or that returns the encoder to its mode. Except for reading the IN word, these jobs
+    /// briefly replace the position.
     fn ask(
         &mut self,
         context: &mut SessionContext,

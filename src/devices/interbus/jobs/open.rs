@@ -1,4 +1,4 @@
-//! Opening a session with an INTERBUS encoder from a link.
+//! Creation of a session with an INTERBUS encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -12,19 +12,19 @@ use crate::store::Store;
 use crate::worker::open::{inside, open_bytes, read_recording, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Checks the link URL of an INTERBUS encoder without opening the link.
+/// Checks the link URL of an INTERBUS encoder. The link is not opened.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
+/// Returns [`OpenError::Url`] or [`OpenError::Sim`] if a setting is invalid.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an INTERBUS encoder: `modbus:` to its gateway, `sim:` to a virtual encoder, `replay:` to a
+/// Opens a link to an INTERBUS encoder. `modbus:` leads to its gateway, `sim:` to a virtual encoder and `replay:` to a
 /// recording.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// Returns an [`OpenError`] if the link cannot be opened. Nothing has been sent in this case.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError> {
     let (station, config) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
@@ -43,7 +43,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     Ok(Session::for_gateway(wire, clock, station, store, motor))
 }
 
-/// Reads the settings of the gateway and the virtual encoder. The latter only apply to a link to a virtual encoder.
+/// Returns the settings of the gateway and of the virtual encoder. Only `sim:` links use the latter.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Modbus | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
@@ -54,7 +54,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Removes the request number, which differs for each request, so that a recording can answer any request.
+/// Masks the number of a request. It differs in each request, so a recording could otherwise not answer.
 fn mask_numbers(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }

@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. Only reads; the encoder remains in its mode.
+//! Preparation of a plan from a change. The encoder is only read and remains in its mode.
 
 use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::interbus::procedures::{identify, read_state};
@@ -28,7 +28,7 @@ pub(super) fn prepare(
     let device;
     let plan = match change {
         Change::Restore { profile, options } => {
-            // Known before programs are read.
+            // The type can be checked before the programs are read.
             check_allowed(profile, &identity.profile(), *options)?;
             device = state(&required_programs(profile))?;
             plan_restore(profile, &device, *options)?
@@ -77,7 +77,7 @@ pub(super) fn prepare(
     })
 }
 
-/// Returns the programs that an image contains. The window shift can be read with any of them.
+/// Returns the programs that must be read for an image. Any program provides the window shift.
 fn affected_programs(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
     match wanted.shift {

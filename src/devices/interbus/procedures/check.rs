@@ -1,5 +1,5 @@
-//! Device check: gateway, IN word and encoder, with a verdict for each item. Nothing is set: an echo would cost a store
-//! cycle, so the handshake is only tested with read-outs.
+//! Device check of the gateway, the IN word and the encoder, with a verdict for each item. Nothing is set, since each
+//! echo would cost a store cycle. The handshake is therefore only tested with read-outs.
 
 use std::time::Duration;
 
@@ -18,11 +18,11 @@ pub enum CheckStep {
     Gateway,
     /// Order of the two halves of a word.
     WordOrder,
-    /// IN word before any request: a position, cam outputs, or an error.
+    /// IN word before any request, which is a position, cam outputs or an error.
     InputWord,
-    /// Identity of the encoder, and whether its steps and turns are plausible.
+    /// Identity of the encoder, including the plausibility of its steps and turns.
     Identity,
-    /// Read-outs, which show that OUT reaches the encoder and that IN returns.
+    /// Read-outs, which show that the encoder receives OUT words and that its IN words return.
     Handshake,
     Temperature,
     Wear,
@@ -30,10 +30,10 @@ pub enum CheckStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Number of IN word readings, and the longest reply time.
+    /// Number of readings of the IN word and the longest reply time.
     Replies {
         requested: u32,
-        /// The longest, in milliseconds.
+        /// Longest reply time in milliseconds.
         slowest_ms: u64,
     },
     /// Words are meaningful in the configured order.
@@ -47,7 +47,7 @@ pub enum CheckFinding {
     /// Bits that should be 0 are set.
     Stray(u32),
     Error(ErrorWord),
-    /// The encoder is being parameterised or read out by another master.
+    /// The encoder is being parameterised or read out, presumably by another master.
     Occupied(u32),
     SerialNumber(String),
     SoftwareVersion(u32),
@@ -66,14 +66,14 @@ pub enum CheckFinding {
     Mode(StartupMode),
     ReadOuts {
         requested: u64,
-        /// Milliseconds for each.
+        /// Average time of a read-out in milliseconds.
         each_ms: u64,
     },
     Failed(Error),
     /// Temperature in tenths of a degree Celsius.
     Temperature(i32),
     Wear {
-        /// Minimum number of stores.
+        /// Minimum number of stores so far.
         seen: u64,
         limit: u64,
     },
@@ -81,14 +81,13 @@ pub enum CheckFinding {
 
 /// Number of IN word readings used to measure the reply time of the gateway.
 const LOOKS: u32 = 20;
-/// Permissible temperature of electronics in a housing, in tenths of a degree Celsius (`U`: the manual states no
-/// limits).
+/// Permissible temperature of the electronics in tenths of a degree Celsius. The manual states no limits (`U`).
 const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 
-/// Runs the check, which ends early only if the gateway fails. `wear` is called once the encoder is identified.
+/// Runs the check. `wear` is called after the encoder has been identified.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are findings.
 pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
@@ -96,7 +95,7 @@ pub fn check(
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
-        // Any further request would disturb another master, or go into the wrong half of a word.
+        // A further request would disturb another master or be written in the wrong word order.
         return Ok(lines);
     }
     let begun = master.now();
@@ -120,7 +119,7 @@ pub fn check(
     Ok(lines)
 }
 
-/// Reads only the IN word, repeatedly, and returns whether further requests are possible.
+/// Reads only the IN word several times. Also returns whether further requests are possible.
 fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..LOOKS {

@@ -1,4 +1,4 @@
-//! Process data: the OUT word sent to an encoder, and the IN word received from it.
+//! Process data, which are the OUT word to an encoder and the IN word from it.
 
 use std::time::Duration;
 
@@ -7,32 +7,32 @@ use crate::units::Moment;
 
 /// Cyclic process data of an encoder, with a clock.
 pub trait ProcessData {
-    /// Carries out one cycle, which sends the OUT word and then reads the IN word.
+    /// Runs one cycle, which writes the OUT word and then reads the IN word.
     ///
     /// # Errors
-    /// Errors of the exchange, or cancellation.
+    /// Returns an error if the exchange fails or is cancelled.
     fn cycle(&mut self, out: u32) -> Result<u32, Error>;
 
-    /// Reads the IN word without changing OUT.
+    /// Reads the IN word. The OUT word is left unchanged.
     ///
     /// # Errors
-    /// As [`cycle`](Self::cycle).
+    /// Returns the same errors as [`cycle`](Self::cycle).
     fn input(&mut self) -> Result<u32, Error>;
 
-    /// Reads the current OUT word, or returns `None` if it cannot be read.
+    /// Reads the present OUT word. Returns `None` if the gateway cannot read it.
     ///
     /// # Errors
-    /// As [`cycle`](Self::cycle).
+    /// Returns the same errors as [`cycle`](Self::cycle).
     fn output(&mut self) -> Result<Option<u32>, Error>;
 
     fn now(&self) -> Moment;
 
-    /// Waits, but returns early if cancelled.
+    /// Waits for a duration, or until the job is cancelled.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// Returns [`Error::Cancelled`] if the job is cancelled.
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
-    /// Sets whether cancellation is ignored, and returns the previous setting.
+    /// Enables or disables cancellation, and returns the previous setting. It is ignored if `shielded` is `true`.
     fn ignore_cancellation(&mut self, shielded: bool) -> bool;
 }

@@ -1,8 +1,8 @@
-//! Process data behind a Modbus/TCP gateway: the IN word occupies two input registers, the OUT word two holding
-//! registers.
+//! Process data behind a Modbus/TCP gateway. Two input registers contain the IN word, and two holding registers contain
+//! the OUT word.
 //!
-//! Each request has its own number, so a late reply is never mistaken for the next one. Writing an OUT word twice has
-//! the same effect as writing it once, so every request may be repeated.
+//! Each request has a separate number, so a late reply is never mistaken for the next one. Every request may be
+//! repeated, because writing an OUT word twice has the same effect as writing it once.
 
 use std::time::Duration;
 
@@ -20,33 +20,33 @@ use crate::link::Ctx;
 use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
-/// Number of unanswered attempts after which a gateway counts as lost. Each attempt may take its full time.
+/// Number of unanswered attempts after which a gateway counts as lost.
 const SILENCES: u32 = 3;
 const TRIES: u32 = 5;
-/// Pause before a request to a busy gateway is repeated.
+/// Pause after a refusal before the request is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
-/// Pause after bytes that are not a frame; the next bytes start a new frame.
+/// Required silence after bytes that are not a frame. The next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
 /// Interval at which cancellation is checked.
 const SLICE: Duration = Duration::from_millis(50);
-/// Number of bytes before the function code of a frame: number, protocol, length, unit.
+/// Number of bytes before the function code of a frame. They are its number, protocol, length and unit.
 const HEADER: usize = 7;
-/// Length of the shortest frame, which is a refusal.
+/// Length of the shortest frame, which is a refusal, in bytes.
 const SHORTEST: usize = HEADER + 2;
 /// Bit that is set in the function code of a refusal.
 const REFUSED: u8 = 0x80;
 
-/// A gateway for one job, with the encoder at its registers.
+/// A gateway with one encoder, for the duration of one job.
 pub struct Gateway<'a> {
     line: SerialLine<'a>,
     link: LinkParameters,
     recorded: bool,
     state: State<'a>,
-    /// The last OUT word written in this job, if any.
+    /// OUT word that was last written in this job. It is `None` if its reply was lost.
     written: Option<u32>,
 }
 
-/// State kept between jobs.
+/// State of the gateway that outlasts a job.
 struct State<'a> {
     line: &'a mut LineState,
     next: &'a mut u16,
@@ -60,11 +60,11 @@ enum ExchangeError {
     Exception(Exception),
 }
 
-/// A complete frame, or the bytes that do not form one, with their damage.
+/// A complete frame. The error contains bytes that do not form a frame, and their damage.
 type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
-    /// Creates the gateway for a station, and returns it with the known state of the encoder behind it.
+    /// Creates the gateway of a station. Also returns the known state of the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
@@ -75,7 +75,8 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Sends a request, and repeats it if a retry may help.
+    /// Sends a request and returns the registers of its reply. The request is repeated after errors that may be
+    /// temporary.
     fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
@@ -118,7 +119,7 @@ impl<'a> Gateway<'a> {
     fn request_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
-        // Not 0: a device that ignores the number uses that.
+        // The number 0 is skipped, since it is used by devices that ignore the number.
         *self.state.next = number.checked_add(1).unwrap_or(1);
         let Some((request, bytes)) = self.request(requested, number) else {
             return Ok(Err(ExchangeError::Damage(Damage::Registers)));
@@ -164,8 +165,8 @@ impl<'a> Gateway<'a> {
         request(requested, self.link.unit, number, self.link.order)
     }
 
-    /// Takes the next complete frame from the received bytes. If the bytes are not a frame, discards all of them and
-    /// returns an error.
+    /// Removes the next complete frame from the received bytes. If they do not form a frame, all of them are removed
+    /// and returned as an error.
     fn next_frame(&mut self) -> Option<Whole> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
@@ -206,13 +207,13 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The frame is not a reply to the request.
+    /// The frame is not a valid reply to the request.
     Broken(Damage),
     Refused(Exception),
 }
 
-/// Returns the fault of a traced frame received after the given request. Returns `None` if the frame answers that
-/// request or, by its number, an earlier one.
+/// Returns the fault of a frame in the trace that followed the given request. The result is `None` if the frame answers
+/// this request or, according to its number, an earlier one.
 pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let broken = |damage| Some(Fault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -228,7 +229,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     }
 }
 
-/// Parses the request in a traced frame, with its number and unit.
+/// Returns the number, the unit and the content of the request in a frame of the trace.
 fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
@@ -241,17 +242,18 @@ fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedIt
     Some((u16::from_be_bytes([number_high, number_low]), unit, requested))
 }
 
-/// Parses a reply that has the right number.
+/// Parses the reply to a request. The number of the reply is ignored.
 fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
     let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
-    // A recording has the number of its own request.
+    // The number in a recorded reply belongs to the recorded request.
     frame.splice(..2, request.tr_id.to_be_bytes());
     let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());
     let (Some(unit), Some(function)) = (unit, function) else { return Err(ExchangeError::Damage(Damage::Registers)) };
     if unit != request.unit_id {
         return Err(ExchangeError::Damage(Damage::Unit { requested: request.unit_id, got: unit }));
     }
-    // The crate maps the codes 0Ah and 0Bh to others, and takes any other function for a refusal.
+    // Refusals are parsed here, because the crate changes the codes 0Ah and 0Bh and takes every other function for a
+    // refusal.
     if function == requested.function_code() | REFUSED {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
@@ -275,7 +277,7 @@ fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) 
 impl ProcessData for Gateway<'_> {
     fn cycle(&mut self, out: u32) -> Result<u32, Error> {
         if self.written != Some(out) {
-            // If its reply is lost, it may have been written.
+            // The word may have been written even if its reply is lost.
             self.written = None;
             self.ask(RequestedItem::Write { register: self.link.output, word: out })?;
             self.written = Some(out);
@@ -309,14 +311,14 @@ impl ProcessData for Gateway<'_> {
     }
 }
 
-/// The process data word contained in a frame.
+/// The process data word of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     Out(u32),
     In(u32),
 }
 
-/// Returns the process data word in a traced frame, sent or received, or `None` if the frame contains none.
+/// Returns the process data word of a frame in the trace, or `None` if the frame contains none.
 pub fn process_data_word(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),

@@ -1,11 +1,11 @@
-//! Reported steps of the handshake, and the possible state of an encoder after a failure.
+//! Steps of the handshake as reported to the user, and the state of an encoder after a failure.
 
 use std::fmt;
 
 use crate::devices::interbus::protocol::{Command, ErrorWord, Reply, StartupMode, Value};
 use crate::units::Moment;
 
-/// A step of the handshake: the current OUT word, the received IN word, and its meaning.
+/// A step of the handshake, with the OUT word and the IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     pub at: Moment,
@@ -17,19 +17,19 @@ pub struct Handshake {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordReply {
-    /// A word sent during operation: a position, a speed or cam outputs.
+    /// A word of a running encoder, which is a position, a speed or cam outputs.
     Runs,
     Busy,
     Echoed,
-    /// Late echo of an earlier word, which is out of date unless it persists.
+    /// Late echo of an earlier word. It is out of date unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
     Unknown,
 }
 
-/// Returns whether `input` is the exact echo of the command. The echo of a parameter may contain the manufacturer's bit
-/// (reference 2); in the echo of a cam, this bit selects the edge.
+/// Returns whether `input` is the exact echo of the command. The echo of a parameter may contain the manufacturer's
+/// bit. In the echo of a cam, this bit selects the edge. See reference 2.
 pub(super) fn is_echo(command: Command, input: u32) -> bool {
     const MANUFACTURER: u32 = 1 << 29;
     let echo = Reply::echo_of(command).emit();
@@ -55,13 +55,13 @@ impl WordReply {
 /// Last known state of an encoder that could not be returned to its mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// Last OUT word sent, which remains in the gateway until another one is written.
+    /// Last OUT word, which remains in the gateway until another word is written.
     pub out: u32,
-    /// Whether parameters or cams were being set; if so, the encoder sends no position until it receives `80000000`.
+    /// Whether parameters or cams were being set. If so, the encoder sends no position until it receives 80000000h.
     pub parameterising: bool,
-    /// Mode before the job, or `None` if it was never read.
+    /// Mode before the job, or `None` if it was not read.
     pub found: Option<StartupMode>,
-    /// Current mode, if known.
+    /// Present mode, or `None` if it was not read.
     pub is: Option<StartupMode>,
 }
 

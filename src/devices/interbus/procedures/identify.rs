@@ -1,4 +1,4 @@
-//! Reading the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
+//! Reading of the identity, the settings and all other values of an encoder (reference 3 and 5).
 
 use super::error::ImplausibleValue;
 use super::{Error, Master, WordReading};
@@ -12,9 +12,9 @@ use crate::devices::interbus::protocol::{
 pub struct Identity {
     /// Serial number in decimal.
     pub serial_number: String,
-    /// Number of steps over all programmed turns, as reported by the encoder.
+    /// Number of steps over all programmed turns as the encoder reports it. See [`gear`](Self::gear).
     pub steps: u32,
-    /// Number of turns after which the position starts again from 0.
+    /// Number of turns after which the position repeats.
     pub revolutions: u32,
     pub direction: Direction,
     pub software_version: u32,
@@ -23,11 +23,11 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Returns the gear formed by steps and turns. In steps−1 mode, the encoder reports one step less than the total,
-    /// as older encoders do (`U`: the manual says no more about it).
+    /// Returns the gear that the steps and turns form. Older encoders report one step less than the total, according to
+    /// their flags. The manual does not explain this any further (`U`).
     ///
     /// # Errors
-    /// [`ImplausibleValue::Gear`].
+    /// Returns [`ImplausibleValue::Gear`] if the steps and turns do not form a gear.
     pub fn gear(&self) -> Result<Gear, ImplausibleValue> {
         gear(self.steps, self.revolutions, self.flags)
     }
@@ -37,7 +37,7 @@ impl Identity {
 pub struct Survey {
     pub identity: Identity,
     pub parameters: Parameters,
-    /// Preset flag, as reported by the encoder.
+    /// Preset flag as the encoder reports it.
     pub preset_flag: u32,
     /// Operating time in minutes.
     pub operating_minutes: u32,
@@ -47,7 +47,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Returns all values read from the encoder, in raw form.
+    /// Returns all read-outs with the values as received.
     pub fn read_outs(&self) -> impl Iterator<Item = (ReadOutNumber, Value)> {
         self.values.iter().copied()
     }
@@ -56,7 +56,7 @@ impl Survey {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub reading: WordReading,
-    /// The error sent in place of a position, if any.
+    /// Error that the encoder sends instead of a position.
     pub error: Option<ErrorWord>,
     pub mode: StartupMode,
     pub flags: Flags,
@@ -66,29 +66,29 @@ pub struct Status {
     pub temperature_tenths: i32,
 }
 
-/// Reads the identity.
+/// Reads the identity of the encoder.
 ///
 /// # Errors
-/// [`Error::Implausible`] if the direction is invalid; errors of the handshake and the exchange. An invalid gear is
-/// reported by [`Identity::gear`].
+/// Returns [`Error::Implausible`] if the direction is invalid, or an error of the handshake or the exchange. An invalid
+/// gear is not an error here, see [`Identity::gear`].
 pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     master.run_guarded(|master| read_identity(master, &mut Vec::new()))
 }
 
-/// Reads everything that can be read without selecting a cam program.
+/// Reads all values that are available without selecting a cam program.
 ///
 /// # Errors
-/// As [`identify`].
+/// Returns the same errors as [`identify`].
 pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOutNumber)) -> Result<Survey, Error> {
     master.run_guarded(|master| read_survey(master, progress))
 }
 
-/// Reads the status.
+/// Reads the status of the encoder.
 ///
 /// # Errors
-/// As [`identify`].
+/// Returns the same errors as [`identify`].
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
-    // The word as a machine sees it, before any other request.
+    // This is the word that a machine receives, since nothing has been requested yet.
     let mut reading = master.reading()?;
     let error = match reading.reply() {
         Reply::Error(error) => Some(error),
@@ -103,19 +103,18 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     })
 }
 
-/// Reads one value from the table of read-outs, or a register of the chip.
+/// Reads one value of the read-out table or one register of the chip.
 ///
 /// # Errors
-/// [`Error::UnknownReadOut`]; as [`identify`].
+/// Returns [`Error::UnknownReadOut`] if the read-out does not exist, and otherwise the same errors as [`identify`].
 pub fn read_single_value(master: &mut Master<'_>, read_out: ReadOutNumber) -> Result<Value, Error> {
     master.run_guarded(|master| master.read_out(read_out))
 }
 
-/// Reads the given cam programs and the window shift. Selecting a program to read it also switches the encoder's
-/// outputs.
+/// Reads cam programs and the window shift. Selecting a program for reading also switches the outputs of the encoder.
 ///
 /// # Errors
-/// [`Error::NoMode`]; errors of the handshake and the exchange.
+/// Returns [`Error::NoMode`] if a program cannot be selected, or an error of the handshake or the exchange.
 pub fn read_programs(
     master: &mut Master<'_>,
     wanted: &[ProgramNumber],
@@ -124,10 +123,11 @@ pub fn read_programs(
     master.run_guarded(|master| programs(master, wanted, progress))
 }
 
-/// Switches the encoder to the given mode and leaves it there.
+/// Switches the encoder to a mode. It stays in this mode after the job.
 ///
 /// # Errors
-/// [`Error::NoMode`], [`Error::NotSelectable`]; errors of the handshake and the exchange.
+/// Returns [`Error::NoMode`] or [`Error::NotSelectable`] if the encoder does not enter the mode. Other errors come from
+/// the handshake or the exchange.
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.run_guarded(|master| {
         master.go(mode)?;
@@ -205,7 +205,7 @@ fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     }
 }
 
-/// Rereads the gear, since steps and turns may have changed.
+/// Reads the gear again after the steps or turns may have changed.
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
     let mut read = |number: u16| master.read_out(ReadOutNumber::new(number));
     let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
@@ -217,7 +217,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, ImplausibleV
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
-/// Reads the position parameters that are not part of the identity. The identity must have been read in the same job.
+/// Reads the position parameters that the identity does not contain. The identity must have been read in the same job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
@@ -232,7 +232,7 @@ pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Err
     Ok(Parameters { steps, revolutions, direction: direction_of(direction)?, preset, zero_shift })
 }
 
-/// Reads everything that can be restored, including the given programs.
+/// Reads all values that can be restored, including the given programs.
 pub(super) fn read_image(
     master: &mut Master<'_>,
     parameters: Parameters,
@@ -268,7 +268,7 @@ pub(super) fn programs(
         read.push((*number, read_program(master)?));
     }
     if selects_first {
-        // Any program provides it.
+        // Every program contains the shift, so the first one is selected.
         if let Some(first) = ProgramNumber::new(1) {
             master.go(StartupMode::Cams(first))?;
         }
@@ -277,7 +277,7 @@ pub(super) fn programs(
 }
 
 pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
-    // There are eight; the upper byte is 0 (reference 6.9).
+    // There are eight cams, so the upper byte is 0. See reference 6.9.
     let mask = master.ask(Command::ReadActivation)?.get() as u8;
     let mut program = Program { mask, ..Program::default() };
     for (cam, place) in CamNumber::all().zip(&mut program.cams) {
@@ -291,7 +291,7 @@ pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, E
     Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })
 }
 
-/// Reads the window shift while a cam program is selected.
+/// Reads the window shift. A cam program must be selected.
 pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> {
     let value = master.ask(Command::ReadShift)?.get();
     let read = Command::ReadShift.emit();
@@ -320,13 +320,13 @@ fn minutes(value: Value) -> u32 {
 fn temperature_tenths(value: Value) -> i32 {
     match ReadOutNumber::TEMPERATURE.value(value) {
         ReadOutValue::TenthsOfDegree(tenths) => tenths,
-        // 25 bits.
+        // The value has only 25 bits, so the conversion is exact.
         _ => value.get() as i32,
     }
 }
 
-/// Returns the direction for a code, which is either the parameter value or its complement as a flag (`U`: the manual
-/// calls the read-out a flag).
+/// Returns the direction for a read-out. It is the value of the parameter, or 0 or 1 as a flag. The manual calls the
+/// read-out a flag (`U`).
 pub(super) fn direction_of(code: u32) -> Result<Direction, ImplausibleValue> {
     let flag = match code {
         0 => Some(Direction::Clockwise),

@@ -1,5 +1,5 @@
-//! Host side of the handshake (reference 4): each word is sent until it has had its effect. Words that would not have
-//! the intended meaning in the present mode of the encoder are refused here.
+//! Host side of the handshake (reference 4). Each word is sent until it takes effect. A word that would have another
+//! meaning in the present mode of the encoder is refused.
 
 mod acknowledge;
 mod modes;
@@ -24,43 +24,43 @@ use crate::units::Moment;
 
 type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
-/// Host side of one encoder's process data, for the duration of one job.
+/// Host side of the handshake with one encoder, for the duration of one job.
 pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut KnownState,
     patience: Duration,
     recorded: bool,
     tell: Option<StepListener<'a>>,
-    /// Mode of the encoder, if read in this job.
+    /// Mode of the encoder, or `None` if it was not read in this job.
     is: Option<StartupMode>,
-    /// Whether a mode switch has not been confirmed by the encoder yet.
+    /// Whether a mode switch still has to be confirmed by the encoder.
     unsure: bool,
     /// Whether the encoder was switched to other modes in this job.
     switched: bool,
-    /// The encoder's mode before this job, if known.
+    /// Mode before this job, or `None` if it was not read.
     found: Option<StartupMode>,
-    /// Error present before this job, which keeps the encoder from sending positions in any case.
+    /// Error word that the encoder already sent before this job. It replaces the position until the cause is removed.
     found_error: Option<u32>,
     parameterising: bool,
     out: Option<Command>,
-    /// Whether it is uncertain that the last command was received.
+    /// Whether the last command may have been lost.
     lost: bool,
     input: u32,
-    /// Time at which the encoder was last seen in its state before this job, with no request pending.
+    /// Time at which the encoder was last known to be in its initial state.
     rested: Option<Moment>,
     reported: Option<(u32, WordReply)>,
     notes: Notes<'a>,
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job that reaches the encoder through the station's gateway.
+    /// Creates a master for one job. It reaches the encoder through the gateway of the station.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
-    /// Creates a master for one job on the given process data.
+    /// Creates a master for one job from the given process data.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reports each step of the handshake to `tell`.
+    /// Calls `tell` for each step of the handshake.
     #[must_use]
     pub fn with_reporter(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
         self.tell = Some(Box::new(tell));
@@ -99,22 +99,21 @@ impl<'a> Master<'a> {
         self.data.now()
     }
 
-    /// Returns the last known mode, if any.
+    /// Returns the last known mode, which may be from an earlier job.
     pub fn mode(&self) -> Option<StartupMode> {
         self.is.or(self.known.mode)
     }
 
-    /// Returns the mode, or `None` if it was not read or not confirmed in this job.
+    /// Returns the mode, or `None` if the encoder has not confirmed it in this job.
     pub(super) const fn reported_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
 
-    /// Records the gear in effect, as far as this session knows.
+    /// Stores the gear of the encoder for this session.
     pub(super) fn remember_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
 
-    /// Returns the last known gear, if any.
     pub(super) fn gear(&self) -> Option<Gear> {
         self.known.gear
     }
@@ -123,10 +122,10 @@ impl<'a> Master<'a> {
         self.known.shift = Some(shift);
     }
 
-    /// Reads the IN word without sending anything to the encoder.
+    /// Reads the IN word. Nothing is sent to the encoder.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub fn reading(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
         let KnownState { mode, gear, shift, .. } = *self.known;
@@ -138,7 +137,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Runs `work`, which returns the encoder to a safe state, and ignores cancellation until it is done.
+    /// Runs `work` and ignores cancellation until it is done. The work returns the encoder to a safe state.
     pub(super) fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.ignore_cancellation(true);
         let result = work(self);
@@ -146,16 +145,16 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits for the given duration, or until the job is cancelled.
     pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         self.data.wait(duration)
     }
 
-    /// Requests a value and waits until it is stable. The previous value must be gone by then, since values look alike.
-    /// The late echo of any word may arrive; it is neither a value nor a sign of another master.
+    /// Requests a value and waits until it is stable. The previous value must have disappeared before, since it could
+    /// not be distinguished from the new one. Late echoes of earlier words are ignored.
     ///
     /// # Errors
-    /// As [`set`](Self::set); [`Error::UnknownReadOut`].
+    /// Returns [`Error::UnknownReadOut`] if the value does not exist, and otherwise the same errors as
+    /// [`set`](Self::set).
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
         self.await_no_value()?;
         self.ensure_legal(command)?;
@@ -175,7 +174,7 @@ impl<'a> Master<'a> {
     /// Reads a value from the encoder.
     ///
     /// # Errors
-    /// As [`set`](Self::set); [`Error::UnknownReadOut`].
+    /// Returns the same errors as [`ask`](Self::ask).
     pub(super) fn read_out(&mut self, read_out: ReadOutNumber) -> Result<Value, Error> {
         let value = self.ask(Command::ReadOut(read_out))?;
         if read_out == ReadOutNumber::SERIAL_NUMBER {
@@ -184,20 +183,21 @@ impl<'a> Master<'a> {
         Ok(value)
     }
 
-    /// Sends `80000000`, until the encoder runs.
+    /// Sends 80000000h until the encoder is running.
     ///
     /// # Errors
-    /// [`Error::Refused`] if an error stays; [`Error::TimeOut`]; errors of the exchange.
+    /// Returns [`Error::Refused`] if the encoder keeps sending an error, or [`Error::TimeOut`] if it does not run.
+    /// Other errors come from the exchange.
     pub(super) fn run(&mut self) -> Result<(), Error> {
         self.running(Command::Run, self.patience)?;
         self.parameterising = false;
         Ok(())
     }
 
-    /// Sends `00000000`, until the encoder runs.
+    /// Sends 00000000h until the encoder is running.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// Returns the same errors as [`run`](Self::run).
     pub(super) fn return_to_operation(&mut self) -> Result<(), Error> {
         self.running(Command::Normal, self.patience)
     }
@@ -211,11 +211,12 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Sends `40000000` until the position is the preset, then removes it. Call this once for each preset that was set.
-    /// The word is sent for a minimum time in any case, because the old position may already equal the preset.
+    /// Sends 40000000h until the position equals the preset, then 00000000h. Each programmed preset allows one use. The
+    /// word is sent for a minimum time, because the old position may already equal the preset.
     ///
     /// # Errors
-    /// [`Error::TimeOut`] if the position does not reach the preset; otherwise as [`set`](Self::set).
+    /// Returns [`Error::TimeOut`] if the position does not become the preset, and otherwise the same errors as
+    /// [`set`](Self::set).
     pub(super) fn trigger_preset(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.return_to_operation()?;
         self.ensure_legal(Command::Preset)?;
@@ -229,8 +230,8 @@ impl<'a> Master<'a> {
         self.run_uncancellable(Self::return_to_operation).and(fired)
     }
 
-    /// Sends a command in every cycle until `judge` returns a result, given the IN word and how long that word has been
-    /// unchanged. Records how long the encoder is busy.
+    /// Sends a command in every cycle until `judge` returns a result. `judge` receives the IN word and the time for
+    /// which the word has been unchanged. The function also records how long the encoder is busy.
     fn until<T>(
         &mut self,
         command: Command,
@@ -269,14 +270,15 @@ impl<'a> Master<'a> {
                 self.out = before;
                 return Err(error);
             }
-            // It may have been sent even if writing it failed: the gateway reports a missing reply this way.
+            // The word may have been sent even if writing it failed, since the gateway reports a missing reply in this
+            // way.
             ended => {
                 self.lost = ended.is_err();
                 ended?
             }
         };
         let (out, input, reply) = (command.emit(), self.input, WordReply::of(command, self.input));
-        // The changing position of a shaft in motion is not reported repeatedly.
+        // A moving shaft changes the position in every cycle, which is not reported repeatedly.
         if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
         {
@@ -286,10 +288,10 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with its halves exchanged if nothing else explains its value.
+    /// Returns the IN word with exchanged halves if no other explanation fits the word as received.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub(super) fn detect_word_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
         if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
             return Ok(None);
@@ -297,7 +299,7 @@ impl<'a> Master<'a> {
         Ok(unexplained_swapped_word(input))
     }
 
-    /// Returns the most likely reason for a missing reply.
+    /// Returns the most likely reason why the awaited word did not arrive.
     fn timeout_error(&mut self, command: Command, awaited: ExpectedWord, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.run_uncancellable(|master| master.data.output()) {
@@ -319,15 +321,15 @@ impl<'a> Master<'a> {
         Ok(command.ensure_legal(self.effective_mode())?)
     }
 
-    /// Returns the mode in which the encoder will interpret the next word; any read-out is ended before another word is
-    /// sent.
+    /// Returns the mode in which the encoder will interpret the next word. A read-out does not count, since it is ended
+    /// before another word is sent.
     fn effective_mode(&self) -> EncoderMode {
         match self.is {
             Some(StartupMode::Cams(_)) => EncoderMode::Cam,
-            // The manual does not define the effect of other words then.
+            // The manual does not define the effect of other words in an unknown mode.
             Some(StartupMode::Unknown(_)) => EncoderMode::ReadOut,
             _ if self.parameterising => EncoderMode::Parameterisation,
-            // Only read-outs are allowed before it has reported its mode.
+            // Only read-outs are allowed until the encoder has reported its mode.
             None => EncoderMode::ReadOut,
             Some(StartupMode::Velocity) => EncoderMode::Velocity,
             Some(_) => EncoderMode::Position,
@@ -335,8 +337,7 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether the gateway refused the word itself, so that it was not written. After any other exception, it may
-/// have been written.
+/// Returns whether the gateway refused to write the word. After any other exception, the word may have been written.
 fn is_write_refused(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

@@ -1,7 +1,7 @@
-//! Procedures of an INTERBUS encoder (POSITAL OCD-IB, K3). Its process data are transmitted over a Modbus/TCP gateway,
-//! and everything except the position is transferred by a handshake within them. Reading or setting a value replaces
-//! the position and invalidates the cam outputs in the meantime; selecting another program switches them. "Reference"
-//! is the project's "interbus".
+//! Procedures of an INTERBUS encoder (POSITAL OCD-IB, K3). A Modbus/TCP gateway transmits its process data. Except for
+//! the position, all values are transferred by a handshake in these data. Reading or setting a value interrupts the
+//! position and makes the cam outputs invalid. Selecting another program switches the outputs. "Reference" is the
+//! project's reference "interbus".
 //!
 //! ```text
 //! identify, survey, write ── master: the handshake, modes, back to the previous mode ──▶ data: OUT ⇄ IN ◀── gateway

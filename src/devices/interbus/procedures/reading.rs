@@ -3,28 +3,29 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word with what the session knows about the encoder.
+/// An IN word with the session's knowledge of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,
-    /// As received.
+    /// IN word as received.
     pub word: u32,
-    /// Mode of the encoder, or `None` if not read yet. Without a mode, a running word is taken for a position.
+    /// Mode of the encoder, or `None` if it was not read yet. Without a mode, the word of a running encoder counts as a
+    /// position.
     pub mode: Option<StartupMode>,
-    /// Gear formed by steps and turns, if read.
+    /// Gear of the encoder, or `None` if it was not read yet.
     pub gear: Option<Gear>,
-    /// Shift of the position in cam mode, if read.
+    /// Window shift in cam mode, or `None` if it was not read yet.
     pub shift: Option<WindowShift>,
 }
 
 /// A position within the programmed turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnPosition {
-    /// Whole turns, from 0.
+    /// Number of whole turns, counted from 0.
     pub turns: u32,
-    /// Steps within the turn, from 0.
+    /// Steps within the turn, counted from 0.
     pub steps: u32,
-    /// Degrees within the turn, from 0 up to 360.
+    /// Angle within the turn in degrees, at least 0 and below 360.
     pub degrees: f64,
 }
 
@@ -33,13 +34,13 @@ impl WordReading {
         Reply::parse(self.word)
     }
 
-    /// Returns whether the encoder runs, so that the word is a valid position, speed or cam output.
+    /// Returns whether the encoder is running, which means that the word is a valid position, speed or cam output.
     pub fn is_valid(&self) -> bool {
         matches!(self.reply(), Reply::Run { .. })
     }
 
-    /// Returns the position in steps, or `None` if the word contains none. In cam mode, the position is available only
-    /// if the window shows all of it.
+    /// Returns the position in steps, or `None` if the word does not contain it. In cam mode, the window must contain
+    /// all bits of the position.
     pub fn position(&self) -> Option<u32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), _) => None,
@@ -54,7 +55,8 @@ impl WordReading {
         }
     }
 
-    /// Returns the speed in revolutions per minute in velocity mode, as a signed 25-bit value (`U`, reference 6.13).
+    /// Returns the speed in revolutions per minute if the encoder is in velocity mode. The value is read as a signed
+    /// number of 25 bits (`U`). See reference 6.13.
     pub fn rpm(&self) -> Option<i32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {
@@ -72,7 +74,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the bits of a running word that should be 0.
+    /// Returns the bits that are set although they should be 0 while the encoder is running.
     pub fn unexpected_bits(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,
@@ -80,7 +82,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the position within the programmed turns, or `None` if the position or the gear is unknown, or the
+    /// Returns the position as turns and steps. The result is `None` if the position or the gear is unknown, or if the
     /// position is beyond the measuring range.
     pub fn place(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
@@ -91,13 +93,12 @@ impl WordReading {
         let turn = position * turns / all;
         let first = (turn * all).div_ceil(turns);
         let degrees = (position * turns % all) as f64 * 360.0 / all as f64;
-        // Less than the turns and the steps of the gear.
+        // The results are less than the turns and the steps of the gear, so they fit.
         Some(TurnPosition { turns: turn as u32, steps: (position - first) as u32, degrees })
     }
 }
 
-/// Returns the word with its halves exchanged if only the exchanged word is a valid position, in which bits 30..25 are
-/// 0.
+/// Returns the word with exchanged halves if only this is a valid position. The word as received must have stray bits.
 pub(super) fn swap_words(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -105,8 +106,8 @@ pub(super) fn swap_words(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the word with its halves exchanged if only the exchanged word is a valid position. Words that are not
-/// positions are considered as well, except error words without other bits.
+/// Returns the word with exchanged halves if only this is a valid position. Unlike [`swap_words`], it also examines
+/// words that are not positions, except error words without data.
 pub(super) fn unexplained_swapped_word(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swap_words(word),

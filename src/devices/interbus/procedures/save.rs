@@ -1,4 +1,4 @@
-//! Reading of values to save, to plan with, or to show as an item.
+//! Reading of values that are saved, displayed as an item or required for a plan.
 
 use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
@@ -14,7 +14,7 @@ impl Identity {
 }
 
 impl Survey {
-    /// Returns the part of the profile that is only recorded and cannot be restored.
+    /// Returns the values that a profile records but cannot restore.
     pub fn recorded(&self) -> Recorded {
         Recorded {
             software_version: Some(self.identity.software_version),
@@ -27,11 +27,11 @@ impl Survey {
     }
 }
 
-/// Reads everything that can be restored; the cam programs only if requested, since each switches the encoder's
-/// outputs.
+/// Reads all values that can be restored. Cam programs are only read on request, since each of them switches the
+/// outputs of the encoder.
 ///
 /// # Errors
-/// Errors of the handshake and the exchange.
+/// Returns an error if the handshake or the exchange fails.
 pub fn save(
     master: &mut Master<'_>,
     with_programs: bool,
@@ -53,11 +53,11 @@ pub enum SaveStep {
     Program(ProgramNumber),
 }
 
-/// Reads the parameters and the given programs, as required for a plan. The encoder must have been identified in the
-/// same job.
+/// Reads the parameters and the given programs for a plan. The encoder must have been identified in the same job.
 ///
 /// # Errors
-/// [`Error::Implausible`] if steps and turns are not a gear; errors of the handshake and the exchange.
+/// Returns [`Error::Implausible`] if the steps and turns do not form a gear, or an error of the handshake or the
+/// exchange.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
@@ -72,10 +72,10 @@ pub fn read_state(
     })
 }
 
-/// Reads one item, selecting its cam program first if it belongs to one.
+/// Reads one item. If it belongs to a cam program, the program is selected first.
 ///
 /// # Errors
-/// Errors of the handshake and the exchange.
+/// Returns an error if the handshake or the exchange fails.
 pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
     master.run_guarded(|master| {
         if let Some(program) = item.program() {

@@ -1,4 +1,4 @@
-//! State of a gateway and the encoder behind it that is kept between jobs.
+//! State of a gateway and its encoder that outlasts a job.
 
 use std::fmt;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::parameter::{Milliseconds, Parameters};
 use crate::parameters;
 
 parameters! {
-    /// Link parameters for the gateway and its registers.
+    /// Connection parameters of the gateway and the registers of the encoder.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
@@ -19,11 +19,11 @@ parameters! {
         /// First of the two holding registers that contain the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
-        /// Time limit for an echo, a value or a position (reference 4, `U`).
+        /// Time limit for an echo, a value or a position (`U`). See reference 4.
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
-        /// Interval between readings of the IN word, about the cycle time of a gateway.
+        /// Pause before each reading of the IN word, which is about the cycle time of a gateway.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
-        /// Time limit for a reply from the gateway, not counting the line's margin.
+        /// Time limit for a reply of the gateway. The margin of the line is added to it.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
     }
 }
@@ -31,7 +31,7 @@ parameters! {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// Whether replies come from a recording, which uses the recorded request numbers.
+    /// Whether replies come from a recording. They then contain the request numbers of the recorded session.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) next: u16,
@@ -48,15 +48,15 @@ pub(super) struct KnownState {
     pub(super) mode: Option<StartupMode>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// OUT word that keeps the encoder in its current mode, if `00000000` does not.
+    /// OUT word that must remain set to keep the encoder in its mode. It is `None` if 00000000h keeps the mode.
     pub(super) hold: Option<(StartupMode, Command)>,
     pub(super) kept: Option<StartupMode>,
-    /// Longest observed processing time of a single word.
+    /// Longest processing time of a word that was observed in this session.
     pub(super) processing: Duration,
 }
 
 impl Station {
-    /// Creates the state of a gateway that has not been used yet, whose encoder occupies the first registers.
+    /// Creates the state of an unused gateway with default parameters. `margin` extends the time limit for replies.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),
@@ -69,10 +69,10 @@ impl Station {
         }
     }
 
-    /// Creates a station from its link parameters, ignoring those that do not concern the connection.
+    /// Creates a station from its connection parameters. Other parameters of the query are ignored.
     ///
     /// # Errors
-    /// A parameter value is invalid; the error lists the allowed values.
+    /// Returns an error with the valid values if a parameter is invalid.
     pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         Ok(Station { link: LinkParameters::read(query.pairs())?, ..Station::new(margin) })
     }

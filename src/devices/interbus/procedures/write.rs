@@ -1,5 +1,5 @@
-//! Execution of a plan: reads its base again, carries out each operation and reads it back, and returns the encoder to
-//! its previous mode.
+//! Execution of a plan. The values on which it is based are read again. Each operation is carried out and verified, and
+//! finally the encoder returns to its previous mode.
 
 use std::time::Duration;
 
@@ -19,18 +19,18 @@ use crate::profile::{Confirmed, Write};
 
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
-/// The state in which an encoder is left after a write.
+/// The state of an encoder after a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EndState {
-    /// The encoder is running in its original mode.
+    /// The encoder is running in the mode that it had before.
     AsFound,
     /// The encoder could not be returned to its original mode.
     Unknown(LeftState),
 }
 
-/// Time for which the shaft is watched before a preset.
+/// Time for which the shaft must stand still before a preset.
 const WATCHED: Duration = Duration::from_millis(300);
-/// Interval between position readings while the shaft is watched.
+/// Interval between two readings of the position at standstill.
 const LOOK: Duration = Duration::from_millis(20);
 
 pub struct EncoderWrite<'w, 'm> {
@@ -122,14 +122,14 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
             master.set(Command::Set(Parameter::Default, Value::default()))?;
             master.run()?;
             master.return_to_operation()?;
-            // The new value has not been read yet.
+            // The factory settings have another gear, which has not been read yet.
             refresh_gear(master)?;
         }
     }
     Ok(())
 }
 
-/// Sets all changed parameters in a single parameterisation and stores them with `80000000`.
+/// Sets all changed parameters in a single parameterisation and stores them with 80000000h.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     done.write_cycles += 1;
@@ -150,7 +150,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
 }
 
-/// Reads back a parameter. A direction is returned as the code used to set it.
+/// Reads a parameter back. A direction is returned as the value of the parameter.
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
@@ -159,7 +159,7 @@ fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error
     }
 }
 
-/// Reads a parameter, or returns 0 for the default, which cannot be read.
+/// Reads a parameter. The factory settings cannot be read, so [`Parameter::Default`] returns 0.
 pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let number = match parameter {
         Parameter::Steps => 1,
@@ -176,7 +176,7 @@ fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), E
     if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
 }
 
-/// Selects a cam program, sets it, stores it with `80000000` and reads it back.
+/// Selects a cam program and changes it. The changes are stored with 80000000h and read back.
 fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) -> Result<(), Error> {
     let number = change.program;
     master.go(StartupMode::Cams(number))?;
@@ -221,19 +221,20 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
     Ok(())
 }
 
-/// Sets the shaft's position to the preset value, which must have been programmed before.
+/// Sets the position of the shaft to the preset value. The preset must have been programmed before.
 fn trigger_preset(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
-    // Within one step: the previous position may be close.
+    // One step is tolerated.
     master.trigger_preset(|position| apart(position, value, gear) <= 1)
 }
 
-/// Watches the position briefly to make sure that the shaft is at rest. The encoder keeps sending its position
+/// Checks that the shaft stands still by reading its position for a short time. The encoder keeps sending the position
 /// afterwards.
 ///
 /// # Errors
-/// [`Error::Moving`]; [`Error::NotRunning`] without a position; errors of the handshake and the exchange.
+/// Returns [`Error::Moving`] if the shaft moves, [`Error::NotRunning`] if there is no position, or an error of the
+/// handshake or the exchange.
 fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     master.return_to_operation()?;
@@ -255,14 +256,14 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions may come from the same shaft at rest. They may differ by one step, or by a third of a
-/// degree if the steps are fine.
+/// Returns whether two positions may belong to a shaft at standstill. They may differ by one step. If a turn has many
+/// steps, they may differ by a thousandth of a turn.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
     apart(position, other, gear) <= most
 }
 
-/// Returns the distance between two positions in steps, along the shorter way round.
+/// Returns the shorter distance between two positions on the measuring range, in steps.
 fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
     gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))

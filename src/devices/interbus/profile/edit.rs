@@ -1,20 +1,20 @@
-//! Planning of changes, each checked against the rules of the encoder before anything is sent, in as few store cycles
-//! as possible: one for all parameters, and one for each changed program.
+//! Planning of changes. Each change is checked against the rules of the encoder before anything is sent. A plan uses
+//! one store cycle for all parameters and one for each changed program.
 
 use super::{
     Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Plans the changes that give an encoder the wanted values; only differences are written. Values that the wanted
-/// image lacks are left unchanged; `device` must contain all values of the wanted image.
+/// Plans the changes that give an encoder the wanted values. Only differences are written, and values that the wanted
+/// image lacks are left unchanged. `device` must contain all values of the wanted image.
 ///
-/// Parameters come first, in a single parameterisation and in an order in which each is valid when sent, so that
-/// the cams are then within range. The window shift is set together with the first changed program. If no program
-/// changes, it is set with the first program that was read, which costs a store cycle.
+/// Parameters are written first, in a single parameterisation. Their order keeps each value valid when it is sent, and
+/// the cams are within the new range afterwards. The window shift is set together with the first changed program. If no
+/// program changes, it is set with the first program that was read, which costs a store cycle.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if the plan would violate a rule of the encoder.
 pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanError> {
     let mut plan = InterbusPlan { base: Base::default(), ops: Vec::new() };
     let changes = parameter_changes(&device.parameters, &wanted.parameters)?;
@@ -55,11 +55,11 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the present shaft angle to a value. The preset is always programmed before it is
-/// fired, since it can be fired only once per programming (reference 4).
+/// Plans to set the position at the present shaft angle. The preset is always programmed before it is fired, since each
+/// programming allows only one use. See reference 4.
 ///
 /// # Errors
-/// The value exceeds the measuring range.
+/// Returns an error if the value exceeds the measuring range.
 pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, PlanError> {
     Parameter::Preset.check(value, device.gear()?)?;
     let change = ParameterChange { parameter: Parameter::Preset, from: device.preset, to: value };
@@ -67,8 +67,8 @@ pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, Plan
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
 }
 
-/// Plans to restore the factory settings, which is experimental (reference 6.10). The resulting values are not
-/// known in advance.
+/// Plans to restore the factory settings. The resulting values are not known in advance. This is experimental, see
+/// reference 6.10.
 pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
@@ -79,7 +79,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
         return Ok(Vec::new());
     }
     let gear = wanted.gear()?;
-    // The manual's order, from which only limits require deviations.
+    // This is the order of the manual. Only limits of the values change it.
     let mut order = vec![Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::ZeroShift];
     let now_has_room = Gear::new(wanted.steps, device.revolutions).is_ok();
     if !now_has_room {
@@ -95,7 +95,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     let mut changes = Vec::new();
     for parameter in order {
         let (Some(from), Some(to)) = (device.value(parameter), wanted.value(parameter)) else { continue };
-        // Also one that stays: another gear may have other limits.
+        // Unchanged values are checked as well, since another gear may have other limits.
         parameter.check(to, gear)?;
         if from != to {
             changes.push(ParameterChange { parameter, from, to });

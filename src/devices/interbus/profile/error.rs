@@ -1,10 +1,10 @@
-//! Errors of planning a change.
+//! Errors that occur while a change is planned.
 
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// A type mismatch between a profile and an encoder, determined by their flags (manual, 10.2): only one of them counts
-/// turns, or only one reports its steps minus one, so that the same number denotes another gear.
+/// A profile and an encoder of different types, according to their flags. Either only one of them counts turns, or only
+/// one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
 pub struct OtherType {
@@ -14,7 +14,7 @@ pub struct OtherType {
     pub device: Flags,
 }
 
-/// The reason why a change cannot be planned. Nothing has been written in this case.
+/// The reason why a change cannot be planned. In this case, nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -34,10 +34,10 @@ pub enum PlanError {
     /// A parameter is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A mounting value, which is left unchanged in the encoder, does not fit the values to be written.
+    /// A mounting value does not fit the values to be written. The restore leaves the mounting value unchanged.
     #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
     MountingLeft {
-        /// The item.
+        /// Item with the mounting value.
         item: Item,
         /// Value in the encoder.
         value: u32,
@@ -49,7 +49,7 @@ pub enum PlanError {
     /// An edge of a cam is beyond the measuring range.
     #[error("{item}, {edge}: {position} is not within 0 to {last}")]
     CamBeyondRange {
-        /// Cam to change.
+        /// Cam that would be changed.
         item: Item,
         /// Edge of the cam.
         edge: Edge,
@@ -58,7 +58,7 @@ pub enum PlanError {
         /// Last position of the measuring range.
         last: u32,
     },
-    /// The present value of an item to change is unknown.
+    /// The present value of an item is unknown, so the item cannot be changed.
     #[error("{item} was not read before it is to be changed")]
     NotRead {
         /// The item.

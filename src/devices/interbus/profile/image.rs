@@ -1,18 +1,18 @@
-//! Readable content of a K3 encoder's EEPROM.
+//! The content of a K3 encoder's EEPROM, as far as it can be read.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
 
-/// Encoder values that can be written and read back. Values that were not read or are not in a profile are `None`.
+/// Values of an encoder that can be written and read back. A value is `None` if it was not read or is not in a profile.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Position parameters.
     pub parameters: Parameters,
-    /// Shift of the position in the window in cam mode, common to all programs.
+    /// Shift of the position in the window in cam mode. It is common to all programs.
     pub shift: Option<WindowShift>,
-    /// Cam programs, the first at index 0. A program that was read contains every cam, active or not.
+    /// Cam programs, with program 1 at index 0. A program that was read contains all cams, including the inactive ones.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
 }
 
@@ -25,13 +25,13 @@ pub struct Parameters {
     pub revolutions: u32,
     /// Counting direction.
     pub direction: Direction,
-    /// Position assigned to the present shaft angle when the preset is fired. Depends on the mounting.
+    /// Position assigned to the present shaft angle when the preset is fired. It depends on the mounting.
     pub preset: u32,
-    /// Zero shift. Depends on the mounting.
+    /// Zero shift, which depends on the mounting.
     pub zero_shift: u32,
 }
 
-/// Counting direction, as seen when looking at the shaft.
+/// Counting direction, seen when looking at the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// 3: the position increases when the shaft turns clockwise.
@@ -41,7 +41,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Returns the value of the parameter.
+    /// Returns the value of the parameter, 3 or 4.
     pub const fn code(self) -> u32 {
         match self {
             Direction::Clockwise => 3,
@@ -73,7 +73,7 @@ impl fmt::Display for Direction {
     }
 }
 
-/// The keyword does not denote a direction.
+/// The text is not a keyword of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a direction is cw (3) or ccw (4)")]
 pub struct DirectionError;
@@ -103,10 +103,10 @@ impl Parameters {
         }
     }
 
-    /// Returns the gear formed by the steps and turns.
+    /// Returns the gear that the steps and turns form.
     ///
     /// # Errors
-    /// Steps or turns are out of range.
+    /// Returns a [`GearError`] if the steps or turns are out of range.
     pub const fn gear(&self) -> Result<Gear, GearError> {
         Gear::new(self.steps, self.revolutions)
     }
@@ -123,12 +123,12 @@ impl Image {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// Returns a mutable reference to the entry of a program.
+    /// Returns the entry of a program, which is `None` while the program is unknown.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }
 
-    /// Returns the known programs.
+    /// Returns the known programs with their numbers.
     pub fn known(&self) -> impl Iterator<Item = (ProgramNumber, &Program)> {
         ProgramNumber::all().filter_map(|number| Some((number, self.program(number)?)))
     }

@@ -1,5 +1,5 @@
-//! Summary of an operation's changes as one line for the logbook: items, old and new values. The terms are those of the
-//! manual in every window language.
+//! Summary of an operation for the logbook, in one line with the old and new values. It uses the terms of the manual
+//! regardless of the language of the window.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;
@@ -28,8 +28,8 @@ impl Op {
         }
     }
 
-    /// Returns the individual changes of parameters, masks and cam edges. The result is empty if none of them is
-    /// readable.
+    /// Returns the individual changes of parameters, masks and cam edges. The result is empty for operations without
+    /// such values.
     pub fn steps(&self) -> Vec<ChangeStep> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,

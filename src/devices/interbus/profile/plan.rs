@@ -1,4 +1,4 @@
-//! Operations that change an encoder, their cost, and the values on which they are based.
+//! Operations that change an encoder, and the values on which they are based.
 
 use std::fmt;
 
@@ -9,8 +9,8 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an INTERBUS encoder.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// The values on which a plan is based: everything that its operations change, and the range of its cams. Unchanged
-/// programs are excluded, since reading a program switches the outputs of the encoder.
+/// The values on which a plan is based. They are the values that its operations change and the range of its cams.
+/// Unchanged programs are excluded, since reading a program switches the outputs of the encoder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Parameters, or `None` if the plan is empty.
@@ -21,22 +21,23 @@ pub struct Base {
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// An operation, from entering a mode to leaving it. Each operation costs one EEPROM store cycle, except firing the
-/// preset.
+/// An operation, from entering a mode to leaving it. Every operation except firing the preset costs one store cycle of
+/// the EEPROM.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Sets parameters in a single parameterisation, in the given order; `80000000` stores them (reference 4).
+    /// Sets parameters in the given order in a single parameterisation. Word 80000000h then stores them. See reference
+    /// 4.
     Parameterise(Vec<ParameterChange>),
-    /// Selects and changes a cam program. Leaving the program stores the changes (reference 5).
+    /// Selects and changes a cam program. Leaving the program stores the changes. See reference 5.
     Program(ProgramChange),
-    /// `40000000`: sets the position at the present shaft angle to the preset value, which must have been programmed
-    /// before (reference 4).
+    /// Sets the position at the present shaft angle to the preset value (word 40000000h). The preset must have been
+    /// programmed before. See reference 4.
     FirePreset {
         /// Preset value.
         value: u32,
     },
-    /// `0E000000`: restores the factory settings. Experimental, since only the appendix of the manual mentions it
-    /// (reference 6.10).
+    /// Restores the factory settings (word 0E000000h). It is experimental, since only the appendix of the manual
+    /// mentions it. See reference 6.10.
     Default,
 }
 
@@ -47,7 +48,7 @@ pub struct ParameterChange {
     pub parameter: Parameter,
     /// Present value.
     pub from: u32,
-    /// New value, which equals the present one if a preset is programmed again in order to be fired.
+    /// New value. It equals the present value if a preset is only programmed again in order to be fired.
     pub to: u32,
 }
 
@@ -56,15 +57,16 @@ pub struct ParameterChange {
 pub struct ProgramChange {
     /// Program number.
     pub program: ProgramNumber,
-    /// Changed cam edges, ordered by cam, with the start first.
+    /// Changed cam edges in the order of the cams. The start of a cam precedes its stop.
     pub cams: Vec<CamChange>,
-    /// Present and new activation mask.
+    /// Present and new activation mask, or `None` if the mask does not change.
     pub mask: Option<(u8, u8)>,
-    /// Present and new window shift. The shift is common to all programs and set together with a program.
+    /// Present and new window shift, or `None` if it does not change. The shift is common to all programs but can only
+    /// be set together with a program.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
 
-/// A cam edge with a new position.
+/// A new position of a cam edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamChange {
     /// Cam number.
@@ -77,7 +79,7 @@ pub struct CamChange {
     pub to: Value,
 }
 
-/// An edge of a cam. The positions of both edges are part of the cam.
+/// An edge of a cam. The cam is also on at the positions of its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Edge {
     /// First position of the cam.
@@ -96,8 +98,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the changed items. A cam is listed once even if both of its edges change. The items changed by restoring
-    /// the factory settings are unknown.
+    /// Returns the changed items. A cam is listed once even if both edges change. Firing the preset and restoring the
+    /// factory settings return no items.
     pub fn items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
@@ -108,7 +110,7 @@ impl Op {
         }
     }
 
-    /// Returns the names of the changed items, as accepted by `read` if they are readable.
+    /// Returns the names of the changed items. The command `read` accepts them if they are readable.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -117,7 +119,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes, counted in the same way as in a comparison.
+    /// Returns the number of changes as a comparison counts them.
     pub fn weight(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,

@@ -1,5 +1,5 @@
-//! Saved content of an INTERBUS encoder: identity, EEPROM, cam names and recorded values. [`text`](super::text) defines
-//! the file format.
+//! Saved content of an INTERBUS encoder, which consists of the identity, the EEPROM, cam names and recorded values. See
+//! [`text`](super::text) for the file format.
 
 use std::collections::BTreeMap;
 
@@ -12,30 +12,30 @@ use crate::profile::ron_text::Unknown;
 pub struct InterbusProfile {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// EEPROM content. Programs, cams or a window shift that are not in the profile are `None`.
+    /// Content of the EEPROM. Programs, cams and the window shift are `None` if the profile does not contain them.
     pub image: Image,
     /// Names of programs and cams, which the encoder does not store.
     pub names: CamNames,
-    /// Values that depend on the mounting and are never written to another encoder without asking.
+    /// Values that depend on the mounting. They are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
-    /// Values that change on their own or cannot be written. They are recorded, but neither compared nor restored.
+    /// Values that change without a write or cannot be written. They are neither compared nor restored.
     pub recorded: Recorded,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Entries that this version does not know. They are preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
 /// Identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number, read-out 0, in decimal. Empty if the profile belongs to no particular encoder.
+    /// Serial number in decimal, read-out 0. It is empty if the profile belongs to no particular encoder.
     pub serial_number: String,
-    /// Flags, read-out Ah: how steps are counted and whether turns are counted. `None` if unknown.
+    /// Flags, read-out Ah, or `None` if unknown. They state how steps are counted and whether turns are counted.
     pub flags: Option<Flags>,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Entries that this version does not know. They are preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Values that change on their own or cannot be written.
+/// Values that change without a write or cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// Software version, read-out 7.
@@ -48,21 +48,21 @@ pub struct Recorded {
     pub mode: Option<StartupMode>,
     /// Preset flag, read-out 6.
     pub preset_flag: Option<u32>,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Entries that this version does not know. They are preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// A mark on a value that is only valid for one encoder on one machine.
+/// A mark on a value that is only valid for one encoder in one machine.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// User-defined names of programs and cams. A name is empty if none was defined.
+/// User-defined names of programs and cams. A missing name is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CamNames {
     programs: BTreeMap<ProgramNumber, String>,
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
 
-/// Unknown entries by structure.
+/// Entries that this version does not know, by the structure that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) parameters: Unknown,
@@ -71,7 +71,7 @@ pub struct UnknownEntries {
 }
 
 impl InterbusProfile {
-    /// Creates a profile from a reading and marks the mounting values.
+    /// Creates a profile from the values of an encoder and marks the mounting values.
     pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
         let mut profile = InterbusProfile {
             identity,
@@ -85,7 +85,7 @@ impl InterbusProfile {
         profile
     }
 
-    /// Marks the items that depend on the mounting: preset and zero shift.
+    /// Marks the preset and the zero shift, which depend on the mounting.
     pub fn mark_mounting_values(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.is_mounting_value(item) {
@@ -99,7 +99,7 @@ impl InterbusProfile {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 
-    /// Returns the items of the profile in comparison order.
+    /// Returns the settings that the profile contains, in comparison order.
     pub fn items(&self) -> impl Iterator<Item = Item> {
         Item::writable().filter(|item| self.image.item(*item).is_some())
     }
@@ -116,7 +116,7 @@ impl CamNames {
         self.cams.get(&(program, cam)).map_or("", String::as_str)
     }
 
-    /// Sets the name of a program; an empty string removes it.
+    /// Sets the name of a program. An empty string removes it.
     pub fn set_program(&mut self, program: ProgramNumber, name: String) {
         if name.is_empty() {
             self.programs.remove(&program)
@@ -125,7 +125,7 @@ impl CamNames {
         };
     }
 
-    /// Sets the name of a cam; an empty string removes it.
+    /// Sets the name of a cam. An empty string removes it.
     pub fn set_cam(&mut self, program: ProgramNumber, cam: CamNumber, name: String) {
         let place = (program, cam);
         if name.is_empty() {

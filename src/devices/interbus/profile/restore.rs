@@ -1,17 +1,18 @@
-//! Planning of a restore: differences only, in as few store cycles as possible, without values that belong to the
-//! mounting of another encoder. A preset is stored but never fired.
+//! Planning of a restore. Only differences are written, in as few store cycles as possible. Values that depend on the
+//! mounting of another encoder are left out. A preset is stored but never fired.
 
 pub use crate::profile::RestoreOptions;
 
 use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// Present state of an encoder, as far as planning needs it.
+/// Present state of an encoder, which is the basis for planning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// EEPROM content: at least the programs of [`required_programs`], and the window shift if there are any.
+    /// Content of the EEPROM. It contains at least the programs of [`required_programs`], and the window shift if there
+    /// are any.
     pub image: Image,
 }
 
@@ -19,7 +20,7 @@ pub struct DeviceState {
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
-/// together with a program, which is the first one if the profile only contains the shift.
+/// together with a program. If the profile contains only the shift, the first program is read.
 pub fn required_programs(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
@@ -32,7 +33,7 @@ pub fn required_programs(profile: &InterbusProfile) -> Vec<ProgramNumber> {
 /// Plans a restore. Nothing is written.
 ///
 /// # Errors
-/// See [`PlanError`].
+/// Returns a [`PlanError`] if the encoder does not match the profile or a value is invalid.
 pub fn plan_restore(
     profile: &InterbusProfile,
     device: &DeviceState,
@@ -68,25 +69,26 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an encoder that does not match the profile. A profile without a serial number matches any encoder.
+/// Checks that an encoder matches the profile. A profile without a serial number matches any encoder.
 ///
 /// # Errors
-/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`] if the encoder does not match.
 pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the types of a profile and an encoder if they differ, or `None` if they are equal or one is unknown.
+/// Returns the types of a profile and an encoder if they differ. The result is `None` if they are equal or one is
+/// unknown.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (profile, device) = profile.flags.zip(device.flags)?;
     let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
     (what(profile) != what(device)).then_some(OtherType { profile, device })
 }
 
-/// Refuses an encoder that does not match the profile, unless the options allow it.
+/// Checks that an encoder matches the profile, unless the options allow a mismatch.
 ///
 /// # Errors
-/// As [`check_device`].
+/// Returns the same errors as [`check_device`].
 pub fn check_allowed(
     profile: &InterbusProfile,
     device: &ProfileIdentity,

@@ -1,5 +1,4 @@
-//! Positions in units of the machine: degrees of its rotation or millimetres of its travel, in addition to encoder
-//! steps.
+//! Conversion of encoder steps to degrees of the machine's rotation or millimetres of its travel.
 
 /// Unit of a machine position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -18,45 +17,45 @@ pub enum Unit {
 pub struct Scale {
     unit: Unit,
     steps: f64,
-    /// Encoder position at the machine's zero.
+    /// Encoder position at the zero of the machine.
     zero: u32,
 }
 
-/// A machine position rounded to encoder steps.
+/// A machine position that was rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Nearest step.
+    /// Nearest encoder step.
     pub step: u32,
-    /// Rounding error in machine units.
+    /// Rounding error in the unit of the scale.
     pub off: f64,
 }
 
-/// The position is outside the measuring range.
+/// The requested position is outside the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is not within {least} to {most}")]
 pub struct Outside {
-    /// Requested position in machine units.
+    /// Requested position in the unit of the scale.
     pub value: f64,
-    /// First position in the measuring range, in machine units.
+    /// First position of the measuring range in the unit of the scale.
     pub least: f64,
-    /// Last position in the measuring range, in machine units.
+    /// Last position of the measuring range in the unit of the scale.
     pub most: f64,
 }
 
-/// The numbers do not define a valid scale.
+/// The number of steps per unit is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("steps in a unit are a number above 0")]
 pub struct ScaleError;
 
-/// Maximum number of useful decimals.
+/// Maximum number of decimals that are displayed.
 const MOST_DECIMALS: usize = 6;
-/// Tolerance below which two computed numbers count as equal.
+/// Tolerance within which two computed numbers count as equal.
 const SAME: f64 = 1e-9;
-/// Upper bound for the number of steps in a unit and of units in a range.
+/// Upper limit for the steps in a unit and for the units in a range.
 const MOST: f64 = 1e12;
 
 impl Default for Scale {
-    /// Creates a scale in steps, starting at 0.
+    /// Returns a scale in encoder steps that starts at 0.
     fn default() -> Self {
         Scale { unit: Unit::Steps, steps: 1.0, zero: 0 }
     }
@@ -77,29 +76,29 @@ impl Unit {
 }
 
 impl Scale {
-    /// Creates a scale in degrees with the given number of steps per machine turn. The machine's zero is at encoder
-    /// position `zero`.
+    /// Creates a scale in degrees from the number of steps in a turn of the machine. `zero` is the encoder position at
+    /// the zero of the machine.
     ///
     /// # Errors
-    /// [`ScaleError`] if the steps are not above 0.
+    /// Returns [`ScaleError`] if `steps_in_turn` is not above 0.
     pub fn degrees(steps_in_turn: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
-    /// Creates a scale in millimetres with the given number of steps per millimetre. The machine's zero is at encoder
-    /// position `zero`.
+    /// Creates a scale in millimetres from the number of steps in a millimetre. `zero` is the encoder position at the
+    /// zero of the machine.
     ///
     /// # Errors
-    /// [`ScaleError`] if the steps are not above 0.
+    /// Returns [`ScaleError`] if `steps_in_one` is not above 0.
     pub fn millimetres(steps_in_one: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
 
-    /// Creates a scale for a unit. `steps` is the number of steps per turn or millimetre, and is ignored for the unit
-    /// *steps*.
+    /// Creates a scale. `steps` is the number of steps per turn or per millimetre, and is ignored if the unit is
+    /// [`Unit::Steps`].
     ///
     /// # Errors
-    /// [`ScaleError`] if `steps` is used and not above 0.
+    /// Returns [`ScaleError`] if `steps` is used and not above 0.
     pub fn new(unit: Unit, steps: f64, zero: u32) -> Result<Self, ScaleError> {
         let steps = match unit {
             Unit::Steps => 1.0,
@@ -110,23 +109,23 @@ impl Scale {
         if is_scale { Ok(Scale { unit, steps, zero }) } else { Err(ScaleError) }
     }
 
-    /// Returns its unit.
+    /// Returns the unit of the scale.
     pub const fn unit(&self) -> Unit {
         self.unit
     }
 
-    /// Returns the number of steps per unit.
+    /// Returns the number of encoder steps per degree or per millimetre.
     pub const fn steps_per_unit(&self) -> f64 {
         self.steps
     }
 
-    /// Returns the encoder position at the machine's zero.
+    /// Returns the encoder position at the zero of the machine.
     pub const fn zero(&self) -> u32 {
         self.zero
     }
 
-    /// Returns whether the scale wraps at the end of the measuring range. Steps always do, and degrees if the range is
-    /// a whole number of machine turns.
+    /// Returns whether the scale wraps at the end of the measuring range. Steps always wrap. Degrees wrap if the range
+    /// is a whole number of machine turns.
     pub fn wraps_around(&self, range: u32) -> bool {
         match self.unit {
             Unit::Steps => true,
@@ -138,22 +137,22 @@ impl Scale {
         }
     }
 
-    /// Converts a step to machine units.
+    /// Converts an encoder step to the unit of the scale.
     pub fn value(&self, step: u32, range: u32) -> f64 {
         let from_zero = f64::from(step) - f64::from(self.zero);
         self.round(from_zero, range) / self.steps
     }
 
-    /// Returns the length of the measuring range in machine units.
+    /// Returns the length of the measuring range in the unit of the scale.
     pub fn span(&self, range: u32) -> f64 {
         f64::from(range) / self.steps
     }
 
-    /// Returns the step nearest to a machine position. Degrees wrap with the measuring range, while steps must be
-    /// within it, wherever 0 is.
+    /// Returns the encoder step nearest to a machine position. If degrees wrap, the position may be beyond the
+    /// measuring range. Positions in steps must always be within it.
     ///
     /// # Errors
-    /// [`Outside`] with the limits.
+    /// Returns [`Outside`] with the limits if the position is outside the measuring range.
     pub fn place(&self, value: f64, range: u32) -> Result<Placed, Outside> {
         let outside = || {
             let first = if self.wraps_around(range) { 0.0 } else { self.value(0, range) };
@@ -171,7 +170,7 @@ impl Scale {
         let off = (nearest - exact) / self.steps;
         let step = if self.wraps_around(range) { nearest.rem_euclid(f64::from(range)) } else { nearest };
         if (0.0..f64::from(range)).contains(&step) {
-            // Below the range, which has 25 bits.
+            // The step is below the range, which has at most 25 bits.
             Ok(Placed { step: step as u32, off })
         } else {
             Err(outside())

@@ -1,8 +1,9 @@
-//! Cam tables, as in a spreadsheet or on a machine drawing: read from a file or pasted text, and written. A row is a
-//! pulse: program, cam or name, start and stop, in steps, degrees or millimetres of the machine.
+//! Cam tables, as used in spreadsheets and on machine drawings. They are read from a file or from pasted text, and
+//! written. A row is a pulse with its program, cam or name, start and stop. Its positions are in steps, degrees or
+//! millimetres of the machine.
 //!
-//! Invalid entries are reported by line and column; all others are read regardless. Each edge is rounded to encoder
-//! steps, and its rounding error is recorded.
+//! Invalid entries are reported with their line and column, and all others are read. Each edge is rounded to encoder
+//! steps. Its rounding error is recorded.
 
 mod columns;
 mod emit;
@@ -16,21 +17,21 @@ use super::{CamNames, Outside, Scale, Unit};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
-/// Options for reading a table.
+/// Options for reading a cam table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableOptions {
-    /// Scale of its edges.
+    /// Scale of the positions in the table.
     pub scale: Scale,
     /// Number of steps in the measuring range.
     pub range: u32,
-    /// Program for rows that do not specify one.
+    /// Program of the rows that do not name one.
     pub program: ProgramNumber,
 }
 
-/// A table that was read.
+/// Content of a cam table, including its problems.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CamTable {
-    /// Delimiter of its columns.
+    /// Delimiter between the columns.
     pub delimiter: Option<Delimiter>,
     /// Whether the first line contains the column names.
     pub header: bool,
@@ -38,35 +39,35 @@ pub struct CamTable {
     pub rows: Vec<TableRow>,
     /// Problems in table order.
     pub problems: Vec<TableProblem>,
-    /// Warnings about rows that are otherwise valid.
+    /// Notes about rows that are otherwise valid.
     pub notes: Vec<TableNote>,
 }
 
-/// A pulse.
+/// A row of a cam table, which defines one pulse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableRow {
     /// Line number, counted from 1.
     pub line: u64,
-    /// Its program.
+    /// Program of the pulse.
     pub program: ProgramNumber,
     /// Cam that the pulse uses.
     pub cam: CamNumber,
     /// Name of the pulse, which may be empty.
     pub name: String,
-    /// Its first position.
+    /// First position of the pulse.
     pub start: TableEdge,
-    /// Its last one.
+    /// Last position of the pulse.
     pub stop: TableEdge,
 }
 
-/// A cam edge as requested and as rounded to encoder steps.
+/// A cam edge as requested in the table and as rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableEdge {
-    /// Requested position from the table, in machine units.
+    /// Requested position in the unit of the scale.
     pub requested: f64,
-    /// Position in encoder steps.
+    /// Rounded position in encoder steps.
     pub step: u32,
-    /// Rounding error, in units.
+    /// Rounding error in the unit of the scale.
     pub off: f64,
 }
 
@@ -78,11 +79,11 @@ pub struct TableProblem {
     pub line: u64,
     /// Column number, counted from 1.
     pub column: u64,
-    /// The problem.
+    /// Kind of the problem.
     pub kind: TableProblemKind,
 }
 
-/// Kinds of problems in a table.
+/// Kinds of problems in a cam table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableProblemKind {
     /// The table is empty.
@@ -94,99 +95,99 @@ pub enum TableProblemKind {
     /// The line ends before this column.
     #[error("the {0} is missing")]
     Missing(Column),
-    /// Not a number.
+    /// The text is not a number.
     #[error("{text:?} is no number")]
     Number {
-        /// As in the table.
+        /// Text in the table.
         text: String,
     },
-    /// Not a program.
+    /// The text is not the number of a program.
     #[error("{text:?} is no cam program: there are 1 to 8")]
     Program {
-        /// As in the table.
+        /// Text in the table.
         text: String,
     },
-    /// Not a cam.
+    /// The text is not the number of a cam.
     #[error("{text:?} is no cam: there are 0 to 7")]
     Cam {
-        /// As in the table.
+        /// Text in the table.
         text: String,
     },
-    /// Beyond the measuring range.
+    /// The edge is beyond the measuring range.
     #[error("the {column} {0} within the measuring range", .outside)]
     Outside {
-        /// The edge.
+        /// Column of the edge.
         column: Column,
-        /// Requested position and the limits, in machine units.
+        /// Requested position and the limits, in the unit of the scale.
         outside: Outside,
     },
     /// All eight cams of the program are in use.
     #[error("program {} has no cam left: it has eight", .0.get())]
     Full(ProgramNumber),
-    /// The same cam of the program appears in an earlier line, which takes precedence.
+    /// The cam already appears in an earlier line, which takes precedence.
     #[error("cam {} of program {} stands in line {first} already", cam.get(), program.get())]
     Twice {
         /// Program of the cam.
         program: ProgramNumber,
-        /// The cam.
+        /// The repeated cam.
         cam: CamNumber,
-        /// The line that counts.
+        /// Earlier line with this cam, counted from 1.
         first: u64,
     },
-    /// The name is too long.
+    /// The name is too long or contains control characters.
     #[error("a name has at most {most} characters")]
     Name {
-        /// The limit.
+        /// Maximum number of characters.
         most: usize,
     },
 }
 
-/// A note about valid rows.
+/// A note about rows that are valid.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableNote {
-    /// Several pulses are on one track, each of which uses a cam of its own.
+    /// Several pulses share a name, and each of them uses a separate cam.
     Pulses {
         /// Program of the pulses.
         program: ProgramNumber,
-        /// The track's name.
+        /// Common name of the pulses.
         name: String,
         /// Cams that the pulses use.
         cams: Vec<CamNumber>,
     },
-    /// The first line contains no known column name, so the columns are read in the usual order.
+    /// The first line contains no known column name, so the columns are assumed to be in the usual order.
     OtherHeader,
-    /// The header names a unit other than the one used.
+    /// The unit in the header differs from the selected one.
     OtherUnit {
-        /// As in the header.
+        /// Unit in the header.
         header: Unit,
-        /// The one that counts.
+        /// Selected unit, which is used.
         used: Unit,
     },
 }
 
-/// Column by its content.
+/// A column of a cam table, by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Column {
-    /// 1 to 8.
+    /// Number of the program, 1 to 8.
     Program,
-    /// 0 to 7.
+    /// Number of the cam, 0 to 7.
     Cam,
-    /// A track.
+    /// Name of the pulse.
     Name,
-    /// The first position.
+    /// First position of the pulse.
     Start,
-    /// The last one.
+    /// Last position of the pulse.
     Stop,
 }
 
-/// A program imported from a table. Only its cams are active; the edges of other cams are left unchanged.
+/// A program imported from a table. Only its cams are active. The edges of other cams are left unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Filled {
     /// The program.
     pub program: ProgramNumber,
-    /// Its cams.
+    /// Cams by number. Cams that the table does not contain are `None`.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// Names of the cams; empty for unnamed cams.
+    /// Names of the cams by number. Unnamed cams have an empty name.
     pub names: [String; Program::CAMS],
 }
 
@@ -206,14 +207,14 @@ impl std::fmt::Display for Column {
 }
 
 impl TableOptions {
-    /// Reads a table. Entries that are left out are reported.
+    /// Reads a table. The result also reports the entries that were left out.
     pub fn read(&self, text: &str) -> CamTable {
         read::read(self, text)
     }
 }
 
 impl CamTable {
-    /// Returns the programs in the table, for use in edits.
+    /// Returns the programs that the table contains.
     pub fn filled(&self) -> Vec<Filled> {
         let own = |program| self.rows.iter().filter(move |row| row.program == program);
         ProgramNumber::all()
@@ -232,12 +233,12 @@ impl CamTable {
             .collect()
     }
 
-    /// Returns the rows with an edge that was rounded.
+    /// Returns the rows in which at least one edge was rounded.
     pub fn rounded(&self) -> impl Iterator<Item = &TableRow> {
         self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
     }
 
-    /// Returns the largest rounding error of an edge, in machine units.
+    /// Returns the largest rounding error of an edge in the unit of the scale.
     pub fn most_off(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)
@@ -245,14 +246,14 @@ impl CamTable {
 }
 
 impl TableRow {
-    /// Returns its edges.
+    /// Returns the pulse as a cam.
     pub fn cam(&self) -> Cam {
         Cam { start: Value::of_word(self.start.step), stop: Value::of_word(self.stop.step) }
     }
 }
 
 impl TableEdge {
-    /// Returns whether the edge was rounded.
+    /// Returns whether the position was rounded.
     pub fn is_off(self) -> bool {
         self.off.abs() > 1e-9 * self.requested.abs().max(1.0)
     }

@@ -1,4 +1,4 @@
-//! Test profiles: an encoder with programs, as a basis for changes.
+//! Profiles for tests.
 
 use super::{Direction, Image, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
 use crate::devices::interbus::protocol::{

@@ -1,4 +1,4 @@
-//! The text format of an INTERBUS profile, which people read and edit. Errors name the entry.
+//! The text format of an INTERBUS profile, which users read and edit. Errors name the entry.
 
 use super::{
     CamNames, Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Parameters,
@@ -44,7 +44,7 @@ impl Profile for InterbusProfile {
     }
 
     fn write(&self, writer: &mut Writer) {
-        // A profile made by hand belongs to no encoder.
+        // A profile that was written by hand has no identity.
         if self.identity != ProfileIdentity::default() {
             self.identity.write(writer);
         }
@@ -65,7 +65,6 @@ impl Profile for InterbusProfile {
         }
     }
 
-    /// Compares parameters, the window shift, masks and cams. Recorded values and names are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for item in Item::writable() {

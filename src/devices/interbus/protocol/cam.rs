@@ -1,9 +1,9 @@
-//! Cams and programs, and their outputs at a position (reference 5).
+//! Cams and programs, and the outputs that they have at a position (reference 5).
 
 use super::value::Value;
 
-/// Number of a cam within its program, 0 to 7. Words have room for 16 cams, but the manual only mentions 8 (reference
-/// 6.9).
+/// Number of a cam within its program, 0 to 7. The words have room for 16 cams, but the manual only mentions 8. See
+/// reference 6.9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
@@ -11,7 +11,7 @@ pub struct CamNumber(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A cam, defined by a range of positions that includes both edges (`U`). If the start is after the stop, the range
+/// A cam, which is on from one position to another, including both (`U`). If the start is after the stop, the range
 /// wraps around the end of the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
@@ -21,12 +21,12 @@ pub struct Cam {
     pub stop: Value,
 }
 
-/// A program of eight cams with its activation mask.
+/// A program of eight cams, of which only those in the activation mask are active.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
     /// Cams by number. Undefined cams are `None`.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// Activation mask: bit i for cam i.
+    /// Activation mask, in which bit i activates cam i.
     pub mask: u8,
 }
 
@@ -48,7 +48,7 @@ impl CamNumber {
         CamNumber::EACH.into_iter()
     }
 
-    /// Creates a cam number, or returns `None` for numbers above 7.
+    /// Creates a cam number, or returns `None` if the number is above 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }
@@ -70,7 +70,7 @@ impl ProgramNumber {
         (1..=8).map(ProgramNumber)
     }
 
-    /// Creates a program number, or returns `None` outside 1 to 8.
+    /// Creates a program number, or returns `None` if the number is outside 1 to 8.
     pub const fn new(number: u8) -> Option<Self> {
         if number >= 1 && number as usize <= ProgramNumber::COUNT { Some(ProgramNumber(number)) } else { None }
     }
@@ -101,7 +101,7 @@ impl Program {
     /// Number of cams in a program.
     pub const CAMS: usize = 8;
 
-    /// Returns whether a cam is active.
+    /// Returns whether a cam is active, which is its bit in the mask.
     pub const fn is_on(&self, cam: CamNumber) -> bool {
         self.mask >> cam.0 & 1 == 1
     }
@@ -116,14 +116,14 @@ impl Program {
         self.cams.get(usize::from(number.0)).copied().flatten()
     }
 
-    /// Sets or removes a cam. The mask is left unchanged.
+    /// Sets a cam, or removes it with `None`. The mask is left unchanged.
     pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
         if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
             *place = cam;
         }
     }
 
-    /// Returns the outputs at a position: bit i for cam i.
+    /// Returns the outputs at a position, with bit i for cam i.
     pub fn outputs(&self, position: Value) -> u8 {
         let on = |cam: &Option<Cam>| cam.is_some_and(|cam| cam.is_on(position));
         let all = self.cams.iter().rev().fold(0, |bits, cam| bits << 1 | u8::from(on(cam)));

@@ -1,34 +1,34 @@
-//! IN word of a running cam program: eight outputs and a window of the position (reference 5).
+//! IN word of a running cam program, which contains eight outputs and a window of the position (reference 5).
 
 use super::value::Value;
 
-/// IN word in cam mode.
+/// IN word of an encoder in cam mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamOutput {
-    /// Outputs in bits 7..0: bit i is set while cam i is on.
+    /// Outputs in bits 7..0. Bit i is set while cam i is on.
     pub outputs: u8,
-    /// Window in bits 24..8: 17 bits of the position, starting at bit `shift_iw`.
+    /// Window in bits 24..8, which contains 17 bits of the position from bit `shift_iw` upwards.
     pub window: u32,
     /// Bits 30..25, which should be 0.
     pub stray: u8,
 }
 
-/// The word is invalid because bit 31 is set.
+/// The word contains no cam outputs because bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {
-    /// The invalid word, which may be parsed by [`Reply`](super::Reply).
+    /// The rejected word. [`Reply`](super::Reply) may be able to parse it.
     pub word: u32,
 }
 
-/// `shift_iw`: number of bits by which the position is shifted right in the window, 0 to 25.
+/// Number of bits by which the position is shifted right in the window, 0 to 25. The manual calls it `shift_iw`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
 /// Meaning of a bit in the cam output word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
-    /// Bit 31: if set, all other bits are invalid.
+    /// Bit 31, which makes all other bits invalid if it is set.
     Invalid,
     /// A bit that should be 0.
     Zero,
@@ -43,7 +43,7 @@ const WINDOW_BITS: u32 = 17;
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
-    /// Creates a window shift, or returns `None` for numbers above 25.
+    /// Creates a window shift, or returns `None` if the number is above 25.
     pub const fn new(shift: u8) -> Option<Self> {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }
@@ -53,7 +53,7 @@ impl WindowShift {
         self.0
     }
 
-    /// Returns the mask of the position bits in the window; 0 for a shift of 25.
+    /// Returns the mask of the position bits in the window, which is 0 for a shift of 25.
     pub const fn mask(self) -> u32 {
         (((1_u64 << WINDOW_BITS) - 1) << self.0) as u32 & Value::MAX.get()
     }
@@ -81,18 +81,18 @@ impl CamOutput {
         })
     }
 
-    /// Returns the word. Window bits and stray bits that do not fit are dropped.
+    /// Returns the word. Window and stray bits that do not fit are dropped.
     pub const fn emit(self) -> u32 {
         let window = self.window & ((1 << WINDOW_BITS) - 1);
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
     }
 
-    /// Returns the position bits in the window, at their original positions; see [`WindowShift::mask`].
+    /// Returns the position bits of the window, shifted to their original places. See [`WindowShift::mask`].
     pub const fn position_bits(self, shift: WindowShift) -> u32 {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }
 
-    /// Returns the meaning of a bit of the word, counted from 0, or `None` for bits above 31.
+    /// Returns the meaning of a bit, or `None` for bits above 31. The lowest bit is bit 0.
     pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
         Some(match bit {
             0..=7 => CamBit::Cam(bit),

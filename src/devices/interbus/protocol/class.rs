@@ -1,5 +1,5 @@
-//! The three classes of encoders, their identification on the bus, and the words of those without commands (reference
-//! 1).
+//! The three classes of encoders and their identification on the bus. The words of K1 and K2, which have no commands,
+//! are also here (reference 1).
 
 use super::value::Value;
 
@@ -10,7 +10,7 @@ pub enum Class {
     K1,
     /// 32 bits IN, containing the position.
     K2,
-    /// 32 bits IN and OUT, each with seven bits of status or command and 25 data bits.
+    /// 32 bits IN and OUT. Each word has seven bits of status or command and 25 data bits.
     K3,
 }
 
@@ -34,7 +34,7 @@ impl Class {
     /// All classes.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Returns the number of bytes from and to the encoder.
+    /// Returns the number of bytes from the encoder and the number of bytes to it.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -44,8 +44,8 @@ impl Class {
     }
 }
 
-/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h = 55, although manual 5.1
-/// prints 36h next to 55 (reference 6.1).
+/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h (55), although the manual
+/// prints 36h next to 55. See manual 5.1 and reference 6.1.
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
         (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,
@@ -55,7 +55,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// Returns the devices with an identification code. Several devices may share a code; an unknown code yields none.
+/// Returns the devices with an identification code. Several devices may share a code, and an unknown code yields none.
 pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
@@ -63,8 +63,7 @@ pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
         .filter(move |(class, interface)| id_code(*class, *interface) == code)
 }
 
-/// Word of a K1 or K2 encoder, which contains a right-justified position with zeros above it. Bits that should be 0
-/// are preserved.
+/// Word of a K1 or K2 encoder. The position is right-justified, and the bits above it should be 0 but are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Single {
     /// 12 position bits of a single-turn encoder in a 16-bit word.
@@ -74,17 +73,17 @@ pub enum Single {
 }
 
 impl Single {
-    /// Creates a K1 word.
+    /// Creates the word of a K1 encoder.
     pub const fn parse_k1(word: u16) -> Self {
         Single::K1(word)
     }
 
-    /// Creates a K2 word.
+    /// Creates the word of a K2 encoder.
     pub const fn parse_k2(word: u32) -> Self {
         Single::K2(word)
     }
 
-    /// Returns the right-justified word.
+    /// Returns the word with the position in its lowest bits.
     pub const fn emit(self) -> u32 {
         match self {
             Single::K1(word) => word as u32,
@@ -100,7 +99,7 @@ impl Single {
         }
     }
 
-    /// Returns the bits that should be 0 but are set.
+    /// Returns the bits above the position that are set although they should be 0.
     pub const fn unexpected_bits(self) -> u32 {
         self.emit() & !self.position().get()
     }

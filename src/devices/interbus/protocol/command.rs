@@ -1,4 +1,4 @@
-//! OUT words: commands of the master to a K3 encoder (reference 3 and 5), and the modes in which they are allowed.
+//! OUT words, which are the commands of the master to a K3 encoder (reference 3 and 5), and the modes that allow them.
 
 use super::cam::{CamNumber, ProgramNumber};
 use super::cam_output::WindowShift;
@@ -12,11 +12,12 @@ use super::value::{Code, Value};
 pub enum Command {
     /// 00000000h: normal operation.
     Normal,
-    /// 80000000h: runs the encoder. The rising edge ends parameterisation, a read-out and the setting of cams.
+    /// 80000000h: runs the encoder. The rising edge of the bit ends parameterisation, a read-out and the setting of
+    /// cams.
     Run,
-    /// 40000000h: applies the preset to the position, once for each programmed preset.
+    /// 40000000h: applies the programmed preset to the position. Each programming allows one use.
     Preset,
-    /// 60000000h: applies the preset any number of times, each followed by *run*.
+    /// 60000000h: applies the preset any number of times. Each use is followed by *run*.
     FrabaPreset,
     /// Sets a parameter.
     Set(Parameter, Value),
@@ -24,9 +25,10 @@ pub enum Command {
     Velocity(bool),
     /// 2021xxxxh: requests a read-out.
     ReadOut(ReadOutNumber),
-    /// 2080000ph: selects cam mode with the given program, or position mode if there is none.
+    /// 2080000ph: selects cam mode with the given program. `None` selects position mode.
     Cams(Option<ProgramNumber>),
-    /// 2040cccch: sets the active cams, with bit i for cam i. There are 8 cams, so the upper byte is 0 (reference 6.9).
+    /// 2040cccch: sets the active cams, with bit i for cam i. The upper byte is 0 because there are only 8 cams. See
+    /// reference 6.9.
     Activate(u16),
     /// 201000ssh: sets the window shift.
     Shift(WindowShift),
@@ -40,14 +42,14 @@ pub enum Command {
     ReadCamStart(CamNumber),
     /// 2020002ch: reads the stop position of a cam.
     ReadCamStop(CamNumber),
-    /// 20200040h: reads the window shift (20200030h is a misprint, reference 6.5).
+    /// 20200040h: reads the window shift. The 20200030h of the manual is a misprint. See reference 6.5.
     ReadShift,
     /// A word that the manual does not define.
     Unknown(u32),
 }
 
-/// A command that must not be sent, because the encoder would interpret it as another command or as none in its
-/// present mode.
+/// A command that must not be sent. In its present mode, the encoder would interpret the word as a different command or
+/// as none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
 pub struct Refused {
@@ -68,7 +70,7 @@ const READ_SHIFT: u32 = 0x40;
 const READ_OUT: u32 = 0x2021_0000;
 const MASK: u32 = 0x2040_0000;
 const CAMS: u32 = 0x2080_0000;
-/// Bits 31..29 of a word that sets a cam's start.
+/// Bits 31..29 of the word that sets the start of a cam.
 const START: u32 = 0b010 << 29;
 const STOP: u32 = 0b011 << 29;
 
@@ -98,12 +100,12 @@ impl Command {
         }
     }
 
-    /// Returns all meanings that a word has in any mode: one or two, or [`Command::Unknown`] if the manual does not
-    /// define the word.
+    /// Returns every meaning that a word has in any mode. There are one or two, or [`Command::Unknown`] if the manual
+    /// does not define the word.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
             [Command::decode_non_cam_command(word), Command::parse_cam_word(word)].into_iter().flatten().collect();
-        // Both contain the selection of a program, with the same meaning.
+        // Both decoders accept the selection of a program, which has the same meaning in all modes.
         match both.as_slice() {
             [] => vec![Command::Unknown(word)],
             [one, other] if one == other => vec![*one],
@@ -114,7 +116,8 @@ impl Command {
     /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// [`Refused`] with the meaning of the word in another mode, if any.
+    /// Returns [`Refused`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
+    /// any.
     pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
@@ -126,14 +129,14 @@ impl Command {
     /// Checks that an encoder in the given mode interprets the command as intended.
     ///
     /// # Errors
-    /// [`Refused`]: the command must not be sent.
+    /// Returns [`Refused`] if the command must not be sent in this mode.
     pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), Refused> {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }
 
-    /// Returns whether the command may be sent in a mode. Words remain on the process data, so a word that enters a
-    /// mode is also legal in that mode. Read-outs are allowed while the outputs are valid, since one of them reveals
-    /// the mode (`U`).
+    /// Returns whether the command may be sent in a mode. A word remains on the process data until the next one, so a
+    /// word that enters a mode is also legal in that mode. Read-outs are allowed while the outputs are valid, since one
+    /// of them reveals the mode (`U`).
     pub const fn is_legal_in(self, mode: EncoderMode) -> bool {
         use EncoderMode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {
@@ -155,7 +158,7 @@ impl Command {
         }
     }
 
-    /// Returns its name.
+    /// Returns the English name of the command.
     pub fn name(self) -> &'static str {
         match self {
             Command::Normal => "normal running",

@@ -1,11 +1,9 @@
-//! Programs precompiled for many evaluations: the positions at which outputs change, and the outputs from each of them
-//! on.
+//! Cam programs that are compiled for many evaluations.
 
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;
 
-/// Cam programs as a list of sections with constant outputs, for fast evaluation: a preview evaluates them for
-/// millions of positions.
+/// Cam programs as a list of sections with constant outputs. A preview evaluates them at millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompiledPrograms {
     /// Starts of the sections in ascending order. The outputs before the first section are in `before`.
@@ -29,8 +27,8 @@ impl CompiledPrograms {
         CompiledPrograms { starts, outputs, before: at(0) }
     }
 
-    /// Returns the outputs at a position: one byte per program, with bit i for cam i. The result equals
-    /// [`Program::outputs`] of each program.
+    /// Returns the outputs at a position, with one byte per program and bit i for cam i. The bytes equal
+    /// [`Program::outputs`].
     pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
         let begun = self.starts.partition_point(|start| *start <= position.get());
         let stretch = begun.checked_sub(1).and_then(|at| self.outputs.get(at));

@@ -1,4 +1,4 @@
-//! The gear: number of steps over a number of turns (reference 3).
+//! The gear, which is a number of steps over a number of turns (reference 3).
 
 use super::value::Value;
 
@@ -7,7 +7,8 @@ pub const STEPS_PER_TURN: u32 = 8192;
 /// Maximum number of turns that an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// A gear: `steps` of the position over `turns` of the shaft. The two numbers are set separately but used together.
+/// A gear, which divides a number of turns of the shaft into position steps. The two numbers are set separately but
+/// used together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,
@@ -23,14 +24,14 @@ pub enum GearError {
         /// Given number of turns.
         turns: u32,
     },
-    /// The number of steps exceeds the resolution of the disc over these turns, or 25 bits.
+    /// The number of steps exceeds 25 bits or the resolution of the disc over these turns.
     #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
     Steps {
         /// Given number of steps.
         steps: u32,
         /// Given number of turns.
         turns: u32,
-        /// The limit.
+        /// Largest valid number of steps.
         most: u32,
     },
 }
@@ -39,7 +40,7 @@ impl Gear {
     /// Creates a gear.
     ///
     /// # Errors
-    /// [`GearError`] if a number exceeds its limit. The turns are checked first.
+    /// Returns a [`GearError`] if a number exceeds its limit. The turns are checked first.
     pub const fn new(steps: u32, turns: u32) -> Result<Self, GearError> {
         if turns == 0 || turns > TURNS {
             return Err(GearError::Turns { turns });
@@ -51,14 +52,14 @@ impl Gear {
         Ok(Gear { steps, turns })
     }
 
-    /// Returns the maximum number of steps over the given number of turns. With all 4096 turns, the count exceeds the
-    /// largest 25-bit value by one.
+    /// Returns the maximum number of steps over the given number of turns. All 4096 turns have one step more than the
+    /// largest 25-bit value.
     pub(super) const fn max_steps(turns: u32) -> u32 {
         let all = STEPS_PER_TURN * turns;
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }
 
-    /// Returns the number of position steps over all turns, which is the measuring range.
+    /// Returns the measuring range, which is the number of position steps over all turns.
     pub const fn steps(self) -> u32 {
         self.steps
     }
@@ -73,16 +74,16 @@ impl Gear {
         STEPS_PER_TURN * self.turns
     }
 
-    /// Converts disc steps to position steps: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual only states
-    /// that both numbers form a gear). The result does not wrap, so the complete range yields all steps.
+    /// Converts disc steps to position steps with `raw · steps / (8192 · turns)`, rounded down. The result does not
+    /// wrap, so the complete range yields all steps. The manual does not state the formula (`U`).
     pub const fn scaled_value(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }
 
-    /// Returns the position that the encoder sends for a disc position, which is [`scaled_value`](Self::scaled_value) within the
-    /// range (`U`).
+    /// Returns the position that the encoder sends for a disc position. This is the
+    /// [`scaled_value`](Self::scaled_value) within the range (`U`).
     pub const fn position(self, raw: u32) -> Value {
-        // Less than `steps`, which has 25 bits.
+        // The result is less than `steps`, which has 25 bits.
         Value::of_word(self.scaled_value(raw % self.range()) as u32)
     }
 }

@@ -11,27 +11,27 @@ pub enum LedState {
     Blinking,
 }
 
-/// The LEDs, named by their labels on the encoder.
+/// States of the four LEDs, which are named by their labels on the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
-    /// UL.
+    /// LED labelled UL.
     pub ul: LedState,
-    /// BA.
+    /// LED labelled BA.
     pub ba: LedState,
-    /// RC.
+    /// LED labelled RC.
     pub rc: LedState,
-    /// RBDA.
+    /// LED labelled RBDA.
     pub rbda: LedState,
 }
 
 /// Meaning and remedy of an LED combination.
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
-    /// LED states.
+    /// Combination of LED states.
     pub leds: Leds,
     /// Meaning as worded in the manual.
     pub meaning: &'static str,
-    /// Suggested remedy, which is not in the manual (`U`).
+    /// Suggested remedy. The manual has none (`U`).
     pub remedy: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub const LEDS: [LedRow; 4] = [
 ];
 
 impl Leds {
-    /// Returns the row of an LED combination, or `None` if the manual does not define it.
+    /// Returns the table row of this LED combination, or `None` if the manual does not define it.
     pub fn row(self) -> Option<&'static LedRow> {
         LEDS.iter().find(|row| row.leds == self)
     }

@@ -9,8 +9,8 @@
 //! IN   error, invalid   parameterisation        manufacturer  parameter or error code  position, value
 //! ```
 //!
-//! The same OUT word has different meanings in different modes: [`Command::readings`] returns all of them, and
-//! [`Command::in_mode`] the one for an encoder in a [`EncoderMode`].
+//! The same OUT word has different meanings in different modes. [`Command::readings`] returns all of them, and
+//! [`Command::in_mode`] returns the meaning in one [`EncoderMode`].
 
 #![warn(missing_docs)]
 
@@ -30,7 +30,7 @@ mod value;
 mod vectors;
 mod word_order;
 
-/// Keyword for this kind of device on the command line, in profiles, and in stored data.
+/// Keyword for INTERBUS encoders on the command line, in profiles and in stored data.
 pub const KIND: &str = "interbus";
 
 /// Number of stores for which the EEPROM is designed (reference 3).

@@ -16,9 +16,10 @@ pub enum Parameter {
     Direction,
     /// Position that the encoder adopts when the preset is fired.
     Preset,
-    /// Zero shift. Contrary to manual 5.4.1, it does not apply the preset (reference 6.2).
+    /// Zero shift. It does not apply the preset, contrary to manual 5.4.1. See reference 6.2.
     ZeroShift,
-    /// Restores the factory settings. Experimental, since only the appendix of the manual mentions it (reference 6.10).
+    /// Restores the factory settings. It is experimental, since only the appendix of the manual mentions it. See
+    /// reference 6.10.
     Default,
 }
 
@@ -40,9 +41,9 @@ pub struct ParameterRow {
 enum Limit {
     /// Constant limits.
     Fixed(u32, u32),
-    /// From 1 to the maximum for the programmed turns.
+    /// From 1 to the number of steps that the disc has over the programmed turns.
     StepsOfTurns,
-    /// From 0 to the last position of the range.
+    /// From 0 to the last position of the measuring range.
     WithinRange,
 }
 
@@ -52,7 +53,7 @@ enum Limit {
 pub struct OutOfRange {
     /// The parameter.
     pub parameter: Parameter,
-    /// Given value.
+    /// The rejected value.
     pub value: u32,
     /// Lower limit.
     pub low: u32,
@@ -90,7 +91,7 @@ impl Parameter {
         }
     }
 
-    /// Returns its name.
+    /// Returns the name of the parameter on the command line.
     pub const fn name(self) -> &'static str {
         self.row().name
     }
@@ -100,7 +101,7 @@ impl Parameter {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
 
-    /// Returns the valid values for an encoder with this gear.
+    /// Returns the valid values for an encoder with the given gear.
     pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
@@ -109,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the valid values for an encoder with any gear.
+    /// Returns the values that are valid with at least one gear.
     pub const fn widest_range(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
@@ -121,7 +122,7 @@ impl Parameter {
     /// Checks a value of this parameter.
     ///
     /// # Errors
-    /// [`OutOfRange`] with the limits for this gear.
+    /// Returns [`OutOfRange`] with the limits for this gear.
     pub fn check(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
         let range = self.range(gear);
         let (low, high) = (*range.start(), *range.end());

@@ -1,10 +1,10 @@
-//! Values that can be read out of an encoder, and their meaning (reference 3).
+//! Values that a K3 encoder returns on request, and their meaning (reference 3).
 
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// Number of a read-out, which is in bits 15..0 of the word 2021xxxxh. Numbers that the manual does not define are
-/// preserved.
+/// Number of a read-out, which the word 2021xxxxh contains in bits 15..0. It may be a number that the manual does not
+/// define.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOutNumber(u16);
 
@@ -39,13 +39,13 @@ const fn row(read_out: ReadOutNumber, name: &'static str, unit: &'static str) ->
     ReadOutRow { read_out, name, unit }
 }
 
-/// Lowest digit of the read-out number of a chip register.
+/// Lowest hexadecimal digit of each read-out number that belongs to a chip register.
 const CHIP: u16 = 0xD;
 
 /// Value of a read-out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutValue {
-    /// A number in the unit of its row; also used for unknown read-outs and chip registers.
+    /// A number in the unit of its table row. Unknown read-outs and chip registers also yield this variant.
     Plain(u32),
     /// Operating time in minutes.
     Minutes(u32),
@@ -57,7 +57,7 @@ pub enum ReadOutValue {
     Flags(Flags),
 }
 
-/// Read-out 9: present and start-up mode of the encoder. The manual prints `3h to 10h` for the programs, but means
+/// Present mode and start-up mode of the encoder, read-out 9. The manual prints `3h to 10h` for the programs but means
 /// decimal 3 to 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
@@ -65,7 +65,7 @@ pub enum StartupMode {
     K2,
     /// 1: the encoder operates like a K3 encoder.
     K3,
-    /// 2: velocity.
+    /// 2: velocity mode.
     Velocity,
     /// 3 to 0Ah: cam programs 1 to 8.
     Cams(ProgramNumber),
@@ -78,13 +78,13 @@ pub enum StartupMode {
 pub struct Flags(Value);
 
 impl ReadOutNumber {
-    /// Serial number, 0.
+    /// Serial number, read-out 0.
     pub const SERIAL_NUMBER: ReadOutNumber = ReadOutNumber(0x0);
     /// Operating time in units of ten minutes, read-out 8.
     pub const OPERATING_TIME: ReadOutNumber = ReadOutNumber(0x8);
-    /// Start-up mode, 9.
+    /// Start-up mode, read-out 9.
     pub const STARTUP_MODE: ReadOutNumber = ReadOutNumber(0x9);
-    /// Flags, Ah.
+    /// Flags, read-out Ah.
     pub const FLAGS: ReadOutNumber = ReadOutNumber(0xA);
     /// Temperature in tenths of a degree Celsius, read-out Ch.
     pub const TEMPERATURE: ReadOutNumber = ReadOutNumber(0xC);
@@ -94,22 +94,22 @@ impl ReadOutNumber {
         ReadOutNumber(number)
     }
 
-    /// Returns the read-out of an OPC chip register, `xDh`, or `None` for registers above 15.
+    /// Returns the read-out `xDh` of OPC chip register x, or `None` if the register is above 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
         if register < 16 { Some(ReadOutNumber((register as u16) << 4 | CHIP)) } else { None }
     }
 
-    /// Returns its number.
+    /// Returns the number of the read-out.
     pub const fn number(self) -> u16 {
         self.0
     }
 
-    /// Returns the register number, or `None` if the read-out is not a chip register.
+    /// Returns the number of the chip register, or `None` if the read-out is not one.
     pub const fn register(self) -> Option<u8> {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
 
-    /// Returns the table row, or `None` for chip registers and numbers that the manual does not define.
+    /// Returns the table row of the read-out. Chip registers and numbers that the manual does not define have none.
     pub fn row(self) -> Option<&'static ReadOutRow> {
         READ_OUTS.iter().find(|row| row.read_out == self)
     }
@@ -126,8 +126,8 @@ impl ReadOutNumber {
     }
 }
 
-/// Returns the value as a signed 25-bit number, or as a signed 16-bit number if bit 24 is clear and the value is above
-/// 7FFFh (`U`: the manual has −10 °C in neither form).
+/// Returns the value as a signed number of 25 bits. If bit 24 is clear and the value is above 7FFFh, it is a signed
+/// number of 16 bits. The manual does not specify how negative values are sent (`U`). See reference 3.
 const fn signed(value: Value) -> i32 {
     let number = value.get();
     if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.signed() }
@@ -158,7 +158,7 @@ impl StartupMode {
 }
 
 impl Flags {
-    /// Creates flags from any value; unknown bits are preserved.
+    /// Creates flags from any value. Unknown bits are preserved.
     pub const fn new(value: Value) -> Self {
         Flags(value)
     }
@@ -168,17 +168,17 @@ impl Flags {
         self.0
     }
 
-    /// Returns whether the number of steps is reported minus one, as by older encoders (bit 0).
+    /// Returns whether bit 0 is set. Older encoders set it and report the number of steps minus one.
     pub const fn steps_minus_one(self) -> bool {
         self.0.get() & 1 != 0
     }
 
-    /// Returns whether the encoder counts turns (bit 1).
+    /// Returns whether the encoder counts turns, which is bit 1.
     pub const fn multiturn(self) -> bool {
         self.0.get() & 2 != 0
     }
 
-    /// Returns the encoder type indicated by the flags.
+    /// Returns the English name of the encoder type that the flags indicate.
     pub const fn type_name(self) -> &'static str {
         match (self.multiturn(), self.steps_minus_one()) {
             (true, false) => "multiturn",
@@ -188,7 +188,7 @@ impl Flags {
         }
     }
 
-    /// Returns all other bits, whose meaning is unknown.
+    /// Returns all other flags. Their meaning is unknown.
     pub const fn unknown(self) -> u32 {
         self.0.get() & !3
     }

@@ -1,4 +1,4 @@
-//! IN words of a K3 encoder (reference 2). The meaning of a position or value depends on the mode: see
+//! IN words of a K3 encoder (reference 2). The mode determines whether a word contains a position or another value. See
 //! [`CamOutput`](super::CamOutput) and [`ReadOutNumber::value`](super::ReadOutNumber::value).
 
 use super::command::Command;
@@ -8,51 +8,51 @@ use super::value::{Code, Value};
 /// Meaning of an IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// Bit 31 is clear, and the encoder is running. The value is a position, a speed in velocity mode, or the cam
+    /// The encoder is running, since bit 31 is clear. The value is a position, the speed in velocity mode, or the cam
     /// output word in cam mode.
     Run {
-        /// Bits 24..0.
+        /// Bits 24..0 of the word.
         value: Value,
-        /// Bits 30..25, which should be 0. Other values justify a warning.
+        /// Bits 30..25, which should be 0. Any other value justifies a warning.
         stray: u8,
     },
-    /// Prefix 110 or 111, code 0: the encoder is processing a parameter. For cam 0, the word may be the echo.
+    /// The encoder is processing a parameter (prefix 110 or 111, code 0). For cam 0, the word may also be the echo.
     Busy {
-        /// Bit 29.
+        /// Bit 29 of the word.
         manufacturer: bool,
         /// Data of the word.
         data: Value,
     },
-    /// Prefix 110 or 111: the command was received, but may not have been accepted yet.
+    /// The command was received but may not have been accepted yet (prefix 110 or 111).
     Echo {
-        /// Bit 29.
+        /// Bit 29 of the word.
         manufacturer: bool,
         /// Parameter code or cam number, which is never 0.
         code: Code,
-        /// Data as sent.
+        /// Data as the master sent them.
         data: Value,
     },
-    /// Prefix 101, code 0: value of a read-out.
+    /// The value of a read-out (prefix 101, code 0).
     ReadOut(Value),
-    /// Prefix 101, code 2: the read-out does not exist.
+    /// The read-out does not exist (prefix 101, code 2).
     UnknownReadOut(Value),
-    /// Prefix 101 with a code that the manual does not define.
+    /// A reply that the manual does not define (prefix 101 with another code).
     Unknown {
         /// A code other than 0 and 2.
         code: Code,
-        /// Bits 24..0.
+        /// Bits 24..0 of the word.
         data: Value,
     },
-    /// Prefix 100: error.
+    /// An error (prefix 100).
     Error(ErrorWord),
 }
 
-/// An error word, with prefix 100.
+/// An error word, which has the prefix 100.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorWord {
-    /// Error code, bits 28..25.
+    /// Error code in bits 28..25.
     pub code: Code,
-    /// Bits 24..0.
+    /// Bits 24..0 of the word.
     pub data: Value,
 }
 
@@ -91,13 +91,14 @@ impl Reply {
         }
     }
 
-    /// Returns the echo of a command, which is its word with bits 31 and 30 set and the data as sent (for cams `U`).
-    /// Compare the complete word, since an older reply may have the same code (reference 4).
+    /// Returns the echo of a command, which is its word with bits 31 and 30 set. The data are as sent, which is an
+    /// assumption for cams (`U`). Compare the complete word, since an older reply may have the same code. See reference
+    /// 4.
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
 
-    /// Returns the echoed command, if a parameter or cam can be set in this mode.
+    /// Returns the command that this reply echoes, or `None` if no parameter or cam can be set in this mode.
     pub fn echoed_command(self, mode: EncoderMode) -> Option<Command> {
         let sets = |command: &Command| {
             use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};
@@ -114,10 +115,10 @@ impl Reply {
 }
 
 impl ErrorWord {
-    /// Manufacturer error for a cam edge beyond the measuring range, in `data` of code Ch.
+    /// Data of error code Ch if a cam edge is beyond the measuring range.
     pub const CAM_BEYOND_RANGE: u32 = 4;
 
-    /// Returns the meaning as worded in the manual.
+    /// Returns the meaning of the error as worded in the manual.
     pub const fn meaning(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "wrong parameter data",
@@ -129,7 +130,7 @@ impl ErrorWord {
         }
     }
 
-    /// Returns the remedy, which is usually not in the manual (`U`).
+    /// Returns a remedy for the error. Most of them are not in the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

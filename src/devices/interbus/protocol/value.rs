@@ -14,17 +14,17 @@ impl Value {
     /// Maximum value, 1FFFFFFh.
     pub const MAX: Value = Value((1 << Value::BITS) - 1);
 
-    /// Creates a value, or returns `None` for numbers of more than 25 bits.
+    /// Creates a value, or returns `None` if the number has more than 25 bits.
     pub const fn new(number: u32) -> Option<Self> {
         if number <= Value::MAX.0 { Some(Value(number)) } else { None }
     }
 
-    /// Returns its number.
+    /// Returns the value as a number.
     pub const fn get(self) -> u32 {
         self.0
     }
 
-    /// Returns the value as a signed number with the sign in bit 24, used for speeds (`U`, reference 6.13).
+    /// Returns the value as a signed number with the sign in bit 24. Speeds use this form (`U`). See reference 6.13.
     pub const fn signed(self) -> i32 {
         let above = u32::BITS - Value::BITS;
         (self.0 << above) as i32 >> above
@@ -37,22 +37,22 @@ impl Value {
 }
 
 impl Code {
-    /// Creates a code, or returns `None` for numbers of more than 4 bits.
+    /// Creates a code, or returns `None` if the number has more than 4 bits.
     pub const fn new(code: u8) -> Option<Self> {
         if code < 16 { Some(Code(code)) } else { None }
     }
 
-    /// Returns its number.
+    /// Returns the code as a number.
     pub const fn get(self) -> u8 {
         self.0
     }
 
-    /// Extracts the code from a word.
+    /// Extracts the code from bits 28..25 of a word.
     pub const fn of_word(word: u32) -> Self {
         Code((word >> Value::BITS & 0xF) as u8)
     }
 
-    /// Returns the code at its position within a word.
+    /// Returns the code shifted to bits 28..25.
     pub const fn to_word_bits(self) -> u32 {
         (self.0 as u32) << Value::BITS
     }

@@ -1,4 +1,4 @@
-//! Arrangement of a process data word in two 16-bit registers of a gateway (reference 1, `U`).
+//! Order of the two 16-bit registers in which a gateway keeps a process data word (reference 1, `U`).
 
 use crate::expected::Quantity;
 use crate::parameter::{Whole, Words};
@@ -9,21 +9,21 @@ pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
 pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
 /// Valid addresses of the first holding register of an OUT word.
 pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
-/// Last register address that is followed by another.
+/// Last register address that has a successor.
 const LAST: u16 = u16::MAX - 1;
 
-/// Word order, named by the half of a word that is in the first of its two registers.
+/// Word order, named by the half of the word that the first register contains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
-    /// Bits 31..16 first (`U`: the usual order in INTERBUS).
+    /// Bits 31..16 come first, which is the usual order in INTERBUS (`U`).
     #[default]
     HighFirst,
-    /// Bits 15..0 first.
+    /// Bits 15..0 come first.
     LowFirst,
 }
 
 impl WordOrder {
-    /// Spelling in links.
+    /// Names of the word orders in the address of a connection.
     pub const WORDS: Words<WordOrder> =
         Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 

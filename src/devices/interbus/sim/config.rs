@@ -1,5 +1,5 @@
-//! Settings of a virtual encoder and its gateway in the query of a `sim:` link, such as
-//! `steps=360&revolutions=1&cams=demo&rpm=10`. Nothing is opened here.
+//! Settings of a virtual encoder and its gateway, which are the query of a `sim:` link. An example is
+//! `steps=360&revolutions=1&cams=demo&rpm=10`.
 
 use std::time::Duration;
 
@@ -15,51 +15,51 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, RPM, SEED, SimulatedFaults, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual gateway and its encoders. The default is one K3 encoder with factory settings, at rest and
-    /// without faults, behind a gateway with unit 1, registers from 0 and the high word first.
+    /// Settings of a virtual gateway and its encoders. The default is one K3 encoder with factory settings, at
+    /// standstill and without faults. The gateway then has unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
-        // The gear, and the values that must fit into it: checked together, and put into the memory.
+        // The gear and the values within its range are checked together and then stored in `memory`.
         steps: Option<String> = None, "steps" => OptionalValue(ANY);
         revolutions: Option<String> = None, "revolutions" => OptionalValue(ANY);
         pub(super) memory: Memory = Memory::factory_default();
         counterclockwise: bool = false, "direction" => Words(&[("cw", false), ("ccw", true)]);
-        /// Preset in steps within the range, neither fired nor armed.
+        /// Preset in steps within the range. It is programmed but was not fired.
         preset: Option<String> = None, "preset" => OptionalValue(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        /// Initial shaft position, in disc steps.
+        /// Initial shaft position in disc steps.
         pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
-        /// Tens of minutes.
+        /// Operating time in units of ten minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
         pub(super) celsius: f64 = 25.3, "temperature" => Decimal(Quantity::Celsius, -273.0..=1000.0);
-        /// Whether a negative temperature has 16 bits instead of 25 (reference 3, `U`).
+        /// Whether a negative temperature has 16 bits instead of 25 (`U`). See reference 3.
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
-        /// Whether read-out 3 returns 0 or 1 instead of a code (`U`).
+        /// Whether read-out 3 returns 0 or 1 instead of the parameter value (`U`).
         pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
-        /// The running cam program, or else normal operation.
+        /// Selected cam program, or normal operation.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(AllowedValues::Program, mode);
         /// Whether the encoder starts with demonstration cam programs.
         demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
         pub(super) stores: u32 = 3, "stores" => Checked(AllowedValues::Stores, number::<u32>);
-        /// Whether the number of steps is reported minus one, as by older encoders.
+        /// Whether the encoder reports its number of steps minus one, as older encoders do.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
-        /// Number of cycles for which the old IN word persists after a new OUT word.
+        /// Number of cycles for which the old IN word remains after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);
-        /// Whether a program selection is acknowledged before the program's outputs are sent (`U`).
+        /// Whether the echo of a program selection precedes the outputs of the program (`U`).
         pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
         pub(super) class: Class = Class::K3, "class" => Words(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
-        /// Number of encoders, each with two registers, starting at `input` and `output`.
+        /// Number of encoders. Each has two registers, starting at `input` and `output`.
         pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Encoders, 1..=8);
         pub(super) unit: u8 = 1, "unit" => UNIT;
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
-        /// Share of requests that are answered with exception 0Bh and not carried out.
+        /// Share of requests that are refused with exception 0Bh.
         pub(super) exceptions: f64 = 0.0, "exception" => Decimal(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Shares of replies that are lost (`drop`), have one bit inverted (`flip`), or are replaced by random bytes
+        /// Shares of replies that are lost (`drop`), have one inverted bit (`flip`) or are replaced by random bytes
         /// (`garbage`).
         pub(super) faults: SimulatedFaults = SimulatedFaults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
@@ -68,23 +68,24 @@ parameters! {
 const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
-    /// `0x…`.
+    /// Parses percent-decoded keys and values. The last value of a repeated key applies. Numbers are decimal or start
+    /// with `0x`.
     ///
     /// # Errors
-    /// A setting is invalid; the message names the key and the allowed values.
+    /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::EncoderOf("INTERBUS"), pairs)?;
         config.fill_memory()?;
         Ok(config)
     }
 
-    /// Returns the temperature in tenths of a degree.
+    /// Returns the temperature in tenths of a degree Celsius.
     pub(super) fn temperature(&self) -> i32 {
         (self.celsius * 10.0).round() as i32
     }
 
-    /// Completes a partially specified gear with the largest possible value for the missing half.
+    /// Stores the gear, the preset and the cams in the memory. If only steps or turns are given, the other is as large
+    /// as possible.
     fn fill_memory(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {

@@ -1,14 +1,17 @@
-//! The encoder without a line: the effect of an OUT word at a moment, and the resulting IN word (reference 2 to 5).
+//! The encoder without its line. It determines the effect of an OUT word and the resulting IN word (reference 2 to 5).
 //!
 //! ```text
 //! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
 //!   ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
 //!   └── 2080000ph ──▶ cam program; of a changed one before it a store
 //! ```
-//! Assumptions (`U`): a store cycle is used for every parameterisation and every program to which anything was written,
-//! even an equal value; a parameter where none is legal is unknown (84000000), and any other word without a meaning in
-//! its mode has no effect; the mode, the zero point and a fired preset survive a loss of power without a store; a speed
-//! has its sign in 25 bits; IN is 86000000 while the content of the EEPROM is lost.
+//! Assumptions (`U`):
+//! - Every parameterisation and every program with a write uses a store cycle, even if the value was equal.
+//! - A parameter in a mode that does not allow it is unknown (84000000h).
+//! - Any other word without a meaning in the mode has no effect.
+//! - The mode, the zero point and a fired preset survive a loss of power without a store.
+//! - The speed is a signed number of 25 bits.
+//! - IN is 86000000h while the content of the EEPROM is lost.
 
 mod cams;
 mod position;
@@ -31,7 +34,7 @@ pub struct Encoder {
     identity: Identity,
     motor: Motor,
     shaft: Shaft,
-    /// Offset between the shaft position and the zero of the reported position, in disc steps.
+    /// Offset that is added to the shaft position, in disc steps.
     offset: i64,
     mode: StartupMode,
     activity: Activity,
@@ -39,7 +42,7 @@ pub struct Encoder {
     eeprom: Eeprom,
     unstored: Option<Stored>,
     power: bool,
-    /// OUT word sent by the master, which remains in effect until the master changes it.
+    /// OUT word of the master, which remains in effect until the master changes it.
     out: u32,
     content: InWordContent,
     /// Previous IN word, which is still returned for some time after a new OUT word.
@@ -63,7 +66,7 @@ struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Running,
-    /// The last word set a parameter or a cam, so the position and cam outputs are invalid.
+    /// A parameter or a cam has been set, so the position and the cam outputs are invalid.
     Setting,
     ReadingOut,
 }
@@ -74,8 +77,8 @@ enum InWordContent {
     Word(u32),
 }
 
-/// IN word from before the last change of the OUT word. Each reading of the IN word counts as a cycle; without
-/// readings, cycles elapse with time.
+/// Previous IN word after a change of the OUT word. It is returned for a number of cycles. Each reading counts as a
+/// cycle, and cycles also elapse with time.
 #[derive(Clone, Copy, Debug, Default)]
 struct StaleWord {
     word: u32,
@@ -84,7 +87,7 @@ struct StaleWord {
     until: Moment,
 }
 
-/// Reason for refusing a word (reference 2).
+/// Reason why a word is refused. See reference 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     WrongData,
@@ -92,11 +95,11 @@ enum Fault {
     BeyondRange,
 }
 
-/// Marks a position or cam value as invalid.
+/// Prefix of a word that contains no valid position or cam outputs.
 const INVALID: u32 = 0x8000_0000;
 const LOST: u32 = 0x8600_0000;
 const BUSY: u32 = 0xC000_0000;
-/// Base of the word that echoes a received word.
+/// Prefix of the echo of a word.
 const ECHO: u32 = 0xC000_0000;
 
 impl Fault {
@@ -110,13 +113,13 @@ impl Fault {
 }
 
 impl Encoder {
-    /// Duration of a cycle without readings (chosen for the simulation).
+    /// Duration of a cycle without a reading. The value is chosen for the simulation.
     const CYCLE: Duration = Duration::from_millis(5);
-    /// Chosen; read-out 7.
+    /// Value of read-out 7. It is chosen for the simulation.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// Creates the encoder with the given number, counted from 0 along the gateway, from `config`. The encoder is
-    /// assumed to have been powered for a long time.
+    /// Creates an encoder from `config`. `number` is its place behind the gateway, counted from 0. Its power has been
+    /// on for a long time.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {
@@ -152,7 +155,7 @@ impl Encoder {
         self.motor.clone()
     }
 
-    /// Sets the shaft position in disc steps, of which there are 8192 per turn.
+    /// Sets the shaft position in disc steps. A turn has 8192 of them.
     pub fn set_shaft(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
@@ -176,7 +179,7 @@ impl Encoder {
         self.mode
     }
 
-    /// Returns the mode in which the next word is interpreted.
+    /// Returns the mode that determines the meaning of the next word.
     pub const fn mode(&self) -> EncoderMode {
         match (self.mode, self.activity) {
             (StartupMode::Cams(_), _) => EncoderMode::Cam,
@@ -196,17 +199,16 @@ impl Encoder {
         self.identity.temperature = tenths;
     }
 
-    /// Replaces the EEPROM faults without resetting the store count.
+    /// Replaces the faults of the EEPROM. The number of stores is kept.
     pub(super) fn set_faults(&mut self, faults: &SimulatedFaults) {
         self.eeprom.set_store_failure(faults.die_in_store());
     }
 
-    /// Returns whether the encoder is powered. An unpowered encoder has no words.
     pub const fn has_power(&self) -> bool {
         self.power
     }
 
-    /// Removes the power. Values that have not been stored are lost.
+    /// Switches the power off. Values that have not been stored are lost.
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
@@ -214,7 +216,7 @@ impl Encoder {
         (self.content, self.old) = (InWordContent::Live, StaleWord::default());
     }
 
-    /// Restores the power of an encoder that has lost it. The master's present OUT word is treated as new.
+    /// Switches the power on again. The present OUT word takes effect as a new one.
     pub fn connect(&mut self, now: Moment) {
         if !self.power {
             self.power = true;
@@ -223,7 +225,7 @@ impl Encoder {
         }
     }
 
-    /// Changes the OUT word as of `now`.
+    /// Sets the OUT word at `now`.
     pub fn write(&mut self, now: Moment, word: u32) {
         self.settle(now);
         let before = std::mem::replace(&mut self.out, word);
@@ -237,7 +239,7 @@ impl Encoder {
         }
     }
 
-    /// Returns the IN word at `now`, or `None` without power.
+    /// Returns the IN word at `now`, or `None` if the power is off.
     pub fn read(&mut self, now: Moment) -> Option<u32> {
         self.settle(now);
         if !self.power {
@@ -251,7 +253,7 @@ impl Encoder {
     fn apply_command(&mut self, now: Moment, command: Command, before: u32) {
         match command {
             Command::Normal if self.activity == Activity::ReadingOut => self.end_read_out(),
-            // Only an edge of bit 31 has an effect.
+            // Only a rising edge of bit 31 has an effect.
             Command::Run if before >> 31 == 0 => self.run(),
             Command::Normal | Command::Run | Command::Unknown(_) => {}
             Command::Preset if self.memory.armed => {
@@ -283,8 +285,8 @@ impl Encoder {
         }
     }
 
-    /// Handles a word that is meaningless in the current mode. A word that resembles a parameter, an edge, a shift or a
-    /// read-out gets the corresponding error.
+    /// Handles a word without a meaning in the present mode. If it resembles a parameter, an edge, a shift or a
+    /// read-out, it gets the corresponding error.
     fn note_unexpected_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
@@ -296,7 +298,7 @@ impl Encoder {
         }
     }
 
-    /// Finishes a set command, after which the IN word is its echo or an error.
+    /// Completes a word that sets a value. The IN word is then its echo or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
@@ -327,13 +329,12 @@ impl Encoder {
         Ok(())
     }
 
-    /// Handles the rising edge of the run command by returning to position, speed or cam output.
+    /// Handles the rising edge of the run command, which returns to operation.
     fn run(&mut self) {
         self.store();
         self.switch_activity(Activity::Running, InWordContent::Live);
     }
 
-    /// Stores the values that were set, if any.
     fn store(&mut self) {
         let Some(what) = self.unstored.take() else { return };
         match self.eeprom.store(&self.memory, what) {
@@ -353,7 +354,7 @@ impl Encoder {
         }
     }
 
-    /// Switches to another activity immediately, without busy words.
+    /// Switches to another activity immediately, without the word of a busy encoder.
     const fn switch_activity(&mut self, activity: Activity, content: InWordContent) {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
@@ -365,8 +366,8 @@ impl Encoder {
         }
     }
 
-    /// Selects cam mode with the given program, or position mode for `None`. If the current program was changed, it is
-    /// stored first.
+    /// Selects the given cam program, or position mode for `None`. If the present program was changed, it is stored
+    /// first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store();
         if !self.power {

@@ -1,18 +1,18 @@
-//! Modbus/TCP requests and replies (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application
-//! Protocol V1.1b3*): functions 3, 4, 6 and 16. The registers are in another module.
+//! Modbus/TCP requests and replies with functions 3, 4, 6 and 16. See *MODBUS Messaging on TCP/IP Implementation Guide*
+//! V1.0b and *MODBUS Application Protocol* V1.1b3.
 
 use rmodbus::ModbusProto;
 use rmodbus::consts::ModbusFunction;
 use rmodbus::server::{ModbusFrame, Read};
 
-/// Reason for refusing a request, as a Modbus exception code.
+/// Modbus exception code of a refused request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exception {
     Function = 0x01,
     Address = 0x02,
     /// The length or count in the request is invalid.
     Value = 0x03,
-    /// The device behind the gateway does not reply, because the unit is wrong or the device has no power.
+    /// The device behind the gateway does not reply. The unit may be wrong, or the device has no power.
     NoAnswer = 0x0B,
 }
 
@@ -22,14 +22,14 @@ pub(super) trait Registers {
     fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
 }
 
-/// Length of the frame header before the unit: transaction, protocol and length.
+/// Number of bytes before the unit, which are the transaction, the protocol and the length.
 const PREFIX: usize = 6;
-/// Valid lengths in the frame header. The length includes at least the unit and function, and a PDU of up to 253
+/// Valid lengths in the header of a frame. They cover at least the unit and the function, and a PDU of at most 253
 /// bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
-/// Removes the next complete frame from the received bytes, or returns `None` if the frame is incomplete. Bytes that
-/// are not Modbus are dropped, since the stream does not show where the next frame begins.
+/// Removes the next complete frame from the received bytes. Returns `None` if the frame is incomplete. Bytes that are
+/// not Modbus are dropped, since they do not show where the next frame begins.
 pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     let [_, _, protocol_high, protocol_low, high, low, ..] = *received.as_slice() else { return None };
     let length = usize::from(u16::from_be_bytes([high, low]));
@@ -76,7 +76,7 @@ fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result
     Ok(reply)
 }
 
-/// Checks the length of the data after the function code and parses the values to write.
+/// Checks the length of the data after the function code. Returns the values to be written.
 fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
     match (function, rest) {

@@ -1,6 +1,6 @@
-//! The gateway: Modbus/TCP connections of its clients, and the encoders behind it. Several clients may be connected at
-//! once, as with a real gateway, and every encoder obeys the last command, whichever client sent it. Assumptions: a
-//! reply takes two milliseconds; requests for another unit, or for an encoder without power, return exception 0Bh.
+//! The gateway with the Modbus/TCP connections of its clients and the encoders behind it. Several clients may be
+//! connected at once. An encoder obeys the last command of any client. It is an assumption that a reply takes two
+//! milliseconds and that requests for another unit or an encoder without power return exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -15,8 +15,7 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, Motor, SimulatedFaults};
 use crate::units::Moment;
 
-/// Client connection to a virtual gateway, created from a [`Config`]. Use [`connection`](Self::connection) to add
-/// another client.
+/// A client's connection to a virtual gateway. [`connection`](Self::connection) adds another client.
 #[derive(Clone)]
 pub struct Gateway {
     shared: Arc<Mutex<Shared>>,
@@ -53,7 +52,7 @@ impl Gateway {
         Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: TransitQueue::default() }
     }
 
-    /// Returns a connection to the same gateway and encoders for another client.
+    /// Returns another connection to the same gateway and its encoders.
     pub fn connection(&self) -> Self {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: TransitQueue::default() }
     }
@@ -62,12 +61,13 @@ impl Gateway {
         self.with_encoder(|encoder| encoder.motor())
     }
 
-    /// Runs `work` on the first encoder, to inspect it or to change it in ways that no bus allows.
+    /// Runs `work` on the first encoder. It may inspect the encoder or change it in ways that a bus does not allow.
     pub fn with_encoder<T>(&self, work: impl FnOnce(&mut Encoder) -> T) -> T {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Replaces the faults, for example when a cable is repaired or breaks later. Request and store counts are kept.
+    /// Replaces the faults of the gateway, which simulates a repair or a new defect. The numbers of requests and stores
+    /// are kept.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
@@ -75,7 +75,7 @@ impl Gateway {
     }
 
     fn lock(&self) -> MutexGuard<'_, Shared> {
-        // The virtual device stays usable after a test has panicked.
+        // The virtual device must remain usable after a test has panicked.
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -97,14 +97,14 @@ impl Registers for GatewayRegisters<'_> {
 }
 
 impl Shared {
-    /// Carries out a request and returns the reply that the host receives, or `None` if no reply arrives.
+    /// Handles a request. Returns the reply that the host receives, or `None` if there is none.
     fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
             return None;
         }
-        // f64() is below 1, so 1 always happens and 0 never does.
+        // `f64()` is below 1, so a share of 1 always matches and 0 never does.
         let reply = if self.rng.f64() < self.exceptions {
             frame::refuse(request, Exception::NoAnswer)
         } else {
@@ -114,8 +114,8 @@ impl Shared {
         self.carry(reply)
     }
 
-    /// Applies the configured faults to a reply. TCP delivers complete data or none, so what would be a one-byte fault
-    /// on a serial line affects the whole reply.
+    /// Applies the configured faults to a reply. A fault that would affect one byte on a serial line affects the whole
+    /// reply here, since TCP delivers complete data.
     fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -153,8 +153,8 @@ impl ByteDevice for Gateway {
         self.to_host.due()
     }
 
-    /// Connects a client. Pending replies to the previous connection are dropped, and encoders that lost power get it
-    /// back.
+    /// Connects a client. Pending replies of the previous connection are dropped. Encoders that have lost power are
+    /// switched on again.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
         self.to_host = TransitQueue::default();

@@ -1,16 +1,17 @@
-//! The settings of an encoder and the EEPROM that stores them: about 200 store cycles, 500 at most (reference 3).
+//! The settings of an encoder and the EEPROM that stores them. The EEPROM is designed for about 200 and at most 500
+//! stores. See reference 3.
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
-/// The settings of an encoder, all of which can be stored.
+/// The settings of an encoder. All of them can be stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub(super) gear: Gear,
     pub(super) counterclockwise: bool,
     pub(super) preset: u32,
-    /// Whether the preset has been set but not fired yet.
+    /// Whether a preset was programmed but not fired yet.
     pub(super) armed: bool,
     pub(super) zero_shift: u32,
     pub(super) shift: WindowShift,
@@ -18,7 +19,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Returns the factory settings: all steps over all turns, and no active cams.
+    /// Returns the factory settings, which have the largest gear and no active cams.
     pub(super) fn factory_default() -> Self {
         Memory {
             gear: FULL,
@@ -35,7 +36,7 @@ impl Memory {
         self.gear
     }
 
-    /// Returns the counting direction: 3 for clockwise, 4 for counterclockwise.
+    /// Returns the value of the direction, which is 3 for clockwise and 4 for counterclockwise.
     pub const fn direction(&self) -> u32 {
         if self.counterclockwise { 4 } else { 3 }
     }
@@ -44,7 +45,7 @@ impl Memory {
         self.preset
     }
 
-    /// Returns whether a preset has been set but not fired yet.
+    /// Returns whether a preset was programmed but not fired yet.
     pub const fn is_preset_armed(&self) -> bool {
         self.armed
     }
@@ -57,7 +58,7 @@ impl Memory {
         self.shift
     }
 
-    /// Returns a cam program with all its cams, active or not.
+    /// Returns a cam program. It contains all cams, including the inactive ones.
     pub fn program(&self, number: ProgramNumber) -> &Program {
         let [first, ..] = &self.programs;
         self.programs.get(usize::from(number.get()) - 1).unwrap_or(first)
@@ -67,8 +68,8 @@ impl Memory {
         self.programs.get_mut(usize::from(number.get()) - 1)
     }
 
-    /// Adds demonstration cam programs: a staircase, nested cams, cams that wrap around the end of the range, and, if
-    /// the range allows it, the manual's example (cam 3 from 15 to 213).
+    /// Adds cam programs for a demonstration. They contain a staircase, nested cams and cams that wrap around the end
+    /// of the range. If the range allows it, the example of the manual is added, which is cam 3 from 15 to 213.
     pub(super) fn with_demonstration(mut self) -> Self {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
@@ -99,25 +100,25 @@ const NONE: Program = {
     Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
 };
 
-/// Gear with all turns, and all steps that fit into 25 bits.
+/// Gear with all turns and the maximum number of steps that fits into 25 bits.
 const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Ok(gear) => gear,
     Err(_) => unreachable!(),
 };
 
-/// Non-volatile storage for a [`Memory`].
+/// Non-volatile memory that stores a [`Memory`].
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// Whether the content was lost; 86000000 is sent until everything has been stored again.
+    /// Whether the content was lost. If so, the encoder sends 86000000h until the next store.
     pub(super) lost: bool,
     stores: u32,
-    /// Number of stores since the encoder was created, used to trigger faults.
+    /// Number of stores in this simulation, which triggers the configured fault.
     begun: u32,
     die_in_store: Option<u32>,
 }
 
-/// The part of the settings that a store saves.
+/// The settings that a store writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stored {
     Parameters,
@@ -127,10 +128,10 @@ pub(super) enum Stored {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,
-    /// The EEPROM is worn out and its content is lost (`U`: the manual guarantees 500 stores and says nothing about
-    /// later ones).
+    /// The EEPROM is worn out, and its content is lost. The manual guarantees 500 stores and does not mention later
+    /// ones (`U`).
     Worn,
-    /// Power was lost during the store.
+    /// The power was lost during the store.
     Died,
 }
 
@@ -147,7 +148,8 @@ impl Eeprom {
         self.die_in_store = number;
     }
 
-    /// Stores the settings. A failed store loses everything that was about to be written (`U`).
+    /// Stores the settings. If a store fails, the settings that it would have written return to the factory settings
+    /// (`U`).
     pub(super) fn store(&mut self, memory: &Memory, what: Stored) -> Ended {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
@@ -177,5 +179,5 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Number of shaft positions that an encoder distinguishes, in disc steps.
+/// Number of shaft positions that an encoder can distinguish, which is all disc steps of all turns.
 pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;

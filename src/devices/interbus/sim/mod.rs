@@ -1,16 +1,16 @@
-//! The virtual K3 encoder and the Modbus/TCP gateway in front of it (INTERBUS reference): the handshake with busy words
-//! and old echoes, the modes, eight cam programs, the EEPROM and its wear, and losses of power. Where the manual is
-//! silent (`U`), the assumption made is documented or can be set.
+//! A virtual K3 encoder behind a Modbus/TCP gateway. It simulates the handshake with busy words and old echoes, the
+//! modes, eight cam programs, the wear of the EEPROM and losses of power. Assumptions about facts that the manual
+//! leaves open (`U`) are documented or can be configured. See the INTERBUS reference.
 //!
 //! | file | content |
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `shaft` | the turning shaft |
-//! | `memory` | stored settings, which of them survive a loss of power, and the number of store cycles |
-//! | `encoder` | the effect of an OUT word, and the IN word, at a moment |
+//! | `memory` | settings, their storage and the number of store cycles |
+//! | `encoder` | the effect of an OUT word and the resulting IN word |
 //! | `registers` | process data as Modbus registers |
 //! | `frame` | a Modbus request and its reply |
-//! | `gateway` | the connections of clients, byte by byte, with injected faults |
+//! | `gateway` | the connections of clients, with simulated faults |
 
 mod config;
 mod encoder;

@@ -1,6 +1,6 @@
-//! Process data as Modbus registers: every encoder has two input registers for its IN word and two holding registers
-//! for its OUT word. Reading or writing one or both of them is a cycle of its process data. The word of a K1 encoder,
-//! which is half as long, is in the lower register.
+//! Process data as Modbus registers. Each encoder has two input registers for its IN word and two holding registers for
+//! its OUT word. Reading or writing one or both of them is a cycle of its process data. The word of a K1 encoder has
+//! only half the length and is in the lower register.
 
 use super::config::Config;
 use super::encoder::Encoder;
@@ -15,7 +15,7 @@ pub(super) struct RegisterMap {
     order: WordOrder,
 }
 
-/// Encoders in register order.
+/// Encoders in the order of their registers.
 #[derive(Debug)]
 pub(super) struct EncoderList {
     pub(super) first: Encoder,
@@ -47,17 +47,17 @@ impl RegisterMap {
         RegisterMap { input: config.input, output: config.output, order: config.order }
     }
 
-    /// Reads IN words (function 4).
+    /// Reads IN words with function 4.
     pub(super) fn inputs(&self, encoders: &mut EncoderList, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.input, first, count, |encoder| encoder.read(now).ok_or(Exception::NoAnswer))
     }
 
-    /// Reads the present OUT words (function 3).
+    /// Reads the present OUT words with function 3.
     pub(super) fn outputs(&self, encoders: &mut EncoderList, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
     }
 
-    /// Writes complete or half OUT words (functions 6 and 16).
+    /// Writes complete OUT words with function 16, or halves of them with function 6 or 16.
     pub(super) fn write(&self, encoders: &mut EncoderList, now: Moment, first: u16, values: &[u16]) -> Result<()> {
         let begin = self.range(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
@@ -99,7 +99,7 @@ impl RegisterMap {
         Ok(registers)
     }
 
-    /// Returns the offset from the first encoder's register, after checking that the complete range exists.
+    /// Returns the offset of a register from the first encoder's register. All of the registers must exist.
     fn range(&self, encoders: &EncoderList, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

@@ -1,9 +1,9 @@
-//! The shaft: its position as an exact function of time, in disc steps, of which a turn has 8192.
+//! The shaft, whose position is an exact function of time. A turn has 8192 disc steps.
 
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// A shaft that turns at constant speed. Its position does not wrap, which is left to the gear.
+/// A shaft that turns at constant speed. Its position does not wrap, since this depends on the gear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -17,7 +17,8 @@ impl Shaft {
         Shaft { rpm, place: f64::from(place), since: Moment::START }
     }
 
-    /// Returns the speed in revolutions per minute, positive for clockwise rotation, which increases the position.
+    /// Returns the speed in revolutions per minute. It is positive if the shaft turns clockwise, which increases the
+    /// position.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -31,7 +32,7 @@ impl Shaft {
         (self.place, self.since) = (f64::from(place), now);
     }
 
-    /// Returns the shaft position in whole steps, which may be negative.
+    /// Returns the shaft position in whole disc steps. It may be negative.
     pub(super) fn place(&self, at: Moment) -> i64 {
         self.exact(at).floor() as i64
     }

@@ -1,4 +1,4 @@
-//! Actions of the user on an encoder: edits take effect at once, everything else is a job of the session or a task.
+//! Actions of the user on an encoder. Edits take effect immediately, and all other actions are jobs or tasks.
 
 use super::action::InterbusAction;
 use super::encoder::Encoder;
@@ -73,7 +73,7 @@ impl Encoder {
         self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Automatically reads the next part of a virtual encoder, or returns `false` if nothing is left to read.
+    /// Reads the next unread part of a virtual encoder. Returns `false` if everything has been read.
     pub(super) fn read_next_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

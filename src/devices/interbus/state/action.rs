@@ -1,4 +1,4 @@
-//! Actions of the selected INTERBUS encoder.
+//! Actions of the user on an INTERBUS encoder.
 
 use std::path::PathBuf;
 
@@ -9,27 +9,27 @@ use crate::devices::interbus::profile::Scale;
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutNumber, StartupMode};
 
 pub enum InterbusAction {
-    /// Sets whether the user has confirmed that the machine stands still.
+    /// Sets whether the user has confirmed the standstill of the machine.
     Stopped(bool),
-    /// Reads cam programs, which switches the encoder's outputs to each of them in turn.
+    /// Reads cam programs. The outputs of the encoder switch to each program in turn.
     ReadPrograms(Vec<ProgramNumber>),
     ReadOut(ReadOutNumber),
     /// Selects the data that the encoder sends: position, speed or the outputs of a program.
     Select(StartupMode),
     Check,
-    /// Applies an edit, which is not yet written to the encoder.
+    /// Applies an edit. It is not written to the encoder.
     Edit(Box<Edit>),
     Plan(Box<Change>),
-    /// Returns the encoder to its earlier mode, regardless of who changed it.
+    /// Returns the encoder to its earlier mode, even if another program has changed it.
     LeadBack,
-    /// Asks the user for a cam table. Rows that do not specify a program belong to the given one.
+    /// Asks the user for a cam table file. The given program applies to rows that do not name one.
     AskTable(ProgramNumber),
     OpenTable(PathBuf),
-    /// Imports the cams of a pasted table.
+    /// Reads the cams of a pasted table.
     PasteTable(ProgramNumber, String),
-    /// Applies the imported table to the edits if true, or else discards it.
+    /// Adds the table to the edits if `true`, or discards it if `false`.
     TakeTable(bool),
-    /// Asks where to save the cams as a table, with a decimal comma or point.
+    /// Asks where to save the cams as a table. Its numbers have a decimal comma or a decimal point.
     AskSaveTable {
         decimal_comma: bool,
     },
@@ -38,7 +38,7 @@ pub enum InterbusAction {
         decimal_comma: bool,
     },
     SetScale(Scale),
-    /// Turns the shaft of the virtual encoder at the given speed in revolutions per minute.
+    /// Turns the shaft of the virtual encoder at a speed in revolutions per minute.
     Turn(f64),
     Save(PathBuf),
 }

@@ -1,8 +1,8 @@
-//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring, with its movable parts
-//! and the results of moving them. The chart computes changed cams without applying them.
+//! The cams of a program as a chart, with one lane for each cam. The lanes extend over the measuring range or around a
+//! ring. The chart also computes the result of a drag, which is not applied here.
 //!
-//! A position is drawn with a width: a cam from 10 to 19 extends from 10 to 20, so that no inactive positions are
-//! drawn.
+//! A position is drawn with a width. A cam from 10 to 19 extends from 10 to 20, so adjoining cams have no gap between
+//! them.
 
 mod grid;
 mod moving;
@@ -24,7 +24,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 pub struct Chart {
     pub program: ProgramNumber,
     pub range: u32,
-    /// Lanes of the cams, indexed by cam number.
+    /// Lanes of the cams by cam number.
     pub lanes: [Lane; Program::CAMS],
 }
 
@@ -37,11 +37,11 @@ pub struct Lane {
     pub edges: Option<Cam>,
     pub edited: bool,
     pub beyond: bool,
-    /// Whether the cam is active and overlaps another pulse on its track.
+    /// Whether the cam is active and overlaps another cam of the same name.
     pub clashes: bool,
 }
 
-/// A contiguous range of positions that includes both ends.
+/// A contiguous range of positions, including both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     pub first: u32,
@@ -56,13 +56,13 @@ pub struct VisibleRange {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputState {
-    /// Output of the edited program, or `None` if the position or the program is unknown.
+    /// Output of the edited program, or `None` if the program or the position is unknown.
     pub simulated: Option<bool>,
-    /// Output reported by the encoder, or `None` if not reported.
+    /// Output in the word of the encoder, or `None` if the word contains no outputs.
     pub own: Option<bool>,
 }
 
-/// Minimum span of a view, in steps.
+/// Minimum number of visible steps.
 const LEAST_SPAN: f64 = 8.0;
 
 impl Chart {
@@ -93,7 +93,7 @@ impl Chart {
         self.lanes.get(usize::from(cam.get()))
     }
 
-    /// Returns the chart with one cam moved, as shown during a drag.
+    /// Returns the chart with one moved cam, for display during a drag.
     #[must_use]
     pub fn with(&self, cam: CamNumber, to: Cam) -> Self {
         let mut chart = self.clone();
@@ -104,7 +104,7 @@ impl Chart {
         chart
     }
 
-    /// Returns an inactive cam for drawing a new one, or `None` if all cams are active.
+    /// Returns an inactive cam that can be drawn, or `None` if all cams are active.
     pub fn free(&self) -> Option<CamNumber> {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
@@ -113,13 +113,13 @@ impl Chart {
         self.range.saturating_sub(1)
     }
 
-    /// Returns the outputs at a position, with bit i for cam i, as far as the edges of the cams are known.
+    /// Returns the outputs at a position, with bit i for cam i. Cams with unknown edges are off.
     pub fn outputs(&self, position: u32) -> u8 {
         let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::of_word(position)));
         self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
     }
 
-    /// Returns the output indicators: the outputs of this program at a position, and those reported by the encoder.
+    /// Returns the output indicators at a position. `own` contains the outputs that the encoder reports.
     pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
@@ -133,7 +133,7 @@ impl Chart {
 }
 
 impl Lane {
-    /// Returns the active sections of the cam within the measuring range. There are two if the cam wraps around the
+    /// Returns the sections of the measuring range in which the cam is on. There are two if the cam wraps around the
     /// end.
     pub fn stretches(&self, range: u32) -> Vec<Stretch> {
         self.edges.map(|cam| stretches(cam, range)).unwrap_or_default()
@@ -141,12 +141,12 @@ impl Lane {
 }
 
 impl OutputState {
-    /// Returns whether the encoder reports a state that differs from the program's output.
+    /// Returns whether the output reported by the encoder differs from that of the program.
     pub fn differs(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
 
-    /// Returns the state of the output, which is that reported by the encoder if known.
+    /// Returns the state of the output. The state that the encoder reports takes precedence.
     pub const fn lit(self) -> Option<bool> {
         match self.own {
             Some(own) => Some(own),
@@ -160,7 +160,7 @@ impl VisibleRange {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
-    /// Returns the first visible position, including its fraction.
+    /// Returns the position at the left end of the view, which may be a fraction.
     pub const fn first(&self) -> f64 {
         self.first
     }
@@ -173,7 +173,7 @@ impl VisibleRange {
         self.span >= f64::from(range)
     }
 
-    /// Returns the relative location of a position in the view, from 0 at the left end to 1 at the right end.
+    /// Returns the location of a position in the view. The left end is 0 and the right end is 1.
     pub fn part(&self, position: f64) -> f64 {
         (position - self.first) / self.span
     }
@@ -182,7 +182,7 @@ impl VisibleRange {
         self.first + part * self.span
     }
 
-    /// Returns the view zoomed by the given factor around a position that stays at the same location.
+    /// Returns the view zoomed by a factor. The position `around` stays at the same location.
     #[must_use]
     pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -197,7 +197,7 @@ impl VisibleRange {
         VisibleRange { first: self.first + by, ..*self }.within(range)
     }
 
-    /// Returns the view fitted to another range, which may be shorter.
+    /// Returns the view fitted into another range, which may be shorter.
     #[must_use]
     pub fn within(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -206,7 +206,7 @@ impl VisibleRange {
     }
 }
 
-/// Returns the active sections of a cam within the measuring range.
+/// Returns the sections of the measuring range in which a cam is on.
 pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let Some(last) = range.checked_sub(1) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Connection form of an INTERBUS encoder and its link. Nothing is opened here.
+//! Connection form of an INTERBUS encoder and conversion to a link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -12,38 +12,38 @@ use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
-    /// Virtual encoder inside the program, behind a virtual gateway.
+    /// Virtual encoder in this process, behind a virtual gateway.
     #[default]
     Virtual,
     Gateway,
     Replay,
 }
 
-/// Entries of the connection form. Entries that belong to another kind of connection are kept but left out of the link.
-/// An empty entry selects the default.
+/// Entries of the connection form. An empty entry selects the default. Entries of other kinds of connections are kept
+/// but are not part of the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
     pub host: String,
-    /// TCP port, which is 502 if empty.
+    /// TCP port. If it is empty, port 502 is used.
     pub tcp_port: String,
     pub file: String,
-    /// Entered values of the remaining parameters.
+    /// Entries of the remaining parameters.
     pub typed: Typed,
-    /// Whether the low word comes first in a pair of registers.
+    /// Whether the low word is in the first of two registers.
     pub low_first: bool,
-    /// Parameters of the link that have no entry.
+    /// Parameters of the link for which the form has no entry.
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter for the word order, with the value for the less usual order.
+/// Link parameter and value if the low word comes first.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
 const PORT: &str = "502";
 
 impl FormModel for InterbusForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder initially offered by the window: a machine that turns slowly, with cams.
+    // The window initially offers this virtual encoder, which is a slowly turning machine with cams.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
@@ -84,13 +84,13 @@ impl FormModel for InterbusForm {
 }
 
 impl InterbusForm {
-    /// Returns the parameters to enter: those of the link, and those of the virtual encoder if one is selected.
+    /// Returns the entries of the form for the link. A virtual encoder has additional entries.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == InterbusLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries that locate the words in the gateway, followed by the rarely needed entries.
+    /// Returns the entries that locate the words in the gateway, and the other entries, which are rarely needed.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
@@ -99,7 +99,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Fills in the entry for a parameter, or returns `false` if the form has no entry that can show the value.
+    /// Sets the entry of a parameter. Returns `false` if no entry can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

@@ -1,4 +1,4 @@
-//! An open INTERBUS encoder or a profile of one: known data, edits and running jobs.
+//! An open INTERBUS encoder or profile, with its known values, edits and jobs.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -23,7 +23,7 @@ use crate::sim::Motor;
 
 use super::word_meaning::WordContext;
 
-/// Maximum number of handshake steps shown.
+/// Maximum number of handshake steps that are kept.
 const STEPS: usize = 200;
 
 pub struct Encoder {
@@ -33,19 +33,19 @@ pub struct Encoder {
     pub staged: Staged,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
-    /// Comparison of the reported cam outputs with those of the cam programs.
+    /// Comparison between the outputs of the encoder and its cam programs.
     pub preview: Preview,
-    /// Words of the last handshakes, newest last.
+    /// Steps of the last handshakes in chronological order.
     pub handshake: VecDeque<Handshake>,
     pub motor: Option<Motor>,
-    /// Cam table that was read but has not been applied yet.
+    /// Cam table that was read but not applied yet.
     pub import: Option<Import>,
     pub scale: Scale,
     /// Reason why the last edit was refused.
     pub refusal: Option<Text>,
-    /// Whether the user has confirmed that the machine stands still.
+    /// Whether the user has confirmed the standstill of the machine.
     stopped: bool,
-    /// Program for the rows of a table being opened that do not specify one.
+    /// Program for rows of a table file that do not name one.
     pub(super) table_program: ProgramNumber,
     /// Programs that were written and must be read again.
     pub(super) read_after: Vec<ProgramNumber>,
@@ -78,7 +78,7 @@ impl Encoder {
         self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
 
-    /// Returns the marks to show on every page, with those of the given program first.
+    /// Returns the marks that every page shows. Marks of the given program come first.
     pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<Mark> = self.marks();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
@@ -90,7 +90,7 @@ impl Encoder {
         document.body.get::<InterbusProfile>()
     }
 
-    /// Returns the profile with its edits applied, or `None` for a connected encoder.
+    /// Returns the profile with the edits applied, or `None` if this is a connected encoder.
     pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
@@ -104,7 +104,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, or `None` if nothing has been read.
+    /// Returns the serial number, or `None` if it is unknown.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -115,7 +115,7 @@ impl Encoder {
         self.record.last().and_then(|reading| reading.mode).or_else(read)
     }
 
-    /// Returns the context needed to decode IN words.
+    /// Returns the facts that determine the meaning of an IN word.
     pub fn known(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => EncoderMode::Velocity,
@@ -129,7 +129,7 @@ impl Encoder {
         self.staged.device().and_then(|image| image.shift)
     }
 
-    /// Returns the latest position in steps, or `None` if the last word does not contain one.
+    /// Returns the latest position in steps, or `None` if the last word does not contain it.
     pub fn position(&self) -> Option<u32> {
         self.record.last().and_then(WordReading::position)
     }
@@ -139,13 +139,13 @@ impl Encoder {
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// Returns whether the user has confirmed that the machine stands still. A virtual encoder moves no machine and
-    /// needs no confirmation.
+    /// Returns whether the machine stands still according to the user. A virtual encoder has no machine, so it needs no
+    /// confirmation.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()
     }
 
-    /// Returns whether the user must confirm that the machine stands still before continuing.
+    /// Returns whether the user has to confirm the standstill of the machine before the encoder may be disturbed.
     pub fn needs_standstill(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
@@ -154,7 +154,7 @@ impl Encoder {
         self.stopped = stopped;
     }
 
-    /// Returns the number of steps in the measuring range, including edits.
+    /// Returns the number of steps in the edited measuring range.
     pub fn range(&self) -> u32 {
         self.staged.wanted().map_or(0, EditedValues::range)
     }
@@ -167,12 +167,12 @@ impl Encoder {
         self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
     }
 
-    /// Returns how many of the eight programs have been read.
+    /// Returns the number of programs that have been read.
     pub fn known_program_count(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
     }
 
-    /// Returns the memory's write cycle count as recorded on this computer, excluding stores that cannot be counted.
+    /// Returns the number of stores recorded on this computer. Stores by other programs are not included.
     pub fn stores(&self) -> Option<u64> {
         self.session.cycles
     }
@@ -189,7 +189,7 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// Adopts the results of a survey. Edits are kept unless they belong to another encoder.
+    /// Updates the encoder with the result of a survey. Edits are kept unless they belong to another encoder.
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_different_device(&survey.identity) {
             self.handle_device_replacement(&survey.identity.serial_number, services);
@@ -210,7 +210,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Returns whether the identity belongs to an encoder other than the one last read.
+    /// Returns whether the identity belongs to a different encoder than the last one read.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }

@@ -1,4 +1,4 @@
-//! Events from the line: results of jobs, live words, and loss of the connection.
+//! Events of the session, which are results of jobs, received words and the loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -20,8 +20,7 @@ use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
-    /// Whether live polling starts enabled. It does not, since parameters and position share a word that a control
-    /// system may be reading.
+    /// Polling is initially off, since a control system may be reading the same word.
     const STARTS_LIVE: bool = false;
     type Edits = Edits;
     type SessionHandle = Option<Motor>;
@@ -66,7 +65,7 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// Reads a word for display, unless polling already delivers words.
+    /// Reads the present word, unless polling already does.
     fn refresh_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);
@@ -113,7 +112,7 @@ impl SessionEvents for Encoder {
             }
             InterbusOutput::Programs(programs, shift) => {
                 self.staged.refresh_programs(&programs, Some(shift));
-                // Reading them may have cost stores.
+                // The job may have cost stores.
                 self.list_backups(services);
                 self.refresh_word(services);
             }
@@ -131,7 +130,7 @@ impl SessionEvents for Encoder {
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
             InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
             InterbusOutput::Committed(committed) => self.committed(*committed, services),
-            // Only the command line requests these.
+            // Only the command line runs these jobs.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
         }
     }
@@ -140,7 +139,7 @@ impl SessionEvents for Encoder {
         words::is_silence(error)
     }
 
-    /// Discards the review and the confirmation that the machine stands still.
+    /// Discards the review and the confirmed standstill.
     fn forget_requests(&mut self) {
         self.set_stopped(false);
         self.forget_plan();
@@ -150,7 +149,7 @@ impl SessionEvents for Encoder {
         self.handle_interrupted_write(how, texts)
     }
 
-    /// Submits a job. Jobs that replace the position or switch outputs are submitted only if the machine stands still.
+    /// Submits a job. If the job disturbs the machine, it is only submitted at standstill.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::disturbs_polling(&job) && !self.is_stopped() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));

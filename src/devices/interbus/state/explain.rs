@@ -1,4 +1,4 @@
-//! Texts for an INTERBUS encoder: job errors and session messages.
+//! Texts for job errors and session messages of an INTERBUS encoder.
 
 mod check;
 mod entry;
@@ -22,7 +22,7 @@ use crate::devices::interbus::procedures::{Error, ExpectedWord, ImplausibleValue
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
-/// Returns the texts for a job that ended early: one or more sentences, each of which may be on its own line.
+/// Returns the sentences that describe why a job ended early. Each may be on a separate line.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -34,12 +34,12 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, if it can no longer be used for requests.
+/// Returns why the connection was lost, or `None` if it can still be used.
 pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
 
-/// Returns whether the error means that the link is open but nothing answers.
+/// Returns whether the link is open but the gateway does not reply.
 pub fn is_silence(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
@@ -123,7 +123,7 @@ fn time_out(awaited: ExpectedWord) -> Text {
     })
 }
 
-/// Returns why an encoder sends an error word, and what to do.
+/// Returns the reason for an error word and a remedy.
 pub fn refusal(error: ErrorWord) -> Text {
     TEXTS.text(match (error.code.get(), error.data.get()) {
         (1, _) => "ib_refused.data",
@@ -150,7 +150,7 @@ pub fn implausible(why: ImplausibleValue) -> Text {
     }
 }
 
-/// Returns the possible states of an encoder that could not be returned to operation, as part of a sentence.
+/// Returns the possible state of an encoder that could not be returned to operation. The text is part of a sentence.
 fn standing(standing: &LeftState) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
     let state = TEXTS.text(id).with("out", word(standing.out));

@@ -1,4 +1,4 @@
-//! Job names, and which jobs disturb a running machine.
+//! Names of jobs, and their effect on a running machine.
 
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
@@ -22,7 +22,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
     }
 }
 
-/// Returns whether the job removes the position or switches outputs, so that the machine must stand still.
+/// Returns whether a job interrupts the position or switches outputs. The machine must stand still for such a job.
 pub(super) fn disturbs_polling(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

@@ -1,4 +1,4 @@
-//! INTERBUS as a kind of device for the studio, before a device is open.
+//! INTERBUS as a kind of device that the studio offers.
 
 use super::staged::Staged;
 use super::{Encoder, InterbusForm};

@@ -1,4 +1,4 @@
-//! State of the INTERBUS tab: data known about an encoder, edits, and its cams as a chart. Complete without a window.
+//! State of the INTERBUS tab, with the values of an encoder, its edits and its cams. It does not require a window.
 
 mod act;
 mod action;
@@ -42,7 +42,7 @@ pub use staged::{Edit, EditError, EditedValues, Mark, Staged, ValueId};
 pub use table::Import;
 
 pub enum Done {
-    /// The outcome of reading a cam table file.
+    /// A cam table file was read.
     Read(PathBuf, Result<String, FileError>),
     Written(PathBuf, Result<(), FileError>),
 }

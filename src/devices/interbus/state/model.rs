@@ -57,7 +57,7 @@ impl DeviceModel for Encoder {
 
     fn read_device(&mut self, services: &mut Services) {
         if self.try_submit(InterbusJob::Survey, services) {
-            // In a real encoder each of them may cost a write cycle; the page of the cams reads one on request.
+            // Reading a program of a real encoder may cost a store, so the cams page reads it on request.
             self.read_after = if self.session.is_virtual() { self.known_programs() } else { Vec::new() };
         }
     }
@@ -68,7 +68,8 @@ impl DeviceModel for Encoder {
     }
 
     fn ask_where_to_save(&mut self, services: &mut Services) {
-        // Before asking for a file name: reading for a file selects cam programs. Data already read need no reading.
+        // This is checked before the user enters a file name, since saving selects cam programs. Known values need no
+        // reading.
         if self.needs_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {

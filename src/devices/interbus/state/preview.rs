@@ -1,24 +1,24 @@
-//! Cams of the encoder, compiled to check whether the outputs in every word match them.
+//! Comparison of the outputs in received words with the cam programs of the encoder.
 
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CompiledPrograms, Program, ProgramNumber, StartupMode, Value};
 
-/// Cam programs as read, and how well the reported outputs agree with them.
+/// Cam programs of the encoder, and the number of words whose outputs match them.
 #[derive(Clone, Debug)]
 pub struct Preview {
     programs: [Option<Program>; ProgramNumber::COUNT],
     compiled: CompiledPrograms,
-    /// Number of words whose outputs match the program at their position.
+    /// Number of words whose outputs match their program.
     pub same: u64,
     pub other: u64,
-    /// Last word whose outputs differ from the program.
+    /// The latest word whose outputs differ from its program.
     pub last: Option<OutputMismatch>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputMismatch {
     pub position: u32,
-    /// Outputs reported by the encoder: bit i for cam i.
+    /// Outputs in the word of the encoder, with bit i for cam i.
     pub own: u8,
     pub expected: u8,
 }
@@ -35,15 +35,14 @@ impl Preview {
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
-    /// Adopts the encoder's programs. The comparison restarts if they have changed.
+    /// Sets the programs of the encoder. The comparison starts again if they have changed.
     pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
             *self = Preview::of(*programs);
         }
     }
 
-    /// Compares the outputs in a word with those of its program, provided that the outputs, program and position are
-    /// known.
+    /// Compares the outputs of a word with the program at its position. Words without outputs or position are ignored.
     pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);

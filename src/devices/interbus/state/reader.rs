@@ -1,21 +1,21 @@
-//! Decoder for words typed by the user, for example from a PLC monitor or a note. Requires no device.
+//! Decoder for words that the user has typed, for example from a PLC monitor. It needs no device.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{EncoderMode, ReadOutNumber, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
-/// Direction of a word and encoder class.
+/// Source of a word, which is its direction and the class of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordSource {
-    /// From a K3 encoder.
+    /// IN word of a K3 encoder.
     #[default]
     In,
-    /// To a K3 encoder.
+    /// OUT word to a K3 encoder.
     Out,
-    /// 16-bit word from a K1 encoder.
+    /// IN word of a K1 encoder, which has 16 bits.
     K1,
-    /// From a K2 encoder.
+    /// IN word of a K2 encoder.
     K2,
 }
 
@@ -47,7 +47,7 @@ impl WordSource {
 pub struct Reading {
     pub source: WordSource,
     pub mode: EncoderMode,
-    /// The value being read out, if any.
+    /// Read-out that the encoder is sending, if any.
     pub read_out: Option<ReadOutNumber>,
     pub shift: WindowShift,
 }
@@ -60,15 +60,15 @@ impl Default for Reading {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodedWord {
-    /// As entered.
+    /// Word as typed.
     pub word: String,
-    /// Meaning of the word, or the reason why the entry is not a word.
+    /// Meaning of the word, or a message if the entry is not a word.
     pub meaning: Result<Text, Text>,
     pub warning: Option<Text>,
 }
 
 impl Reading {
-    /// Decodes words separated by blanks or commas, which may be written with `0x` or `h`.
+    /// Decodes words that blanks or commas separate. They may have the prefix `0x` or the suffix `h`.
     pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.line(word)).collect()
@@ -91,7 +91,7 @@ impl Reading {
         let (meaning, warning) = match self.source {
             WordSource::Out => (word_meaning::out(number, self.mode), None),
             WordSource::In => (word_meaning::word_text(number, &known), word_meaning::unexpected_bits(number)),
-            // Four digits.
+            // A K1 word has four digits.
             WordSource::K1 => single(Single::parse_k1(number as u16)),
             WordSource::K2 => single(Single::parse_k2(number)),
         };

@@ -1,5 +1,4 @@
-//! Recording of an INTERBUS encoder while its IN word is read: positions according to its gear, reported speed, and cam
-//! outputs.
+//! Recording of the positions, the speed and the cam outputs while the IN word is polled.
 
 use crate::devices::interbus::state::TEXTS;
 
@@ -12,7 +11,7 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
 
-/// Data that an encoder sends instead of its position, or in addition to it.
+/// A value that an encoder sends instead of its position or in addition to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RecordedValue {
     Speed,
@@ -31,7 +30,7 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// Adds new readings; `dropped` is the number of readings that arrived too late to be recorded.
+    /// Adds new readings. `dropped` is the number of readings that could not be recorded in time.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.record_dropped(dropped);
         for reading in readings {
@@ -40,7 +39,7 @@ impl Record {
         }
     }
 
-    /// Keeps the first word without adding it to a trace, since the word may not be a position.
+    /// Sets the latest reading without recording it, since it may not contain a position.
     pub(super) fn observe_reading(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
@@ -63,7 +62,7 @@ impl Record {
             }
             _ => self.track.watch(&[]),
         }
-        // A position that is not sent, or only in part, is not missing.
+        // A position counts as missing only if the mode transmits it completely.
         let is_sent = reading.mode != Some(StartupMode::Velocity);
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {
@@ -87,7 +86,6 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Discards the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;

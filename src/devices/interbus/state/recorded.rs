@@ -1,4 +1,4 @@
-//! Drafts stored in users' files are read and written unchanged.
+//! Test that drafts in files of users are read and written without a change.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::interbus::jobs::Interbus;

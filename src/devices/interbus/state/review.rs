@@ -1,4 +1,4 @@
-//! Review of a write to an INTERBUS encoder: permits, warnings and cost of its plan.
+//! Review of a write to an INTERBUS encoder, with the permits, warnings and cost of the plan.
 
 use crate::app::explain::plain;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
@@ -80,7 +80,8 @@ impl Reviewable for Interbus {
     }
 
     fn reaches_wear_limit(prepared: &Prepared) -> bool {
-        // Above the manufacturer's limit the user must confirm once more, also if it would otherwise be refused.
+        // Above the manufacturer's limit, the user has to confirm again. This also applies to a plan that is refused
+        // unless forced.
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }
 

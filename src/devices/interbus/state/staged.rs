@@ -1,12 +1,12 @@
-//! Values of a K3 encoder or a profile, and the edited ones. Nothing is written to an encoder here; a plan is made from
-//! the difference.
+//! Edited values of a K3 encoder or a profile, and the values on which they are based. Nothing is written to an encoder
+//! here. A plan is made from the differences.
 //!
-//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
-//! whatever the encoder now contains, and all others follow the encoder, in earlier states as well. A cam program that
-//! was not read cannot be edited, since the cost of a change is unknown; earlier edits of it wait until it is read. A
-//! profile can gain values that it did not have.
+//! Every edit creates a complete new state, to which undo can return. Edits are kept if the encoder is read again. All
+//! other values then follow the encoder, also in the states of undo. A cam program cannot be edited before it has been
+//! read, since the cost of a change is unknown. Earlier edits of it wait until it is read. A profile can gain values
+//! that it did not contain.
 //!
-//! Positions are steps, from 0 to one below the measuring range.
+//! Positions are in steps, from 0 to the measuring range minus one.
 
 mod difference;
 mod draft;
@@ -26,44 +26,44 @@ use crate::app::{SteppedEdits, SteppedParts};
 use crate::devices::interbus::profile::{CamNames, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
-/// All editable values in their edited state.
+/// All values that can be edited, in their edited state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EditedValues {
     pub image: Image,
-    /// Names of programs and cams, which no encoder stores. Two cams of a program with the same name are pulses on one
-    /// track.
+    /// Names of programs and cams, which an encoder does not store. Two cams of a program with the same name are pulses
+    /// of one track.
     pub names: CamNames,
 }
 
-/// Source of the values with which the edits are compared.
+/// Source of the base values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// Encoder, for which a value that was not read is unknown.
+    /// Encoder. A missing value was not read and is unknown.
     #[default]
     Encoder,
-    /// Profile, for which a missing value is not in the profile.
+    /// Profile. A missing value is not part of the profile.
     Profile,
 }
 
-/// The base values, the edited values, and the undo and redo steps.
+/// The base values, the edited values and the states of undo and redo.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     base_source: BaseSource,
-    /// Values of the encoder or the profile.
+    /// Values of the encoder or the profile, without edits.
     base: Option<EditedValues>,
     wanted: Option<EditedValues>,
     history: History<EditedValues>,
-    /// Earlier edits of items that have not been read yet.
+    /// Earlier edits of values that have not been read yet.
     waiting: Vec<SavedEdit>,
 }
 
 impl EditedValues {
-    /// Creates the edits without names.
+    /// Creates values without names.
     pub fn of(image: Image) -> Self {
         EditedValues { image, names: CamNames::default() }
     }
 
-    /// Returns the number of steps in the measuring range. All positions are below it.
+    /// Returns the number of steps in the measuring range.
     pub const fn range(&self) -> u32 {
         self.image.parameters.steps
     }
@@ -83,14 +83,14 @@ impl EditedValues {
 }
 
 impl Staged {
-    /// Creates the edits of a profile, to which missing values can also be added.
+    /// Creates the edits of a profile. Values that the profile lacks can be added.
     pub fn for_profile(image: Image, names: CamNames) -> Self {
         let base = EditedValues { image, names };
         Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
-    /// Adopts the new content of the profile. If it equals the edited values, it was saved, and the undo steps are
-    /// kept. Otherwise another program has written it, and only the values edited here keep their edits.
+    /// Sets the content of a saved profile as the base. If it equals the edited values, the states of undo are kept.
+    /// Otherwise another program has changed the profile, and only the edits are kept.
     pub fn saved(&mut self, image: Image, names: CamNames) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
@@ -104,7 +104,8 @@ impl Staged {
         self.take_draft(edits);
     }
 
-    /// Adopts a reading of the encoder. Values missing in the reading are kept, as are edits and their undo steps.
+    /// Sets the values read from the encoder as the base. Values that were not read are kept, and so are edits and the
+    /// states of undo.
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {
@@ -119,7 +120,7 @@ impl Staged {
         self.refresh(Image::of(parameters));
     }
 
-    /// Adopts a reading of cam programs and the window shift. Does nothing before the parameters have been read.
+    /// Adds cam programs and the window shift to the base. It has no effect before the parameters have been read.
     pub fn refresh_programs(&mut self, programs: &[(ProgramNumber, Program)], shift: Option<WindowShift>) {
         let Some(base) = &self.base else { return };
         let mut image = Image { shift, ..Image::of(base.image.parameters) };
@@ -135,7 +136,7 @@ impl Staged {
         matches!(self.base_source, BaseSource::Encoder)
     }
 
-    /// Adopts new values of the encoder or the profile.
+    /// Sets the base values and transfers the edits to them.
     fn rebase(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
@@ -146,17 +147,17 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// Discards all values and edits before another encoder is used.
+    /// Discards all values and edits, since another encoder is used.
     pub fn clear(&mut self) {
         *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
 
-    /// Returns the values of the encoder or the profile, or `None` if nothing was read.
+    /// Returns the base values, or `None` if nothing was read.
     pub fn base(&self) -> Option<&EditedValues> {
         self.base.as_ref()
     }
 
-    /// Returns the values of the encoder or the profile, or `None` if nothing was read.
+    /// Returns the base values without names, or `None` if nothing was read.
     pub fn device(&self) -> Option<&Image> {
         self.base.as_ref().map(|base| &base.image)
     }
@@ -166,24 +167,24 @@ impl Staged {
         self.wanted.as_ref()
     }
 
-    /// Returns a program with its edits, or `None` if it was not read or is not in the profile.
+    /// Returns an edited program, or `None` if it was not read or is not in the profile.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.wanted.as_ref()?.image.program(number)
     }
 
-    /// Makes an edit as a single undo step, and returns whether anything changed.
+    /// Applies an edit as a single undo step. Returns whether it has changed a value.
     ///
     /// # Errors
-    /// The reason why the edit is not possible; nothing is changed.
+    /// Returns the reason if the edit is not possible. Nothing is changed in this case.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
     }
 
-    /// Returns the values that an edit would result in, without making it, for display during a drag.
+    /// Returns the values after an edit, which is not applied. They are displayed during a drag.
     ///
     /// # Errors
-    /// The reason why the edit is not possible.
+    /// Returns the reason if the edit is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
         edit::edited(wanted, edit, self.base_source)

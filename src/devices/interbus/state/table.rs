@@ -1,4 +1,4 @@
-//! Cam tables: reading from a file or pasted text, preview before adoption, and writing.
+//! Import of cam tables from a file or pasted text, and their export.
 
 use std::path::PathBuf;
 
@@ -12,14 +12,14 @@ use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::store::{read_file, write_atomically};
 
-/// A table that was read but has not been applied yet.
+/// A cam table that was read but not applied yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub origin: Text,
-    /// Table content in the present machine units.
+    /// Content of the table. Its positions are read in the present unit of the scale.
     pub table: CamTable,
     text: String,
-    /// Program for rows that do not specify one.
+    /// Program of the rows that do not name one.
     program: ProgramNumber,
 }
 
@@ -42,7 +42,7 @@ impl Encoder {
         TableOptions { scale: self.scale, range: self.range(), program }
     }
 
-    /// Reparses the table after a change of the units or the measuring range.
+    /// Parses the table again after the scale or the measuring range has changed.
     pub(super) fn reload_table(&mut self) {
         let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
         let options = self.options(program);
@@ -51,8 +51,8 @@ impl Encoder {
         }
     }
 
-    /// Applies the imported table to the edits, or discards it. A table with problems stays open with the reason shown,
-    /// since omitting a line would switch its cam off.
+    /// Adds the imported table to the edits, or discards it. A table with problems is not added, since the cam of an
+    /// omitted line would be switched off.
     pub(super) fn finish_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

@@ -1,4 +1,4 @@
-//! Meaning of frames in the trace. It depends on the mode of the encoder, which preceding OUT words have selected.
+//! Meaning of frames in the trace. It depends on the mode of the encoder, which earlier OUT words have selected.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};
@@ -8,10 +8,10 @@ use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder for a sequence of frames, which must be given in transmission order.
+/// Decoder for a sequence of frames in the order of their transmission.
 #[derive(Debug)]
 pub(super) struct Meaning {
-    /// Order in which the halves of a word are transmitted.
+    /// Order of the two halves of a word.
     pub(super) order: WordOrder,
     pub(super) shift: Option<WindowShift>,
     mode: EncoderMode,
@@ -20,7 +20,7 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// Creates the decoder for a new link, which starts in position mode.
+    /// Creates a decoder for a new link. It assumes position mode.
     pub(super) fn new(order: WordOrder) -> Self {
         Meaning { order, shift: None, mode: EncoderMode::Position, read_out: None, requested: Vec::new() }
     }
@@ -29,7 +29,7 @@ impl Meaning {
         self.mode = mode;
     }
 
-    /// Explains a frame. The explanation of an intact frame without a word is empty.
+    /// Explains a frame. The explanation is empty if an intact frame contains no word.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
@@ -45,7 +45,7 @@ impl Meaning {
         }
     }
 
-    /// Decodes a reply. An error word in the reply counts as reported by the encoder.
+    /// Explains a reply. An error word is marked as an error that the encoder reports.
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let meaning = self.word_meaning_texts(Direction::Received, bytes);
         let is_error = match process_data_word(false, bytes, self.order) {
@@ -70,7 +70,7 @@ impl Meaning {
         }
     }
 
-    /// Parses a sent word in the known mode, or else in the mode in which it is legal.
+    /// Parses an OUT word in the known mode. If it is illegal there, a mode that allows it is assumed.
     fn command(&self, word: u32) -> Command {
         let readings = || Command::readings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))

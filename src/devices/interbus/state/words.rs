@@ -27,7 +27,7 @@ pub fn setting(parameter: Parameter, number: u32) -> Text {
     }
 }
 
-/// Returns the name of a mode, worded for use in a sentence.
+/// Returns the name of a mode as part of a sentence.
 pub fn mode(mode: EncoderMode) -> Text {
     TEXTS.text(match mode {
         EncoderMode::Position => "ib_mode.position",
@@ -52,7 +52,7 @@ pub fn read_out_value(value: ReadOutValue) -> Text {
     }
 }
 
-/// Tenths of a degree.
+/// Formats a temperature that is given in tenths of a degree Celsius.
 pub fn celsius(tenths: i32) -> Text {
     TEXTS.text("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
 }
@@ -69,7 +69,7 @@ pub fn flags(flags: Flags) -> Text {
     TEXTS.text("ib_flags.all").with_list("flags", all)
 }
 
-/// Explains an LED combination and what to do about it.
+/// Returns the meaning of an LED combination and a remedy.
 pub fn lamps(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::LedState::{Blinking, On};
     let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
@@ -94,11 +94,11 @@ pub fn range(steps: u32, turns: u32) -> Text {
     TEXTS.text(id).with("steps", steps).with("turns", turns)
 }
 
-/// Formats a read-out value for display beside its name.
+/// Formats the value of a read-out.
 pub fn read_value(what: ReadOutNumber, value: Value) -> Text {
     match (what.number(), Direction::from_code(value.get())) {
         (0x3, Some(own)) => direction(own),
-        // A counted number or an identifier; its bits have no meaning of their own.
+        // These values are counted numbers or identifiers, so their bits need no explanation.
         (0x0..=0x7, _) => plain(value.get()),
         _ => read_out_value(what.value(value)),
     }

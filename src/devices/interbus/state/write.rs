@@ -1,4 +1,4 @@
-//! Writing to an encoder: edits or a profile as a request, its jobs, and what is read again afterwards.
+//! Writing of edits or a profile to an encoder, its jobs, and the values that are read again afterwards.
 
 use super::cams::words;
 use super::encoder::Encoder;
@@ -15,8 +15,8 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Returns the edited values. Only edited programs are included, since planning selects each included program to
-    /// read it. If the measuring range shrinks, all known programs are included, because their cams must stay within
+    /// Returns the edited values. Only edited programs are included, since planning reads and thereby selects each of
+    /// them. If the measuring range becomes shorter, all known programs are included, since their cams must be within
     /// the new range.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
@@ -110,7 +110,7 @@ impl HasProfile for Encoder {
     }
 }
 
-/// Returns the programs that a plan changes, or `None` if it may change any of them.
+/// Returns the programs that a plan changes, or `None` if it may change all of them.
 fn changed_programs(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
     let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
     (!plan.ops.contains(&Op::Default)).then_some(of_programs)

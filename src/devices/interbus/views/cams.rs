@@ -1,4 +1,4 @@
-//! The cams page: the open program of eight cams as lanes, ring and table, and the cam output word of the encoder.
+//! The cams page, which shows the cams of a program as lanes, ring and table, and the cam output word of the encoder.
 
 mod bar;
 mod chart;
@@ -65,7 +65,6 @@ pub(super) fn page_ui(
     );
 }
 
-/// Draws a placeholder for a program that has not been read, with a button to read it.
 fn unread_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;

@@ -1,4 +1,4 @@
-//! Connection form of an INTERBUS encoder, behind a gateway or virtual.
+//! Connection form of an INTERBUS encoder.
 
 use egui::Ui;
 
@@ -62,7 +62,6 @@ impl TypedConnectForm for InterbusConnectForm {
     }
 }
 
-/// Draws the settings that locate the words in the gateway.
 fn registers_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::link_entries();
     typed(ui, theme, say, registers, &mut form.typed);

@@ -1,4 +1,4 @@
-//! The encoder page: identity, present word and wiring.
+//! The encoder page with the identity, the present word and the wiring.
 
 use egui::{RichText, Ui};
 
@@ -89,7 +89,6 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-/// Draws the present word and its content: position, speed or cam outputs.
 fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {

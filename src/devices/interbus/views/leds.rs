@@ -1,4 +1,4 @@
-//! Meaning of the LEDs on the encoder, and identification codes of its interfaces.
+//! Meaning of the LEDs on the encoder, and the identification codes of its interfaces.
 
 use egui::{RichText, Ui};
 
@@ -19,7 +19,6 @@ impl Default for LedsUiState {
     }
 }
 
-/// Width of an LED's button.
 const LAMP: f32 = 92.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
@@ -52,7 +51,7 @@ fn lamps_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     });
 }
 
-/// Draws a clickable LED. Each click switches from dark to lit and, if possible, to blinking.
+/// Draws a clickable LED. Each click selects the next state, which is off, on or, if `blinks` is set, blinking.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {

@@ -1,4 +1,4 @@
-//! The large display of an INTERBUS encoder: its position, its speed, or the outputs of a program.
+//! The large display of an INTERBUS encoder with its position, its speed or the outputs of a program.
 
 use egui::{RichText, Ui};
 
@@ -11,9 +11,8 @@ use crate::ui::Theme;
 use crate::ui::controls::{connection_dot, row};
 use crate::ui::panels::live::{LOW, mark, raw_row};
 
-/// Width required for eight output indicators side by side.
+/// Width of eight output indicators side by side.
 const LAMPS: f32 = 280.0;
-/// Height of a row of output indicators.
 const LAMP: f32 = 16.0;
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
@@ -39,7 +38,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let place = last.and_then(WordReading::place);
     let is_position = last.is_none_or(|reading| reading.rpm().is_none() && reading.cams().is_none());
     if ui.available_height() < LOW {
-        // In a low window the plot needs the space.
+        // A low window leaves only one line for the words, since the plot needs the space.
         let place = place
             .map(|own| format!("{} {} · {}° · ", theme.say("live.turns"), own.turns, theme.number(own.degrees, 2)));
         let words = format!("{}{word}", place.unwrap_or_default());
@@ -66,7 +65,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(theme.caption(theme.words(&text)));
         let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
         ui.scope(|ui| {
-            // Indicators are not interactive.
+            // The indicators are not interactive, so they may be lower than a button.
             ui.spacing_mut().interact_size.y = LAMP;
             for first in (0..8).step_by(beside) {
                 ui.horizontal(|ui| {

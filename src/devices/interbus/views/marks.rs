@@ -1,5 +1,5 @@
-//! Problems of the edited values, shown below every page, where they do not move anything clickable: a smaller
-//! measuring range leaves cams beyond it, which are edited on another page.
+//! Problems of the edited values below every page. They do not move anything clickable there. An edit on one page may
+//! cause problems on another, such as cams beyond a shorter measuring range.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::{paragraph, problem};
 use crate::ui::{Theme, icons, page};
 
-/// Draws the marks, starting with those of the shown program, and the reason why the last edit was refused.
+/// Draws the marks and the reason why the last edit was refused. Marks of the program `shown` come first.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.visible_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {

@@ -1,4 +1,4 @@
-//! The INTERBUS tab: one page per task.
+//! The INTERBUS tab with one page for each task.
 
 mod cams;
 mod connect_form;
@@ -23,7 +23,7 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Position parameters, and the words with which they are set.
+    /// Position parameters and the words that set them.
     Parameters,
     Cams,
     Diagnosis,
@@ -41,13 +41,13 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page has a bar for writing its edits.
+    /// Returns whether the page has a bar for writing its edits to the encoder.
     fn has_edit_bar(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
     }
 }
 
-/// UI state of a session's tab between frames, such as text buffers and selections.
+/// State of the tab that is kept between frames, such as typed text and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,
@@ -99,7 +99,7 @@ impl TypedDeviceView for InterbusView {
         actions: &mut Vec<Action>,
     ) {
         if page.has_edit_bar() {
-            // Fixed while the rest scrolls.
+            // The bar stays in place while the page scrolls.
             let around = page::side_margin(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
@@ -134,7 +134,6 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-/// Returns a message from the INTERBUS catalogue or the common one, in the language of the window.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

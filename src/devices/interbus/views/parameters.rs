@@ -1,4 +1,5 @@
-//! Parameters and their edits, preset, EEPROM wear, and the words of the handshake.
+//! The parameters page with the parameters, their edits, the preset, the wear of the EEPROM and the words of the
+//! handshake.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Entered text that has not taken effect yet.
+/// Typed text that has not been applied yet.
 #[derive(Default)]
 pub(super) struct EncoderParametersUiState {
     drafts: BTreeMap<&'static str, Option<(String, Option<Text>)>>,
@@ -28,7 +29,6 @@ pub(super) struct EncoderParametersUiState {
 }
 
 const NUMBER: f32 = 112.0;
-/// Height of the word list.
 const WORDS: f32 = 240.0;
 
 pub(super) fn page_ui(
@@ -173,7 +173,6 @@ fn preset_ui(
     });
 }
 
-/// Draws the number of EEPROM stores counted on this computer.
 fn wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {

@@ -9,9 +9,9 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, folding_card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Minimum and maximum width of a name column.
+/// Minimum and maximum width of a column of names.
 const NAMES: [f32; 2] = [120.0, 168.0];
-/// Width of a chip register's cell.
+/// Width of a cell with a chip register.
 const REGISTER: f32 = 132.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {

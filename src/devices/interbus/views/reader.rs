@@ -1,4 +1,4 @@
-//! The decoder for typed words.
+//! Decoder for words that the user types.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! Confirmation that the machine is at standstill, required before anything that would disturb a running machine.
+//! Confirmation of the standstill, which is required before the encoder of a machine may be disturbed.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,6 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Draws the standstill confirmation and the actions that it permits.
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if !encoder.needs_standstill() {
         return;

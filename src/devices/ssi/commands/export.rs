@@ -35,7 +35,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
         SsiFormat::Svg => frame_picture(layout, None, title, &english).svg(),
         SsiFormat::Profile => document(chosen.profile).emit(),
         SsiFormat::Timing => {
-            // Defaults come from the profile.
+            // The default of each option comes from the profile.
             let own = chosen.profile.reads();
             let reads = Reads {
                 clock_hz: clock.map_or(own.clock_hz, f64::from),

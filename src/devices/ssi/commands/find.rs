@@ -1,4 +1,4 @@
-//! `ssi find`: lists the layouts that fit recorded frames, best first, and what would distinguish them.
+//! `ssi find`: lists the layouts that fit recorded frames, with the best first, and states what would distinguish them.
 
 use serde_json::{Value as Json, json};
 
@@ -12,14 +12,14 @@ use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
 
-/// Maximum bit count, assumed for hexadecimal frames if the count is not specified.
+/// Maximum number of bits in a frame. It is assumed for hexadecimal frames if the number is not given.
 const MOST_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFindArgs { file, clocks }: &SsiFindArgs) -> Result {
     let families = families(output)?;
     let Frames { clocks: read, frames, are_numbers, .. } = source::read(output, file, clocks.unwrap_or(MOST_CLOCKS))?;
     let clocks = match clocks {
-        // Hex digits do not tell how many bits come before the highest 1.
+        // Hexadecimal digits do not show how many zeros precede the highest 1.
         None if are_numbers => {
             let any = frames.iter().fold(1, |any, frame| any | frame);
             let clocks = (u64::BITS - any.leading_zeros()) as u8;
@@ -84,7 +84,7 @@ fn text(search: &Search, families: &Families) -> String {
     format!("{}{verdict}\n{next}", lines.text())
 }
 
-/// Returns the most probable layout of a class.
+/// Returns the most probable layout of a class as one word.
 fn spec_text(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec_text(families))
 }
@@ -95,7 +95,7 @@ fn evidence_text(class: &Class) -> String {
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns which motion would distinguish the remaining layouts, or `None` if no doubt remains.
+/// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal_text());

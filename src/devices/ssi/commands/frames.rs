@@ -13,7 +13,7 @@ use crate::devices::ssi::state::explain as words;
 
 pub(super) fn decode(output: &Output, SsiDecodeArgs { layout: spec, frames }: &SsiDecodeArgs) -> Result {
     let layout = choose(output, spec)?.layout;
-    // All are checked before any is printed.
+    // All arguments are checked before any frame is printed.
     let frames: Vec<Vec<u64>> = frames.iter().map(|text| named(output, &layout, text)).collect::<Result<_>>()?;
     for frame in frames.into_iter().flatten() {
         let told = DecodedFrame::new(&layout, frame);
@@ -37,7 +37,7 @@ impl<'a> DecodedFrame<'a> {
         self.layout.is_valid(self.reading)
     }
 
-    /// Returns the position and its location, or `None` if the bits do not encode a position.
+    /// Returns the position and its location. Returns `None` if the bits do not represent a position.
     pub(super) fn place(&self) -> Option<(u64, Location)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.has(Flags::CODE);
@@ -93,7 +93,7 @@ impl<'a> DecodedFrame<'a> {
     }
 }
 
-/// Formats the bits grouped by field, e.g. `MT 000100100011  ST 10101011110000  ERROR 0`.
+/// Formats the bits in groups, one for each field, such as `MT 000100100011  ST 10101011110000  ERROR 0`.
 fn fields(layout: &Layout, frame: u64) -> String {
     let mut words: Vec<(String, String)> = Vec::new();
     for cell in layout.cells(frame) {
@@ -154,7 +154,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncodeArgs) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the position from `--position`, or from `--turns` and `--steps`; if both forms are given, they must agree.
+/// Returns the position given by `--position`, or by `--turns` and `--steps`. If both are given, they must agree.
 fn position(layout: &Layout, arguments: &SsiEncodeArgs) -> Result<u64> {
     let last = layout.coding().last();
     let range = layout.descriptor().range;
@@ -180,7 +180,7 @@ fn position(layout: &Layout, arguments: &SsiEncodeArgs) -> Result<u64> {
         (None, Location::Length { .. }) => Err(Failure::Usage("give --position".to_owned())),
         (None, Location::Shaft { turns: most, .. }) => {
             let turns = turns.as_deref().map_or(Ok(0), |text| number("turns", text, most))?;
-            // The last step of this turn: one before the next turn begins, or the last position of all.
+            // The last step of this turn is the one before the next turn, or the last position of the range.
             let begins = range.position(turns, 0).unwrap_or(0);
             let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
             let steps = steps.as_deref();

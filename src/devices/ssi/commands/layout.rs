@@ -1,5 +1,5 @@
-//! The layout given by `--layout`: a profile file, a family with its settings, an arbitrary frame in one word, or a
-//! LinuxCNC format string.
+//! The layout given by `--layout`: a profile file, a family with its settings, any frame in one word, or a LinuxCNC
+//! format string.
 
 use std::path::Path;
 
@@ -20,12 +20,12 @@ use crate::store::Store;
 pub(crate) struct Chosen {
     pub(crate) profile: SsiProfile,
     pub(crate) layout: Layout,
-    /// Timing of the layout's family, or `None` if no family is known.
+    /// Timing limits of the layout's family, or `None` if the family is unknown.
     pub(crate) times: Option<Times>,
     pub(crate) title: String,
 }
 
-/// Returns the layout of `--layout`, and prints points that the manual leaves open as remarks.
+/// Returns the layout given by `--layout`. Settings that the manual does not mention are printed as remarks.
 pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) -> Result<Chosen> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
@@ -39,7 +39,8 @@ pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) ->
     if is_file(spec, &families) { from_file(output, spec, &families) } else { of_family(output, spec, &families) }
 }
 
-/// Returns the encoder families, with the user's own before the built-in ones. Errors of unusable families are printed.
+/// Returns the encoder families. User-defined families replace built-in ones with the same key, and errors in their
+/// files are printed.
 pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
     let (families, broken) = read_families(&store);
@@ -49,8 +50,8 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     Ok(families)
 }
 
-/// Returns whether the specification names a file: by a path, by its extension, or because the file exists and no
-/// family has that name. Settings follow the first comma and may contain `/` in fractions.
+/// Returns whether the specification names a file. It does if it has a path or an extension, or if the file exists and
+/// no family has this name. Text after the first comma is ignored, because settings may contain `/` in fractions.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
@@ -80,13 +81,13 @@ fn from_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen>
         (None, None) => {}
     }
     let times = family.map(|family| family.times);
-    // An export goes to other people: not the folders of this computer.
+    // The title does not contain the folder, because exports are passed on to other people.
     let file = path.file_name().map_or_else(|| spec.to_owned(), |name| name.to_string_lossy().into_owned());
     let title = if profile.name.is_empty() { file } else { profile.name.clone() };
     Ok(Chosen { title, profile, layout, times })
 }
 
-/// Prints how a hand-written frame differs from its family.
+/// Prints the differences between the frame of a profile and the frames of its family.
 fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_for_frame(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {

@@ -1,4 +1,4 @@
-//! `position` and `status` of an SSI encoder behind an adapter.
+//! Commands `position` and `status` for an SSI encoder behind an adapter.
 
 use serde_json::{Value as Json, json};
 
@@ -16,7 +16,7 @@ use crate::devices::ssi::protocol::{FindingCounts, FrameFinding, Layout, Locatio
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
-/// Returns the layout, which must be given by the user.
+/// Returns the layout given by the user, or an error if there is none.
 fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen> {
     let Some(spec) = given.layout.clone() else {
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
@@ -57,8 +57,8 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     ended
 }
 
-/// Returns whether to report a finding. A position that looks like an idle line is reported only in the first word,
-/// since a moving encoder may pass such a position.
+/// Returns whether to report a finding. A position that looks like an idle line is reported only for the first word,
+/// because a moving encoder can pass such a position.
 fn is_reported(finding: &FrameFinding, is_first: bool) -> bool {
     is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
@@ -165,7 +165,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
     Ok(Done::Well)
 }
 
-/// Converts a finding to JSON, with its clock number, if any.
+/// Converts a finding to JSON. The result includes the clock number if the finding concerns a single clock.
 fn item(layout: &Layout, finding: &FrameFinding) -> Json {
     let clock = match finding {
         FrameFinding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),

@@ -1,4 +1,4 @@
-//! Commands for SSI encoders: `ssi` without an encoder, and commands for an encoder or its profile.
+//! Commands for SSI encoders: `ssi`, which needs no encoder, and the commands for an encoder or its profile.
 
 mod args;
 mod export;
@@ -92,7 +92,7 @@ impl ProfileCommands for SsiCommands {
 
 const SET: &str = "configure it with the manufacturer's tool";
 
-/// Command `ssi`, which works on frames without an encoder.
+/// The command `ssi`, which works with frames and needs no encoder.
 struct SsiCommand;
 
 impl CliCommand for SsiCommand {
@@ -113,7 +113,7 @@ impl CliCommand for SsiCommand {
     }
 }
 
-/// Returns the adapter before a virtual encoder that sends the frames of `--layout`.
+/// Creates a virtual adapter with an encoder that sends the frames of `--layout`.
 fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;
@@ -128,14 +128,14 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
         }
         None => AtAdapter::DELIVERED,
     };
-    // In place of the delivered one, which has the same settings.
+    // The encoder replaces the one with the factory settings, which is configured with the same keys.
     let others = attachable_kinds().iter().copied().filter(|device| device.keys() != encoder.keys());
     let devices: Vec<&dyn AttachableKind> = [&encoder as &dyn AttachableKind].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))
 }
 
-/// Refuses a command that SSI encoders do not have, and names the alternative.
+/// Returns an error for a command that SSI encoders do not have. The error names the alternative.
 fn refuse<T>(command: &str, instead: &str) -> Result<T> {
     Err(Failure::Usage(format!("{command} is not for {KIND} devices, which send only a position: {instead}")))
 }

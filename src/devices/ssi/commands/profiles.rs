@@ -1,4 +1,5 @@
-//! Profiles of SSI encoders: created from a layout, since the encoder does not report its own, and compared.
+//! Creation and comparison of SSI profiles. A profile is created from a layout, because the encoder does not report its
+//! own.
 
 use std::path::Path;
 
@@ -31,7 +32,7 @@ pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Res
     Ok(Done::Well)
 }
 
-/// Creates the document of a layout, without a time because the layout was not read from a device.
+/// Creates a profile document. It has no time stamp, because the layout was not read from a device.
 pub(super) fn document(profile: SsiProfile) -> ProfileDocument {
     ProfileDocument { saved: None, ..ProfileDocument::new(String::new(), Body::new(profile)) }
 }

@@ -15,7 +15,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Runner for a session with an adapter in front of an SSI encoder.
+/// Runner of jobs in a session with an SSI encoder.
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
@@ -32,8 +32,10 @@ impl Runs for Ssi {
     }
 }
 
-/// Opens the link and configures it for the layout. Clock and pause come from the link if specified, otherwise from the
-/// profile; violations of the encoder's timing are printed as remarks.
+/// Opens the link and configures it for the layout.
+///
+/// Clock and pause are taken from the link, or else from the profile. Violated timing limits of the encoder are printed
+/// as remarks.
 pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());

@@ -13,8 +13,8 @@ use crate::store::MAX_TEXT;
 /// Argument that selects standard input instead of a file or a frame.
 const INPUT: &str = "-";
 
-/// Reads frames from a file, or from standard input for `-`. Frames written as numbers have `clocks` bits; incomplete
-/// bursts cause a remark.
+/// Reads frames from a file, or from standard input if the path is `-`. A frame written as a number has `clocks` bits.
+/// Incomplete bursts are reported in a remark.
 pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     let frames = if path == Path::new(INPUT) {
         frames_of(&input()?, "standard input".to_owned(), clocks)
@@ -39,7 +39,7 @@ fn input() -> Result<String> {
     Ok(text)
 }
 
-/// Returns the frames that an argument specifies: a literal frame, `@FILE`, or `-` for standard input.
+/// Returns the frames given by an argument: a single frame, `@FILE`, or `-` for standard input.
 pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<u64>> {
     let path = match text.strip_prefix('@') {
         Some(path) => path,
@@ -59,7 +59,7 @@ pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<
     Ok(frames)
 }
 
-/// Parses the bits of a frame, right-justified.
+/// Parses a frame into right-justified bits.
 fn frame(layout: &Layout, text: &str) -> Result<u64> {
     parse_frame(text, layout.clocks()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),

@@ -1,11 +1,11 @@
-//! Families of encoders: user-defined ones first, then the built-in ones.
+//! The built-in and user-defined families of encoders.
 
 use crate::devices::ssi::protocol::{Families, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the encoder families, in which the user's own replace built-in ones with the same key, and a `FamilyError`
-/// for each unusable family.
+/// Returns the encoder families, with an error for each file that cannot be used. User-defined families replace
+/// built-in ones with the same key.
 pub fn families(store: &Store) -> (Families, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

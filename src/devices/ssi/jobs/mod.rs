@@ -1,4 +1,4 @@
-//! The SSI encoder behind an adapter as a device of a session, and its jobs. The encoder has no memory: nothing is ever
+//! The SSI encoder behind an adapter as a device of a session, with its jobs. The encoder has no memory, so nothing is
 //! written to it.
 
 mod families;
@@ -30,12 +30,12 @@ pub struct Ssi {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
-    /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read.
+    /// Identifies the adapter, switches on the supply of the encoder if requested, and configures the reading of words.
     Hello,
-    /// Changes how words are read from now on; a requested stream continues with the new settings.
+    /// Changes the settings for reading words. A running stream continues with the new settings.
     Set(ClockSettings),
     Read,
-    /// Runs the device check, which also compares the words with the layout.
+    /// Runs the device check, in which the words are compared with the layout.
     Check(Box<Layout>),
 }
 
@@ -47,7 +47,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// Progress step of a job; the only step is reading words.
+/// Step of a job. The only step is the reading of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -59,7 +59,7 @@ impl JobInterruption for Error {
     }
 }
 
-/// Longest interval at which words are streamed instead of requested singly.
+/// Maximum interval at which words are streamed. At longer intervals they are requested one by one.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {
@@ -75,7 +75,7 @@ impl Ssi {
 }
 
 impl Session<Ssi> {
-    /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process.
+    /// Creates a session on an open connection. `motor` is given for a virtual encoder in this process.
     pub fn for_adapter(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -95,7 +95,7 @@ impl Session<Ssi> {
         &self.device.station
     }
 
-    /// Returns the motor that turns the shaft, if the encoder runs in this process.
+    /// Returns the motor that turns the shaft of a virtual encoder in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -105,10 +105,10 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// Uninhabited, because SSI encoders have no messages apart from their words.
+    /// No values exist, because SSI encoders send nothing but words.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// Uninhabited, because SSI encoders have no values to watch apart from their words.
+    /// No values exist, because SSI encoders send nothing but words.
     type Watch = Infallible;
     type JobStep = JobStep;
 

@@ -12,7 +12,7 @@ use crate::store::Store;
 use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Checks a link to an SSI encoder without opening it.
+/// Checks a link to an SSI encoder, without opening the link.
 ///
 /// # Errors
 /// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
@@ -20,16 +20,16 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an SSI encoder: `bridge:` for an adapter in front of the encoder, `sim:` for a virtual one,
-/// `replay:` for a recording.
+/// Opens a link to an SSI encoder. The schemes are `bridge:` for an encoder behind an adapter, `sim:` for a virtual
+/// encoder, and `replay:` for a recording.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// See [`OpenError`]. Nothing has been sent in that case.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let (station, adapter) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    // The format of an adapter's serial port matters only behind a converter; it is the same for all adapters.
+    // The serial format matters only for an adapter behind a converter. It is the same for all adapters.
     let wire = open_bytes(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))
@@ -37,7 +37,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     Ok(Session::for_adapter(wire, clock, station, store, motor))
 }
 
-/// Parses the line settings and the virtual adapter, which matters only for `sim:` links.
+/// Parses the parameters of a link: the line settings, and the virtual adapter for a `sim:` link.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, LinkScheme::Sim | LinkScheme::Bridge | LinkScheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, bridge:, replay:"));

@@ -1,5 +1,5 @@
-//! Device check: adapter, encoder supply, and consecutive words compared with the layout, with a verdict for each item.
-//! Nothing is written: the encoder has no memory.
+//! Device check: the adapter, the encoder supply, and consecutive words compared with the layout. Each item has a
+//! verdict. Nothing is written, because the encoder has no memory.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,8 @@ use crate::devices::ssi::protocol::{Flags, FrameFinding as Said, Layout, Meaning
 pub use crate::analysis::check::Verdict;
 
 pub const WORDS: u64 = 50;
-/// Maximum step between consecutive positions of a shaft at standstill, which may jitter by a step or two.
+/// Maximum distance of a position from the first one at standstill, in steps. A shaft at standstill can jitter by one
+/// or two steps.
 const TREMBLES: u64 = 4;
 
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
@@ -33,7 +34,7 @@ pub enum CheckFinding {
         asked: u32,
         got: u32,
     },
-    /// Supply voltage requested and measured in millivolts, and current in milliamperes.
+    /// Requested and measured supply voltage in millivolts, and supply current in milliamperes.
     Supply {
         requested: u16,
         measured: u16,
@@ -44,7 +45,7 @@ pub enum CheckFinding {
         taken: u64,
         different: usize,
     },
-    /// Finding about the words, and the number of words affected.
+    /// A finding about the words, with the number of words affected.
     Said {
         finding: Said,
         count: u64,
@@ -52,14 +53,11 @@ pub enum CheckFinding {
     Fits,
     /// No error bit is active.
     Silent,
-    /// The shaft stands still, with the given position and jitter.
     Stands {
-        /// Last position read.
         position: u64,
-        /// Number of steps between the lowest and the highest position.
+        /// Maximum distance of a position from the first one, in steps.
         steps: u64,
     },
-    /// The shaft turns by at most the given number of steps from one word to the next.
     Turns {
         /// Maximum distance between consecutive positions in steps, in the shorter direction.
         most: u64,
@@ -69,7 +67,7 @@ pub enum CheckFinding {
 /// Reads a series of words and checks them.
 ///
 /// # Errors
-/// No words arrive.
+/// Returns the error of the adapter if no words arrive.
 pub fn check(
     master: &mut Master<'_>,
     layout: &Layout,
@@ -116,7 +114,7 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     let is_of_the_form = |what: &Said| matches!(what, Said::Code | Said::Padding | Said::Parity | Said::Repeat);
     let is_error = |what: &Said| matches!(what, Said::Error { .. } | Said::Pattern { .. });
     let or = |findings: Vec<CheckFinding>, none: CheckFinding| if findings.is_empty() { vec![none] } else { findings };
-    // A wrong layout is a fault even if each of its signs is a warning.
+    // A wrong layout is a fault, even if its findings are only warnings.
     let form = verdict(is_of_the_form);
     let form = if form == Verdict::Good { Verdict::Good } else { Verdict::Bad };
     vec![
@@ -156,7 +154,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
         Some((requested, (measured, milliampere))) => {
-            // A tenth is the tolerance of encoders for 5 V.
+            // Encoders for 5 V have a tolerance of 10 %.
             let is_near = measured.abs_diff(requested) <= requested / 10;
             let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
             (verdict, CheckFinding::Supply { requested, measured, milliampere })
@@ -166,7 +164,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Evaluates how the position changes from word to word, along the shorter way round.
+/// Evaluates the change of position from word to word. Distances are measured in the shorter direction.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.coding().last()) + 1;
     let apart = |one: u64, other: u64| {
@@ -183,7 +181,7 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
         Some(position) if spread <= TREMBLES => {
             (Verdict::Good, CheckFinding::Stands { position: *position, steps: spread })
         }
-        // From one word to the next by more than a quarter of all positions: no shaft turns like that.
+        // No shaft turns by more than a quarter of all positions from one word to the next.
         Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, CheckFinding::Turns { most }),
         Some(_) => (Verdict::Good, CheckFinding::Turns { most }),
     };

@@ -1,4 +1,4 @@
-//! Errors of the adapter in front of an encoder. The encoder itself is judged by its words only.
+//! Errors of the adapter in front of an encoder. The encoder itself reports errors only in its words.
 
 use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::link::LinkError;
@@ -28,7 +28,7 @@ impl From<LineError> for Error {
         match error {
             LineError::Cancelled => Error::Cancelled,
             LineError::Link(error) => Error::Link(error),
-            // Packets need no silence between them.
+            // Packets do not have to be separated by silence.
             LineError::NeverSilent => Error::Adapter(AdapterError::Silent),
         }
     }

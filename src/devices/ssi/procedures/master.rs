@@ -1,9 +1,9 @@
-//! Host side of the adapter: its identity, its settings and the words. The adapter cannot do anything else during a
-//! stream, so any other request ends the stream first.
+//! Host side of the adapter: its identity, its settings and the words. During a stream the adapter accepts no other
+//! request, so any other request ends the stream first.
 //!
-//! Reading a word changes nothing except error bits that a transfer clears, so it may be repeated: an adapter that has
-//! replied before is asked up to five times within eight seconds, one that has never replied twice, as specified by the
-//! reference.
+//! Reading a word changes nothing except error bits that a transfer clears, so it can be repeated. An adapter that has
+//! replied before is asked up to five times within eight seconds. An adapter that has never replied is asked twice. See
+//! the reference.
 
 use std::time::Duration;
 
@@ -16,28 +16,28 @@ use crate::link::Ctx;
 use crate::link::line::SerialLine;
 use crate::units::Moment;
 
-/// Interval at which cancellation is checked.
+/// Interval between checks for cancellation.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// The host's side of an adapter before an SSI encoder.
+/// The host side of an adapter in front of an SSI encoder.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job, with its full time limit available.
+    /// Creates a master for one job. The time limit for retries starts again.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read. Steps
-    /// that are already done are skipped.
+    /// Identifies the adapter, switches on the supply of the encoder if requested, and configures the reading of words.
+    /// Steps that are already done are skipped.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal, or errors of the
-    /// connection.
+    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal by the adapter, or an
+    /// error of the connection.
     pub fn hello(&mut self) -> Result<Identity, Error> {
         self.stop_word_stream()?;
         self.repeated(|master| master.adapter().hello())?;
@@ -50,10 +50,10 @@ impl<'a> Master<'a> {
         Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
     }
 
-    /// Changes how words are read.
+    /// Changes the settings for reading words.
     ///
     /// # Errors
-    /// As for [`hello`](Self::hello); the previous settings then stay in effect.
+    /// As for [`hello`](Self::hello). The previous settings then stay in effect.
     pub fn set(&mut self, asking: ClockSettings) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
@@ -68,7 +68,7 @@ impl<'a> Master<'a> {
     /// As for [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
         match self.read_configured_word() {
-            // The adapter has lost its settings: it was reset. One more attempt, with new settings.
+            // The adapter was reset and has lost its settings. The word is requested once more with new settings.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
                 if operation == Request::SsiRead.operation() =>
             {
@@ -87,12 +87,14 @@ impl<'a> Master<'a> {
         Ok(Words { first: self.station.count(), ..word })
     }
 
-    /// Returns the next words of a stream with the given interval in microseconds, or the shortest that the adapter
-    /// supports; starts the stream if necessary.
+    /// Returns the next words of a stream. The stream is started if it is not running.
+    ///
+    /// `period_us` is the interval between words in microseconds. If the adapter does not support it, its shortest
+    /// interval is used.
     ///
     /// # Errors
-    /// When starting the stream, as for [`hello`](Self::hello); afterwards errors of the adapter, or cancellation,
-    /// after which the stream continues.
+    /// As for [`hello`](Self::hello) when the stream is started. Later, errors of the adapter end the stream, whereas
+    /// it continues after a cancellation.
     pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = Streamed::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
@@ -117,10 +119,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Ends the running stream, even after cancellation, and restarts the count of single requests.
+    /// Ends the running stream, even after a cancellation. Single requests are counted from 0 again.
     ///
     /// # Errors
-    /// Errors of the adapter; the stream is then ended before the next request.
+    /// Errors of the adapter. The stream is then ended before the next request.
     pub fn stop_word_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.asked = 0;
@@ -141,7 +143,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Leaves the encoder's supply on or off at the end of a session, as configured.
+    /// Switches off the supply of the encoder at the end of a session, unless it is configured to stay on.
     ///
     /// # Errors
     /// Errors of the adapter.
@@ -169,8 +171,8 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
 
-    /// Configures how words are read unless already configured, limiting the clock to `fastest`; returns the actual
-    /// clock in hertz.
+    /// Configures the reading of words if the settings have changed. The clock is limited to `fastest`. Returns the
+    /// actual clock frequency in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
         let asking = self.station.asking;
         if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
@@ -216,7 +218,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Repeats `once`, which must tolerate being executed twice, until a reply arrives.
+    /// Executes `once` until a reply arrives or no retry is left. The operation must allow repeated execution.
     fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
@@ -240,7 +242,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Notes that the adapter may have been reset and must be configured again, unless the error is a cancellation.
+    /// Marks the adapter as not configured, because it may have been reset. A cancellation has no effect.
     fn handle_possible_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();
@@ -248,7 +250,7 @@ impl<'a> Master<'a> {
         error
     }
 
-    /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
+    /// Handles a failed stream, and ends it on the side of the adapter if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.stop_word_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

@@ -1,6 +1,6 @@
-//! Words of an SSI encoder behind an adapter with the bridge protocol. The encoder has no memory and no commands: there
-//! is nothing to identify or write, and no waiting time. The layout (`protocol/ssi`) gives the words their meaning;
-//! here they are only read, individually or as a stream.
+//! Reading of words from an SSI encoder behind an adapter with the bridge protocol, one by one or as a stream. The
+//! encoder has no memory and no commands, so there is nothing to identify, to write or to wait for. The layout
+//! (`protocol/ssi`) defines the meaning of the words.
 
 pub mod check;
 mod error;

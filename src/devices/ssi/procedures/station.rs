@@ -1,4 +1,4 @@
-//! State of a session's adapter and its reading settings, kept between jobs.
+//! State of the adapter in a session, and the settings for reading words. It is kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,13 +17,12 @@ use crate::units::SupplyVoltage;
 parameters! {
     /// Link parameters for the line and the encoder's supply.
     pub struct LinkParameters: UrlError {
-        /// Additional delay allowed for a reply beyond the protocol's worst case, or `None` for the link's default.
+        /// Time allowed for a reply in addition to the maximum of the protocol, or `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
-        /// Clock in hertz.
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
         /// Minimum pause between two words in microseconds.
         pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
-        /// Encoder supply voltage to be provided by the adapter in millivolts, or `None` for no supply.
+        /// Supply voltage in millivolts that the adapter provides to the encoder, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => OptionalValue(Millivolts(Supply::RANGE)), "connect.voltage" like "";
         pub after: SupplyAfterSession = SupplyAfterSession::AsFound, "leave-supply" => SupplyAfterSession::WORDS;
     }
@@ -33,22 +32,22 @@ parameters! {
 pub struct ClockSettings {
     /// Number of bits per word, 1…64.
     pub clocks: u8,
-    /// Clock frequency in hertz; the adapter uses the nearest one that it supports.
+    /// Requested clock frequency in hertz. The adapter uses the nearest frequency that it supports.
     pub clock_hz: u32,
-    /// Minimum pause between two words in microseconds; must exceed the encoder's monoflop time.
+    /// Minimum pause between two words in microseconds. It must be longer than the monoflop time of the encoder.
     pub pause_us: u16,
 }
 
 impl Default for ClockSettings {
-    /// Returns settings for 25-clock words that are slow enough for 50 m of cable (SICK SSI description 2.7), with a
-    /// pause after which every family is ready.
+    /// Returns settings for words of 25 clocks. The clock is slow enough for 50 m of cable, and every family is ready
+    /// again after the pause. See SICK SSI description 2.7.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
         ClockSettings { clocks: 25, clock_hz, pause_us }
     }
 }
 
-/// Identity of the adapter, with the settings actually used for reading words.
+/// Identity of the adapter, with the settings that are in use for reading words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
@@ -65,37 +64,39 @@ pub struct Station {
     pub asking: ClockSettings,
     /// Encoder supply that the adapter should switch, if any.
     pub supply: Option<Supply>,
-    /// Settings sent to the adapter and the actual clock in hertz, or `None` if not configured yet or possibly reset.
+    /// Settings sent to the adapter, and the actual clock frequency in hertz. `None` if the adapter is not configured
+    /// or may have been reset.
     pub(super) set: Option<(ClockSettings, u32)>,
     pub(super) flow: Option<SampleStream>,
-    /// Time of the last word from previous streams.
+    /// Time of the last word received in an earlier stream.
     pub(super) streamed_until: Option<SampleTime>,
-    /// Number of single requests with the current settings.
+    /// Number of single requests since the settings last changed.
     pub(super) asked: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
     pub millivolt: u16,
-    /// Supply voltage in millivolts and current in milliamperes, measured at switch-on; `None` before that.
+    /// Voltage in millivolts and current in milliamperes, measured when the supply was switched on.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
-    /// Power-up time before words are valid (`U`: not specified in the manual).
+    /// Time from power-up until words are valid. The manual does not specify it (`U`).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Supply range of SSI encoders in millivolts: from 5 V less 10 % up to 30 V (SICK SSI description, TTK70).
+    /// Supply voltages of SSI encoders in millivolts, from 5 V less 10 % up to 30 V. See SICK SSI description, TTK70.
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
-    /// Returns the supply voltage with its limits. Since the encoder is unknown, more than 10 % above the requested
-    /// voltage is too much (AFS60 at 5 V: 4.5 to 5.5 V).
+    /// Returns the supply voltage with its limits. The encoder is unknown, so the upper limit is 10 % above the
+    /// requested voltage. AFS60 at 5 V, for example, allows 4.5 to 5.5 V.
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
     }
 }
 
 impl Station {
-    /// Creates the state of an unidentified adapter; `margin` is the delay allowed beyond the protocol's worst case.
+    /// Creates the state for an adapter that has not been identified. `margin` is the time allowed for a reply in
+    /// addition to the maximum of the protocol.
     pub fn new(margin: Duration) -> Self {
         Station {
             line: LineState::new(margin),
@@ -109,10 +110,10 @@ impl Station {
         }
     }
 
-    /// Reads the link parameters, ignoring those that do not concern the line.
+    /// Creates the state from the parameters of a link. Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A parameter value is invalid; the error lists the allowed values.
+    /// Returns an error with the allowed values if the value of a parameter is invalid.
     pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -122,15 +123,15 @@ impl Station {
         Ok(station)
     }
 
-    /// Discards what is known of the adapter, so that it is identified and configured again.
+    /// Discards all data about the adapter. It is then identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget();
         self.flow = None;
         self.forget_settings();
     }
 
-    /// Discards the adapter settings and the supply state, because a reset adapter has lost its settings and switched
-    /// the supply off.
+    /// Discards the settings and the state of the supply. A reset adapter has lost its settings and has switched off
+    /// the supply.
     pub(super) fn forget_settings(&mut self) {
         self.set = None;
         if let Some(supply) = &mut self.supply {
@@ -142,7 +143,7 @@ impl Station {
         self.asked = 0;
     }
 
-    /// Returns the sequence number for the next single request, and increments the count.
+    /// Returns the number of the next single request, and increments the counter.
     pub(super) fn count(&mut self) -> u64 {
         let number = self.asked;
         self.asked = number.wrapping_add(1);

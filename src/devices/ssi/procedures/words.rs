@@ -1,4 +1,4 @@
-//! Words as received, each consisting of the bits of one clock burst.
+//! Words as received. A word contains the bits of one clock burst.
 
 use std::time::Duration;
 
@@ -10,22 +10,22 @@ use crate::units::Moment;
 /// Series of words at equal intervals, or a single requested word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// Sequence number of the first word, counted since the settings last changed and including missing words.
+    /// Number of the first word since the settings last changed. Missing words are counted as well.
     pub first: u64,
     /// Time at which the first word was read.
     pub at: Moment,
-    /// Interval between words in nanoseconds, or 0 for a single requested word.
+    /// Interval between words in nanoseconds. It is 0 for a single word.
     pub period_ns: i64,
-    /// Number of words missing before the first.
+    /// Number of missing words before the first one.
     pub lost: u64,
     /// Number of bits per word, 1…64.
     pub clocks: u8,
-    /// Received words, at least one. The first bit received is the highest of the `clocks` bits, which are
-    /// right-justified.
+    /// Received words, at least one. Each is right-justified, so the bit received first is the highest of `clocks`
+    /// bits.
     pub words: Vec<u64>,
     /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
-    /// Whether the requested interval is shorter than the adapter can provide.
+    /// Whether the adapter uses a longer interval than requested, because the requested one is too short.
     pub is_limited: bool,
 }
 
@@ -43,12 +43,12 @@ impl Words {
         }
     }
 
-    /// Converts a packet of words that was requested at the interval `wished_us`.
+    /// Converts a packet of streamed words. `wished_us` is the requested interval in microseconds.
     pub(super) fn run(portion: &Portion, data: &SsiData, asking: ClockSettings, clock_hz: u32, wished_us: u32) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {
             first,
-            // Not before the start of the stream.
+            // The time must not be before the start of the stream.
             at: Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
             period_ns,
             lost,
@@ -59,7 +59,7 @@ impl Words {
         }
     }
 
-    /// Returns whether the series begins with the very first word since recording began.
+    /// Returns whether the series contains the first words received in a stream.
     pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
@@ -68,7 +68,7 @@ impl Words {
         self.period_ns > 0
     }
 
-    /// Iterates over the words, each with the time at which it was read.
+    /// Returns an iterator over the words with the times at which they were read.
     pub fn with_times(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))

@@ -1,10 +1,10 @@
-//! Differences between two SSI encoders: one item for each profile entry, named as in the file.
+//! Differences between two SSI profiles. Each entry of a profile is an item and is named as in the file.
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};
 use crate::profile::{Comparison, Difference};
 
-/// Compares frame, direction, preset and reading settings. Entries missing from a file count with their default values.
+/// Compares frame, direction, preset and reading settings. Missing entries have their default values.
 pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     let (left, right) = (items(left), items(right));
     let mut comparison = Comparison::default();
@@ -25,7 +25,7 @@ pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     comparison
 }
 
-/// Returns all compared entries as name and value, in file order.
+/// Returns the names and values of all compared entries, in the order of the file.
 fn items(profile: &SsiProfile) -> Vec<(String, String)> {
     let frame = &profile.descriptor;
     let mut items: Vec<(String, String)> = Vec::new();

@@ -1,5 +1,5 @@
-//! Profiles of SSI encoders: frame, counting direction, offset and reading settings. The encoder has no memory: a
-//! profile is never written to one, so there is no plan and no backup.
+//! Profiles of SSI encoders: frame, counting direction, preset and reading settings. The encoder has no memory. A
+//! profile is never written to it, so there is no plan and no backup.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Saved content of an SSI encoder. [`text`](super::text) defines the file format.
+//! Content of an SSI profile. [`text`](super::text) defines the file format.
 
 use std::time::Duration;
 
@@ -8,15 +8,15 @@ use crate::profile::ron_text::Unknown;
 /// A profile of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SsiProfile {
-    /// User-defined name; may be empty.
+    /// User-defined name. It may be empty.
     pub name: String,
-    /// Key of the family whose times and limits apply, or `None` if unknown.
+    /// Key of the family that defines timing and other limits, or `None` if the family is unknown.
     pub family: Option<String>,
-    /// Frame layout, which has been validated if it was read from a file.
+    /// Description of the frame. It has been validated if it was read from a file.
     pub descriptor: Descriptor,
     /// Counting direction.
     pub direction: Direction,
-    /// Position at the zero of the shaft, within the range of the frame.
+    /// Position at the zero point of the shaft, within the range of the frame.
     pub preset: u64,
     /// Reading settings.
     pub reading: ReadingSettings,
@@ -27,38 +27,38 @@ pub struct SsiProfile {
 /// Settings for reading an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadingSettings {
-    /// Clock in hertz, 1000…20 000 000.
+    /// Clock frequency in hertz, from 1000 to 20 000 000.
     pub clock_hz: u32,
     /// Pause between the last clock of a burst and the first of the next, in microseconds, at least 1.
     pub pause_us: u16,
-    /// Cable length in metres, or `None` to skip the check.
+    /// Cable length in metres, or `None` if the cable is not checked.
     pub cable_metres: Option<u16>,
-    /// Whether the encoder samples its position when the host clocks.
+    /// Whether the encoder is in synchronous mode, in which the clock of the host makes it take a position.
     pub synchronous: bool,
 }
 
-/// Unknown entries by structure.
+/// Unknown entries of a profile, by the structure in which they occur.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) frame: Unknown,
     pub(super) reading: Unknown,
     pub(super) parity: Unknown,
     pub(super) repeat: Unknown,
-    /// Unknown entries keyed by error bit name, so that reordering the bits does not mix them up.
+    /// Unknown entries by the name of the error bit, so they stay with the bit if the order changes.
     pub(super) errors: Vec<(String, Unknown)>,
     pub(super) patterns: Vec<(String, Unknown)>,
 }
 
 impl Default for ReadingSettings {
-    /// Returns the clock rate for 50 m of cable (SICK SSI description 2.7), and a pause that suits every family,
-    /// including an ATM60 with any number of steps (more than 200 µs, reference section 5).
+    /// Returns the clock frequency for 50 m of cable, and a pause that suits every family. An ATM60 with any number of
+    /// steps needs more than 200 µs. See SICK SSI description 2.7 and reference section 5.
     fn default() -> Self {
         ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }
     }
 }
 
 impl SsiProfile {
-    /// Creates a profile for a frame without a family, with default counting.
+    /// Creates a profile for a frame of no family, with default counting.
     pub fn new(descriptor: Descriptor) -> Self {
         SsiProfile {
             name: String::new(),
@@ -71,7 +71,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns the parameters for checking the timing of the frame.
+    /// Returns the conditions of reading, which are needed to check the timing of the frame.
     pub fn reads(&self) -> Reads {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         Reads {
@@ -84,7 +84,7 @@ impl SsiProfile {
         }
     }
 
-    /// Creates a profile with the settings resolved for a family.
+    /// Creates a profile from the settings of a family and the resulting frame.
     pub fn of_family(family: &Family, resolved: &ResolvedFrame) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),

@@ -1,5 +1,5 @@
-//! The text format of an SSI profile, which people read and edit. Default values are omitted; errors name the entry,
-//! and an impossible frame is refused with the reason.
+//! The text format of an SSI profile, which users read and edit. Default values are omitted. Errors name the entry, and
+//! an impossible frame is refused with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;
@@ -20,7 +20,7 @@ const FLAG: AllowedValues = AllowedValues::words(&["true", "false"]);
 const CLOCK_HZ: AllowedValues = AllowedValues::between(1000, 20_000_000);
 const PAUSE_US: AllowedValues = AllowedValues::between(1, 65_535);
 const METRES: AllowedValues = AllowedValues::between(0, 65_535);
-/// Keyword for a frame that consists only of ones.
+/// Keyword for a pattern that consists only of ones.
 const ONES: &str = "ones";
 
 impl Profile for SsiProfile {
@@ -28,7 +28,7 @@ impl Profile for SsiProfile {
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let name = entries.take_optional("name", AllowedValues::Text)?.unwrap_or_default();
-        // Keys are in lower case; a user may write the type's name.
+        // Keys are in lower case, but a user may write the product name.
         let family = entries.take_optional("family", AllowedValues::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = UnknownEntries::default();
         let path = entries.path_of("frame");
@@ -201,7 +201,7 @@ fn take_unknown_by_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> 
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }
 
-/// Returns the number of clocks the position takes without trailing zeros.
+/// Returns the number of clocks of the position without zeros after it.
 fn default_area_clocks(frame: &Descriptor) -> u8 {
     let coding = frame.range.last().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
@@ -251,8 +251,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
     Ok(frame)
 }
 
-/// Parses the position range, given as turn and step bits, as a number of steps, or as a length. Exactly one of the
-/// three is allowed.
+/// Parses the range of positions, which is given either by turn and step bits, or by a number of steps, or by a length.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.take_optional("multiturn", SMALL)?;
     let singleturn: Option<u8> = entries.take_optional("singleturn", SMALL)?;
@@ -270,7 +269,7 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
         ("bits", bits.is_some()),
         ("step_nanometres", step_nanometres.is_some()),
     ];
-    // Further entries belong to the one that selects the range.
+    // The other entries must match the one that selects the kind of range.
     let only = |own: &'static str, others: &[&str]| {
         let other = given.iter().find(|(name, is_given)| *is_given && *name != own && !others.contains(name));
         match other {
@@ -352,7 +351,7 @@ fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) ->
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 
-/// Parses an entry whose value must be one of a fixed set of keywords.
+/// Parses an entry whose value is a keyword from a fixed set.
 fn word<T: FromStr<Err = AllowedValues>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
     let Some(word) = entries.take_optional::<String>(name, AllowedValues::Text)? else { return Ok(None) };

@@ -1,5 +1,4 @@
-//! Design of a frame: the content of each clock. Any frame can be described; [`super::Layout`] checks whether it is
-//! possible.
+//! Description of a frame: the content of each clock. A description may be contradictory; [`super::Layout`] checks it.
 
 use serde::Deserialize;
 
@@ -15,17 +14,17 @@ pub struct Descriptor {
     pub range: Range,
     /// Position code.
     pub code: Code,
-    /// Bits that the code word covers.
+    /// Bits that a Gray code covers.
     pub coded: GrayCoverage,
-    /// Number of clocks, starting with the first, that contain the position and surrounding zeros. Shifting right moves
-    /// the bits of these clocks.
+    /// Number of clocks at the start of the frame that contain the position and the zeros around it. Shifting right
+    /// moves the bits of these clocks.
     pub area: u8,
-    /// Number of zeros before the multiturn, if the range has separate bits for multiturn and singleturn.
+    /// Number of zeros before the position.
     pub lead: u8,
-    /// Number of zeros between multiturn and singleturn, if the range has separate bits for them.
+    /// Number of zeros between multiturn and singleturn. It must be 0 if the range has no separate bits for them.
     pub between: u8,
-    /// Whether the area is delayed by one clock: a zero comes first, and its last bit is lost (SICK SSI description
-    /// 3.4, SSI-SHIFT-RIGHT).
+    /// Whether the area is delayed by one clock. A zero is sent first, and the last bit of the area is lost. See SICK
+    /// SSI description 3.4, SSI-SHIFT-RIGHT.
     pub shift_right: bool,
     /// Error and warning bits, at most 8.
     pub errors: Vec<ErrorBit>,
@@ -44,9 +43,9 @@ pub struct Descriptor {
 pub enum GrayCoverage {
     /// The position bits only, without zeros and error bits.
     Position,
-    /// The whole area including zeros (alternative reading of the manual in reference section 2, `U`).
+    /// The whole area including zeros. The manual can also be read in this way. See reference section 2, `U`.
     Area,
-    /// The whole area and the following error bits, as in sensors that count error bits among the data.
+    /// The whole area and the error bits after it, for sensors that count error bits among the data.
     AreaAndErrors,
 }
 
@@ -54,27 +53,27 @@ pub enum GrayCoverage {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBit {
-    /// Name in the manual of the encoder.
+    /// Name of the bit in the manual of the encoder.
     pub name: String,
     /// Clock number, starting at 1.
     pub clock: u8,
-    /// Consequence for the position.
+    /// Effect of the active bit on the position.
     pub meaning: Meaning,
     /// Whether the bit is active at 0.
     #[serde(default)]
     pub active_low: bool,
-    /// Whether a transfer clears the bit, which therefore covers the time since the previous transfer.
+    /// Whether each transfer clears the bit. If so, the bit reports events since the previous transfer.
     #[serde(default)]
     pub cleared_by_transfer: bool,
 }
 
-/// Consequence of a bit or word for the position.
+/// Effect of an error bit or of a pattern on the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Meaning {
     /// The position is invalid.
     Invalid,
-    /// The position is valid, with a warning.
+    /// The position is valid, but the device reports a warning.
     Warning,
 }
 
@@ -96,7 +95,7 @@ pub struct Repeat {
     pub gap: u8,
 }
 
-/// A word with a special meaning.
+/// A word that has a special meaning and is not a position.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
@@ -104,7 +103,7 @@ pub struct Pattern {
     pub name: String,
     /// Bits of the complete frame as transmitted.
     pub word: Word,
-    /// Consequence for the position.
+    /// Effect of the word on the position.
     pub meaning: Meaning,
 }
 
@@ -139,7 +138,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns the number of clocks of one frame, without its repetition.
+    /// Returns the number of clocks in one frame without its repetition.
     pub fn word(&self) -> u8 {
         self.repeat.map_or(self.clocks, |repeat| repeat.word)
     }

@@ -1,6 +1,8 @@
-//! Extraction of frames from the levels of both lines as recorded by a logic analyser (SICK SSI description 2.2;
-//! reference section 1). The clock idles high, each rising edge outputs a bit, and the host samples at the falling
-//! edge; after the last one the line remains for half a period. Bursts are separated by pauses.
+//! Extraction of frames from a logic analyser recording of both lines.
+//!
+//! The clock idles high. The encoder outputs a bit at each rising edge, and the host samples the bit at the next
+//! falling edge. The last bit remains on the line for half a period. Bursts are separated by pauses. See SICK SSI
+//! description 2.2 and reference section 1.
 
 /// Levels of both lines from a point in time onwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +22,8 @@ pub struct ExtractedFrames {
     pub clocks: u8,
     /// Right-justified frames in recording order.
     pub frames: Vec<u64>,
-    /// Number of bursts left out because their number of clocks differs, due to a disturbance or the end of the
-    /// recording.
+    /// Number of bursts that were ignored because they have a different number of clocks. Such a burst was disturbed or
+    /// not recorded completely.
     pub left_out: usize,
 }
 
@@ -48,12 +50,12 @@ pub enum BurstError {
 /// Minimum monoflop time tm in seconds. The encoder considers a burst finished once the clock has stayed at one level
 /// for this long.
 const LEAST_MONOFLOP: f64 = 15e-6;
-/// Minimum pause for a slow clock, in half periods.
+/// Minimum pause between bursts in half periods, for a slow clock.
 const HALVES: f64 = 3.0;
-/// Sampling point of the last bit, as a fraction of a half period; the line falls after the full half period.
+/// Sampling point of the last bit as a fraction of a half period. The line falls after the full half period.
 const SETTLED: f64 = 0.9;
 
-/// A clock edge and its position in the recording.
+/// A clock edge with its row in the recording.
 #[derive(Clone, Copy)]
 struct Edge {
     at: f64,
@@ -61,11 +63,11 @@ struct Edge {
     rises: bool,
 }
 
-/// Extracts the frames of a recording with non-decreasing times. A swapped clock pair (CLOCK− in place of CLOCK+) is
-/// recognised by its idle level.
+/// Extracts the frames from a recording, in which the times must not decrease. Swapped clock wires are recognised by
+/// the idle level.
 ///
 /// # Errors
-/// [`BurstError`] states what is missing.
+/// [`BurstError`] if the recording contains no frames.
 pub fn bursts(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
     let edges = edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
@@ -75,7 +77,7 @@ pub fn bursts(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
     let rests_high = idles_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
     let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
     let falls = |edge: &Edge| edge.rises != rests_high;
-    // A whole burst falls first and rises last.
+    // A complete burst begins with a falling edge and ends with a rising edge.
     let whole = |run: &[Edge]| run.len().is_multiple_of(2) && run.first().is_some_and(falls);
     let clocks = usual(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(BurstError::Incomplete)?;
     let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(BurstError::Long { clocks })?;
@@ -93,7 +95,8 @@ fn edges(levels: &[LineLevels]) -> Vec<Edge> {
     changes.collect()
 }
 
-/// Returns whether the clock rests high, judged by the level it holds longest overall; `None` if it never rests.
+/// Returns whether the clock idles high, or `None` if it never pauses. The idle level is the level with the longer
+/// total pause.
 fn idles_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
@@ -107,7 +110,7 @@ fn idles_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool>
     (low + high > 0.0).then_some(high >= low)
 }
 
-/// Returns the most frequent number, or the greatest of several equally frequent ones.
+/// Returns the most frequent number. If several are equally frequent, the greatest is returned.
 fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
     let mut sorted: Vec<usize> = numbers.collect();
     sorted.sort_unstable();
@@ -115,11 +118,10 @@ fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
     runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied())
 }
 
-/// Returns the bits of a complete burst.
 fn frame(levels: &[LineLevels], run: &[Edge], half: f64) -> u64 {
     let sampled = run.chunks(2).skip(1).filter_map(|clock| levels.get(clock.first()?.row - 1));
     let bits = sampled.fold(0, |bits, before| bits << 1 | u64::from(before.data));
-    // The half periods of this burst tell how long the last bit stays.
+    // The last bit stays on the line for a half period of this burst.
     let high = run.windows(2).skip(1).step_by(2).filter_map(|two| Some(two.last()?.at - two.first()?.at));
     let half = high.reduce(f64::min).unwrap_or(half);
     let last = run.last().and_then(|edge| {

@@ -4,18 +4,19 @@ use super::descriptor::{Meaning, Word};
 use super::layout::{Flags, FrameReading, Layout};
 use super::range::Range;
 
-/// Content of a clock.
+/// Content of a clock in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Always 0.
     Zero,
-    /// The given multiturn bit.
+    /// Multiturn bit with the given number, where 0 is the lowest.
     Multiturn(u8),
-    /// The given singleturn bit.
+    /// Singleturn bit with the given number, where 0 is the lowest.
     Singleturn(u8),
-    /// Bit of the code word with the given number, if multiturn and singleturn have no separate bits.
+    /// Bit of the code word with the given number, where 0 is the lowest. Used if multiturn and singleturn have no
+    /// separate bits.
     Position(u8),
-    /// Error bit with the given index in the descriptor.
+    /// Error bit with the given index in the list of the descriptor.
     Error(usize),
     /// The parity bit.
     Parity,
@@ -41,7 +42,7 @@ pub enum FrameFinding {
     Error {
         /// Name of the bit.
         name: String,
-        /// Consequence for the position.
+        /// Effect on the position.
         meaning: Meaning,
         /// Whether the bit covers the time since the previous transfer.
         cleared_by_transfer: bool,
@@ -50,17 +51,17 @@ pub enum FrameFinding {
     Pattern {
         /// Name of the word.
         name: String,
-        /// Consequence for the position.
+        /// Effect on the position.
         meaning: Meaning,
     },
     /// All bits are 1.
     StuckHigh {
-        /// Whether the frame cannot be a position.
+        /// Whether another flag also shows that the frame is not a position.
         sure: bool,
     },
     /// All bits are 0.
     StuckLow {
-        /// Whether the frame cannot be a position.
+        /// Whether another flag also shows that the frame is not a position.
         sure: bool,
     },
     /// The code word does not represent a position.
@@ -74,7 +75,7 @@ pub enum FrameFinding {
 }
 
 impl FrameFinding {
-    /// Returns the consequence of a finding for the position.
+    /// Returns the effect of the finding on the position.
     pub const fn meaning(&self) -> Meaning {
         match self {
             FrameFinding::Error { meaning, .. } | FrameFinding::Pattern { meaning, .. } => *meaning,
@@ -131,7 +132,7 @@ impl Layout {
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
-    /// Returns the findings about a reading, starting with those that invalidate the position.
+    /// Returns the findings about a reading. Findings that make the position invalid come first.
     pub fn findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;
@@ -171,7 +172,7 @@ impl Layout {
         !reading.flags.any(self.invalid()) && !stuck
     }
 
-    /// Returns whether the reading carries a flag that a healthy encoder never causes.
+    /// Returns whether the reading has a flag that an encoder without faults never causes.
     fn is_position_invalid(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));

@@ -1,5 +1,5 @@
-//! Export of a frame for other programs: decoders in C and structured text, a picture, a table, settings of a PLC's SSI
-//! module, and the LinuxCNC format string.
+//! Export of a frame for other programs. The formats are decoders in C and structured text, a picture, a table,
+//! settings for the SSI module of a PLC, and the format string of LinuxCNC.
 
 mod c;
 mod halves;
@@ -24,7 +24,7 @@ pub use svg::{frame_picture, timing_picture};
 pub use table::bit_table;
 pub use text::{ExportText, ModuleObstacle, Say, SettingMeaning, english};
 
-/// Returns a valid identifier that consists of letters, digits and underscores and does not start with a digit.
+/// Converts a name to an identifier of letters, digits and underscores that does not start with a digit.
 fn identifier(name: &str) -> String {
     let word: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();

@@ -1,7 +1,9 @@
-//! Search for the layout of recorded frames. Every way to read them as numbers is tried: a turning shaft moves evenly,
-//! and misreading a frame causes jumps. Possible layouts are ranked by the information that the frames still require
-//! once the layout is known, and by how common they are. Layouts that the frames cannot distinguish form one class,
-//! together with the motion that would decide.
+//! Search for the layout of recorded frames.
+//!
+//! The search tries every way to read the frames as numbers. A turning shaft moves evenly, while a misread frame causes
+//! a jump. Layouts are ranked by how common they are, and by the information that the frames still contain once the
+//! layout is known. Layouts that the frames cannot distinguish form a class. The result states the motion that would
+//! distinguish them.
 
 mod any_other;
 mod code_ends;
@@ -29,16 +31,17 @@ use super::layout::Layout;
 
 /// Maximum number of frames analysed, counted from the newest.
 const MOST_FRAMES: usize = 4_000;
-/// Minimum number of distinct frames. With fewer, the shaft is considered to stand still or jitter.
+/// Minimum number of different frames. With fewer frames, the shaft is assumed to stand still.
 const LEAST_DIFFERENT: usize = 32;
 const CLASSES: usize = 6;
-/// Penalty in bits, over all frames, for each setting that makes a class less usual.
+/// Penalty in bits for each setting that makes a class less usual. It applies to the recording as a whole.
 const WEIGHT_BITS: f64 = 8.0;
-/// Weight beyond that of the most probable member of a class at which other members are left out.
+/// Maximum weight of a member of a class above that of the most probable member. Less probable members are left out.
 const IMPROBABLE: f64 = 8.0;
-/// Minimum number of frames per thousand in which two readings must agree to be considered the same.
+/// Minimum number of frames per thousand in which two readings must have the same motion to be regarded as the same.
 const SAME_PERMILLE: usize = 995;
-/// Maximum excess in bits over the best reading, for all frames, for families to be searched for a reading.
+/// Maximum information in bits above that of the best reading, for all frames. Families are not searched for readings
+/// with more information.
 const NEAR_BITS: f64 = 300.0;
 
 /// Result of a search for layouts.
@@ -48,9 +51,9 @@ pub struct Search {
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
-    /// Reason why the first class is uncertain, or `None` if it is the only one and every bit is explained.
+    /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits as well.
     pub doubt: Option<Uncertainty>,
-    /// The possible classes, the best first; may be empty.
+    /// Classes of possible layouts, with the best first. The list may be empty.
     pub classes: Vec<Class>,
 }
 
@@ -59,43 +62,44 @@ pub struct Search {
 pub enum Uncertainty {
     /// The shaft stood still or hardly moved.
     Standing,
-    /// Every bit is 0, or every bit is 1, in all frames.
+    /// All bits of all frames have the same value.
     Stuck {
-        /// Whether it is 1.
+        /// Whether the value is 1.
         high: bool,
     },
-    /// No reading yields an even motion, because the data are not SSI, the line is disturbed, or the shaft turns too
-    /// fast.
+    /// No reading yields an even motion. The data are not SSI, the line is disturbed, or the shaft turns too fast.
     Nothing,
     /// Two classes fit equally well.
     Close,
-    /// Only one class remains, but some of its bits are unexplained.
+    /// One class fits best, but some of its properties are not proven.
     Open,
 }
 
 /// Class of layouts that the recorded frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// Members, most probable first: factory settings before changed ones, usual widths before unusual ones.
+    /// Members of the class, with the most probable first. Factory settings come before changed ones, and usual widths
+    /// before unusual ones.
     pub members: Vec<Proposal>,
     /// The evidence.
     pub evidence: Evidence,
-    /// Motions that would distinguish or confirm the members.
+    /// Motions of the shaft that would distinguish or confirm the members.
     pub open: Vec<Open>,
 }
 
-/// A layout that fits.
+/// A layout that fits the recorded frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// Family key and settings, or `None` for an encoder of no family. Swapped data wires appear only in the layout.
+    /// Family key and settings, or `None` for a frame of no family. Swapped data wires are not a setting and appear
+    /// only in the layout.
     pub family: Option<(String, Settings)>,
     /// The frame.
     pub layout: Layout,
 }
 
 impl Proposal {
-    /// Returns the layout as one word for the command line: a family with as few settings as possible, or else a
-    /// complete frame specification.
+    /// Returns the layout as one word for the command line. This is a family with as few settings as possible, or else
+    /// a complete description of the frame.
     pub fn spec_text(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
@@ -111,64 +115,65 @@ impl Proposal {
 pub struct Evidence {
     /// Score from 0 to 1 for how well the layout explains the frames and how usual it is.
     pub score: f64,
-    /// Frames that follow from their neighbours.
+    /// Number of frames that are consistent with their neighbours.
     pub explained: usize,
-    /// Median number of steps of the lowest bit between two frames.
+    /// Median distance between consecutive frames in steps of the lowest bit.
     pub steps_a_frame: i64,
-    /// Information per frame that the previous frames do not provide, in bits.
+    /// Information per frame in bits that cannot be predicted from the previous frames.
     pub bits_a_frame: f64,
     /// Number of frames that jump from the previous one.
     pub jumps: usize,
-    /// Number of frames with a deviating constant bit or an invalid code word.
+    /// Number of frames in which a constant bit has another value or the code word is invalid.
     pub misfits: usize,
-    /// Bits from the highest that moved to the lowest.
+    /// Number of position bits from the highest one that changed to the lowest one.
     pub bits_seen: u8,
 }
 
-/// Open question about the members of a class or an unexplained bit, with the motion that answers it.
+/// Open question about a class, with the motion of the shaft that answers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Open {
-    /// Boundary between turns and steps: turn exactly once, and note the increase of the position.
+    /// Boundary between turns and steps. To find it, turn exactly once, and note how much the position increases.
     TurnOnce,
-    /// Meaning of clocks that never changed: turn until they change or the position wraps.
+    /// Meaning of clocks that never changed. To find it, turn until they change or the position wraps.
     TurnFarther {
-        /// The first of them.
+        /// First of these clocks.
         from: u8,
-        /// The last of them.
+        /// Last of these clocks.
         to: u8,
     },
-    /// End of the range: turn until the position wraps.
+    /// End of the range. To find it, turn until the position wraps.
     PassAnEnd,
-    /// Swapped wires or reversed counting: turn clockwise, and check whether the position increases.
+    /// Swapped wires or reversed counting. To decide, turn clockwise, and check whether the position increases.
     Direction,
-    /// Lowest bit: turn at another, uneven speed.
+    /// Lowest bit. To find it, turn at a different and uneven speed.
     OtherSpeed,
-    /// Number of steps: turn slowly across the end of the range.
+    /// Number of steps. To find it, turn slowly across the end of the range.
     PassTheEnd {
-        /// The least.
+        /// Minimum number of steps.
         least: u32,
-        /// The most.
+        /// Maximum number of steps.
         most: u32,
     },
-    /// A clock moves without an explanation.
+    /// Meaning of a clock whose bit changes without an explanation.
     Unexplained {
         /// The first such clock.
         clock: u8,
     },
-    /// Error bits: cause an error (turn too fast, replace the supply).
+    /// Error bits. To find them, cause an error, for example by turning too fast.
     SeeAnError,
-    /// The family, if two send the same: check the type label.
+    /// The family, if several families send the same frame. To decide, check the type label.
     TypeLabel,
 }
 
-/// Reading of the frames, with all layouts that yield this reading.
+/// A reading of the frames with all layouts that result in it.
 struct Group {
     read: Read,
     members: Vec<LayoutCandidate>,
     bits: f64,
 }
 
-/// Finds the layouts that fit frames of `clocks` bits, right-justified and sampled consecutively at equal intervals.
+/// Finds the layouts that fit frames of `clocks` bits. The frames must be right-justified, and they must have been read
+/// consecutively at equal intervals.
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
     let seen = FrameSet::new(newest, clocks);
@@ -188,7 +193,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         if known.is_none() && groups.len() >= CLASSES {
             continue;
         }
-        // Families are searched if the motion may be right.
+        // Families are searched only if the motion may be correct.
         let near = groups.first().is_none_or(|best| read.bits < best.bits + NEAR_BITS || known == Some(0));
         let best = known.and_then(|known| groups.get(known)).map_or(&read, |group| &group.read);
         let probe = LayoutProbe::new(&seen, &words, repeat, best);
@@ -207,12 +212,13 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         return search(Some(Uncertainty::Standing), Vec::new());
     }
     for group in &mut groups {
-        // If steps vary, a lowest bit that never changes is not one: it is a parity, or a zero that the code covers.
+        // If the step size varies, a lowest bit that never changes is not part of the position. It is a parity bit, or
+        // a zero that the code covers.
         if verdict::has_varied_steps(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
             group.members.retain(|member| !member.trial.never_odd);
         }
         group.members.sort_by(|a, b| a.weight.total_cmp(&b.weight));
-        // The same frame has several names, also within a family.
+        // Different settings can describe the same frame, also within a family.
         let mut known = HashSet::new();
         group.members.retain(|member| {
             let family = member.family.as_ref().map(|(key, _)| key.clone());
@@ -227,7 +233,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::merge_classes(&words, groups))
 }
 
-/// Returns whether two layouts yield the same motion, possibly reversed or with steps of half the size.
+/// Returns whether two readings yield the same motion. The motion may be reversed, or have steps of half the size.
 fn same(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =
@@ -248,9 +254,9 @@ fn same(one: &Motion, other: &Motion) -> bool {
         forwards += usize::from(step >> by == other >> other_by);
         backwards += usize::from(step >> by == -(other >> other_by));
     }
-    // If one of them jumps, the other must as well.
+    // Where one motion jumps, the other one must jump as well.
     let even = |motion: &Motion| (0..motion.steps.len()).filter(|at| motion.is_even(*at)).count();
-    // A disturbed bit may be one that the other ignores.
+    // A disturbed bit may affect only one of the readings.
     let disturbed = one.jumps.min(other.jumps) / 2;
     let most = even(one).max(even(other));
     (all + disturbed) * 1000 >= SAME_PERMILLE * most && forwards.max(backwards) * 1000 >= SAME_PERMILLE * all

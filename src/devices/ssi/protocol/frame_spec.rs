@@ -1,5 +1,5 @@
-//! An arbitrary frame as one word for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names
-//! and patterns require a profile.
+//! Notation of any frame as one word for the command line, such as
+//! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included; they require a profile.
 
 use super::code::Code;
 use super::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
@@ -7,7 +7,6 @@ use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
 use crate::expected::AllowedValues;
 
-/// Keyword that starts a frame specification.
 const KEY: &str = "frame";
 
 const NAMES: &[&str] = &[
@@ -33,14 +32,14 @@ const NAMES: &[&str] = &[
     "unknown",
 ];
 
-/// Name of an unexplained bit.
 const UNKNOWN: &str = "BIT";
-/// Keys of the bit lists, each with the name of its bits and whether they are active at 0.
+/// Keys of the bit lists, each with the name of its bits and whether the bits are active at 0.
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
 impl Descriptor {
-    /// Parses a frame given as one word, or returns `None` if it begins with another keyword. Omitted values default to
-    /// 0, binary, and as many clocks as the position has bits.
+    /// Parses a frame given as one word, or returns `None` if the word begins with another keyword.
+    ///
+    /// By default, the code is binary, other values are 0, and there are as many clocks as position bits.
     ///
     /// # Errors
     /// [`SpecError`] with the valid values.
@@ -49,7 +48,7 @@ impl Descriptor {
         words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
     }
 
-    /// Returns the frame as one word, without the names and meanings of error bits, and without patterns.
+    /// Returns the frame as one word. Patterns, and the names and meanings of error bits, are left out.
     pub fn spec_text(&self) -> String {
         let own = Self::plain(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];

@@ -1,4 +1,4 @@
-//! Frames as written by users: bits in clock order, or a number.
+//! Frames as users write them: bits in clock order, or a number.
 
 /// The reason why a string is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -9,9 +9,9 @@ pub enum FrameTextError {
     /// The number of bits differs from the number of clocks.
     #[error("{text} {} {bits} bits; the layout has {clocks} clocks", if *.is_number { "needs" } else { "has" })]
     Bits {
-        /// Given string.
+        /// String as entered.
         text: String,
-        /// Number of bits in the string, or required by the number.
+        /// Number of bits in the string. For a number, this is the number of bits that it needs.
         bits: u32,
         /// Number of clocks in the layout.
         clocks: u8,
@@ -20,8 +20,8 @@ pub enum FrameTextError {
     },
 }
 
-/// Parses a frame of `clocks` clocks, given either as bits in clock order (`0b1010…` or only 0 and 1) or as a
-/// right-justified number (`0x…`). Blanks and underscores between bits are ignored.
+/// Parses a frame with the given number of clocks. The text contains either bits in clock order (`0b1010…` or only 0
+/// and 1), or a right-justified number (`0x…`). Blanks and underscores between bits are ignored.
 ///
 /// # Errors
 /// [`FrameTextError`] with the valid formats.
@@ -41,7 +41,7 @@ pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     let significant = digits.trim_start_matches('0');
     let frame = if significant.is_empty() { Ok(0) } else { u64::from_str_radix(significant, radix) };
     let count = u32::try_from(digits.len()).unwrap_or(u32::MAX);
-    // More than 64 bits are counted by their digits.
+    // A number that exceeds 64 bits is measured by its digits.
     let bits = match &frame {
         Ok(frame) if is_number => u64::BITS - frame.leading_zeros(),
         Err(_) if is_number => u32::try_from(significant.len()).unwrap_or(u32::MAX).saturating_mul(4),

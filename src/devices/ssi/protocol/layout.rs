@@ -1,5 +1,4 @@
-//! A possible frame with fast conversion between positions and bits. [`super::explain`] provides the meaning of each
-//! bit.
+//! Conversion between positions and the bits of a frame. [`super::explain`] provides the meaning of each bit.
 
 mod check;
 #[cfg(test)]
@@ -12,18 +11,21 @@ pub(crate) use tests::layouts as any_layouts;
 use super::code::{PositionCode, gray_to_binary, low_bits_mask, to_gray};
 use super::descriptor::{Descriptor, GrayCoverage};
 
-/// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
+/// A checked [`Descriptor`] with its shifts and masks.
+///
+/// A *word* is a frame without its repetition, right-justified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub(super) descriptor: Descriptor,
     pub(super) coding: PositionCode,
     /// Upper and lower part of the code word.
     pub(super) parts: [Part; 2],
-    /// Whether the lowest bit of the code word is shifted out.
+    /// Whether the shift drops the lowest bit of the code word.
     pub(super) lost: bool,
-    /// Number of bits in a word after the area.
+    /// Number of bits in a word after the area of the position.
     pub(super) behind_area: u8,
-    /// Number of bits that are Gray coded as a whole, and number of bits after them; 0 if there are none.
+    /// Number of bits that are Gray coded as a whole, and number of bits after them. The first number is 0 if only the
+    /// position is coded.
     pub(super) gray: (u8, u8),
     /// Mask of the bits in a word that are always 0.
     pub(super) zeros: u64,
@@ -31,7 +33,7 @@ pub struct Layout {
     pub(super) errors: Vec<u64>,
     /// Mask of the error bits that are active at 0.
     pub(super) low: u64,
-    /// Masks of the parity bit in a word and of the bits before it; 0 without parity.
+    /// Masks of the parity bit and of the bits before it, both in a word. They are 0 without parity.
     pub(super) parity: (u64, u64),
     pub(super) patterns: Vec<u64>,
     pub(super) invalid: Flags,
@@ -51,24 +53,24 @@ pub(super) struct Part {
 pub struct FrameReading {
     /// Position, or 0 if [`Flags::CODE`] is set and there is no position.
     pub position: u64,
-    /// Flags in addition to the position.
+    /// Error bits, patterns and inconsistencies in the frame.
     pub flags: Flags,
 }
 
-/// Flags of a frame in addition to its position: error bits, patterns, and inconsistencies.
+/// Properties of a frame in addition to its position: error bits, patterns and inconsistencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Flags(pub(super) u32);
 
 impl Flags {
-    /// Nothing.
+    /// No flags.
     pub const NONE: Flags = Flags(0);
-    /// Invalid code word, with digits above 9 or outside of Gray excess.
+    /// The code word is invalid: a BCD digit is above 9, or a word is not part of the Gray excess code.
     pub const CODE: Flags = Flags(1 << 16);
-    /// A bit that should be 0 is 1, due to another layout, a wrong number of clocks, or a disturbed line.
+    /// A bit that should be 0 is 1. The layout or the number of clocks is wrong, or the line is disturbed.
     pub const PADDING: Flags = Flags(1 << 17);
     /// The parity is wrong.
     pub const PARITY: Flags = Flags(1 << 18);
-    /// The repetition is another.
+    /// The repetition differs from the first transmission.
     pub const REPEAT: Flags = Flags(1 << 19);
     /// Every bit is 1.
     pub const ONES: Flags = Flags(1 << 20);
@@ -130,7 +132,7 @@ impl Layout {
     /// Creates the layout of a frame.
     ///
     /// # Errors
-    /// [`LayoutError`] with the reason why the frame is impossible.
+    /// [`LayoutError`] if the frame is impossible.
     pub fn new(descriptor: Descriptor) -> Result<Self, LayoutError> {
         check::layout(descriptor)
     }
@@ -140,7 +142,7 @@ impl Layout {
         &self.descriptor
     }
 
-    /// Returns the coding of the positions, which is binary if the Gray code covers more than the position.
+    /// Returns the code of the positions. It is binary if a Gray code covers more than the position.
     pub const fn coding(&self) -> &PositionCode {
         &self.coding
     }
@@ -150,7 +152,7 @@ impl Layout {
         self.descriptor.clocks
     }
 
-    /// Returns whether the position's lowest bit is not sent, because shifting right has removed it.
+    /// Returns whether the shift to the right drops the lowest bit of the position.
     pub const fn loses_lowest_bit(&self) -> bool {
         self.lost
     }
@@ -160,8 +162,10 @@ impl Layout {
         self.invalid
     }
 
-    /// Returns the frame for a position, with the error bits in `flags` active, or `None` beyond the last position. The
-    /// frame is right-justified, with the bit of the first clock as the highest.
+    /// Returns the frame for a position, or `None` beyond the last position. The error bits in `flags` are active in
+    /// it.
+    ///
+    /// The frame is right-justified: the bit of the first clock is the highest.
     pub fn encode(&self, position: u64, flags: Flags) -> Option<u64> {
         let code = self.coding.encode(position)?;
         let mut word =
@@ -186,7 +190,7 @@ impl Layout {
         Some(if self.descriptor.inverted { !frame & low_bits_mask(self.clocks()) } else { frame })
     }
 
-    /// Decodes a frame, ignoring bits above its clocks.
+    /// Decodes a frame. Bits above the number of clocks are ignored.
     #[inline]
     pub fn decode(&self, frame: u64) -> FrameReading {
         let all = low_bits_mask(self.clocks());
@@ -230,7 +234,7 @@ impl Layout {
         }
     }
 
-    /// Decodes frames in order, up to the length of the shorter slice.
+    /// Decodes frames in order until either slice ends.
     pub fn decode_all(&self, frames: &[u64], readings: &mut [FrameReading]) {
         for (frame, reading) in frames.iter().zip(readings) {
             *reading = self.decode(*frame);
@@ -252,7 +256,7 @@ impl Layout {
         first | self.descriptor.repeat.map_or(0, |repeat| first >> (repeat.word + repeat.gap))
     }
 
-    /// Compares a word with its repetition in the frame.
+    /// Compares a word with its repetition, and returns the flags for the differences.
     fn repetition(&self, frame: u64, word: u64) -> Flags {
         let differs = frame ^ self.repeated(word);
         let again = self.repeated(low_bits_mask(self.descriptor.word()));

@@ -1,7 +1,7 @@
-//! SSI: frames of any layout, the families described in the manual, and their timing limits.
+//! SSI: frames of any layout, the encoder families of the manual, and their timing limits.
 //!
-//! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual"); "reference" refers to the project's reference. The
-//! bit diagrams of the manual are not available; layouts follow its text, which numbers the clocks from 1.
+//! "The manual" is SICK, *SSI Schnittstellenbeschreibung*, and "reference" is the project's reference. The bit diagrams
+//! of the manual are not available. The layouts follow its text, which numbers the clocks from 1.
 
 #![warn(missing_docs)]
 
@@ -20,7 +20,7 @@ mod spec;
 mod tally;
 mod timing;
 
-/// Keyword for this kind of device on the command line, in profiles and in stored data.
+/// Keyword for SSI encoders on the command line, in profiles and in stored data.
 pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, PositionCode, gray_to_binary, to_gray};

@@ -1,8 +1,9 @@
-//! Layouts given as one word, `KEY,name=value,…`: the parts common to family settings and arbitrary frames.
+//! Layouts written as one word, `KEY,name=value,…`. This module contains the parts common to families and arbitrary
+//! frames.
 
 use crate::expected::AllowedValues;
 
-/// The reason why a string is not a layout.
+/// The reason why a word does not describe a layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
     /// A part is not of the form `name=value`.

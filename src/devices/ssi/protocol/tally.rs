@@ -1,5 +1,4 @@
-//! Counting of findings in frames. Error bits that a transfer clears are cleared with the next frame and would be
-//! missed by checking at intervals.
+//! Counts of the findings in frames. Every frame must be counted, because the next transfer clears some error bits.
 
 use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};
@@ -9,17 +8,17 @@ use crate::analysis::SampleTime;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FindingCounts {
     noted: Vec<CountedFinding>,
-    /// Flags of the previous frame, and their indices in `noted`.
+    /// Flags of the previous frame, and the indices of their findings in `noted`.
     before: (Flags, Vec<usize>),
 }
 
-/// Finding with its number of occurrences.
+/// A finding with its number of occurrences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountedFinding {
     /// The finding.
     pub finding: FrameFinding,
-    /// Number of occurrences: findings about a single transfer (a clearable error bit, parity, repetition) count with
-    /// each frame, lasting ones each time they begin.
+    /// Number of occurrences. A finding about a single transfer counts in each frame; other findings count each time
+    /// they begin.
     pub count: u64,
     /// Time of the first frame with the finding.
     pub first: SampleTime,
@@ -30,8 +29,9 @@ pub struct CountedFinding {
 }
 
 impl FindingCounts {
-    /// Counts the findings of a frame; returns those that the previous frame did not have. `layout` must be the layout
-    /// of all frames since the last [`reset`](Self::reset).
+    /// Counts the findings of a frame, and returns those that the previous frame did not have.
+    ///
+    /// `layout` must be the layout of all frames since the last [`reset`](Self::reset).
     pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: SampleTime) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
@@ -77,19 +77,20 @@ impl FindingCounts {
         &self.noted
     }
 
-    /// Renames the findings; lasting ones are counted again with the next frame.
+    /// Ends all present findings, because names in the layout have changed. They are counted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
-    /// Resets all counts; lasting findings are counted again with the next frame.
+    /// Removes all counts. Findings that are still present are counted again with the next frame.
     pub fn reset(&mut self) {
         *self = FindingCounts::default();
     }
 }
 
-/// Returns whether a finding concerns a single transfer, so that the same finding in the next frame counts again.
+/// Returns whether a finding concerns a single transfer. Such a finding is counted again if the next frame has it as
+/// well.
 fn is_of_one_transfer(finding: &FrameFinding) -> bool {
     matches!(
         finding,

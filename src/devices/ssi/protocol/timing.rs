@@ -1,5 +1,5 @@
-//! Timing limits of a transfer: burst duration, reading rate, and age of a position (SICK SSI description 2.2, 2.7, 2.8
-//! and the section of each family; reference sections 1 and 5).
+//! Timing limits of a transfer: duration of a burst, reading rate, and age of a position. See SICK SSI description 2.2,
+//! 2.7, 2.8 and the section of each family, and reference sections 1 and 5.
 
 #[cfg(test)]
 mod tests;
@@ -8,55 +8,55 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
-/// Timing of an encoder family, in microseconds.
+/// Timing of an encoder family. Times are in microseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {
-    /// Minimum and maximum monoflop time tm, during which the data line stays low after the last clock and the value is
-    /// kept.
+    /// Minimum and maximum monoflop time tm. The data line stays low for this time after the last clock, and the
+    /// encoder keeps the value.
     pub monoflop: (f64, f64),
-    /// Highest clock, in hertz.
+    /// Maximum clock frequency in hertz.
     pub most_hz: u32,
-    /// Times of asynchronous operation, in which positions are generated independently of transfers; `None` if unknown.
+    /// Times of asynchronous operation, or `None` if they are unknown.
     #[serde(default)]
     pub asynchronous: Option<Asynchronous>,
-    /// Times of synchronous operation, in which positions are generated when the host clocks.
+    /// Times of synchronous operation, or `None` if the family does not support it.
     #[serde(default)]
     pub synchronous: Option<Synchronous>,
-    /// Times of both modes if the number of steps is not a power of two.
+    /// Times for a number of steps that is not a power of two, if they differ.
     #[serde(default)]
     pub any_steps: Option<AnySteps>,
 }
 
-/// Times of asynchronous operation, in which positions are generated independently of transfers.
+/// Times of asynchronous operation, in which the encoder takes positions independently of the transfers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asynchronous {
-    /// Time from one position to the next.
+    /// Time from one position to the next, in microseconds.
     pub update: f64,
     /// Minimum age of a position when it is read, in microseconds.
     #[serde(default)]
     pub least_age: f64,
-    /// Maximum pause between bursts in microseconds, if limited.
+    /// Maximum pause between bursts in microseconds, if there is a limit.
     #[serde(default)]
     pub most_pause: Option<f64>,
-    /// Variation of the pauses in percent, if specified.
+    /// Allowed variation of the pauses in percent, if it is specified.
     #[serde(default)]
     pub pause_varies: Option<f64>,
 }
 
-/// Timing of synchronous operation, in which the encoder determines its position when the host clocks.
+/// Times of synchronous operation, in which the clock of the host makes the encoder take a position.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Synchronous {
-    /// The moment at which a position is taken.
+    /// Moment at which a position is taken.
     pub taken: Taken,
-    /// tm in this mode.
+    /// Monoflop time tm in this mode in microseconds, if it differs.
     #[serde(default)]
     pub monoflop: Option<f64>,
-    /// The shortest pause.
+    /// Minimum pause between bursts in microseconds.
     pub least_pause: f64,
-    /// Maximum clock frequency in synchronous mode, in hertz, if different.
+    /// Maximum clock frequency in this mode in hertz, if it differs.
     #[serde(default)]
     pub most_hz: Option<u32>,
 }
@@ -65,18 +65,18 @@ pub struct Synchronous {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Taken {
-    /// The position is taken some time after the last clock, and is ready some time later.
+    /// The position is taken a certain time after the last clock.
     Behind {
         /// Time from the last clock until the position is taken, in microseconds.
         starts: f64,
-        /// Time from the start.
+        /// Time from then until the position is ready, in microseconds.
         ready: f64,
     },
-    /// The position is taken at the first falling edge, and sent with the next burst.
+    /// The position is taken at the first falling edge, and is sent in the next burst.
     FirstEdge,
 }
 
-/// Times that are longer if the number of steps is not a power of two.
+/// Times for a number of steps that is not a power of two. They are longer than the usual times.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnySteps {
@@ -86,97 +86,97 @@ pub struct AnySteps {
     pub monoflop: f64,
 }
 
-/// Conditions under which frames are read.
+/// Conditions under which a host reads frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reads {
-    /// Bits of a burst.
+    /// Number of bits in a burst.
     pub clocks: u8,
-    /// Clock in hertz.
+    /// Clock frequency in hertz.
     pub clock_hz: f64,
-    /// Time from the last clock of a burst to the first of the next.
+    /// Pause from the last clock of a burst to the first clock of the next one.
     pub pause: Duration,
-    /// Cable in metres.
+    /// Cable length in metres, if it is known.
     pub cable_metres: Option<f64>,
-    /// Whether the encoder takes a position when the host clocks.
+    /// Whether the encoder is in synchronous mode.
     pub synchronous: bool,
     /// Whether the number of steps is not a power of two.
     pub any_steps: bool,
 }
 
-/// The resulting times.
+/// Times that result from the conditions of reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// A clock.
+    /// Duration of a clock period.
     pub period: Duration,
     /// Duration of all clocks of a burst.
     pub burst: Duration,
     /// Time from the start of one burst to the start of the next.
     pub cycle: Duration,
-    /// tm, least and most.
+    /// Minimum and maximum monoflop time tm.
     pub monoflop: (Duration, Duration),
-    /// The shortest pause that is safe.
+    /// Pause that must be exceeded between bursts.
     pub least_pause: Duration,
     /// Number of bursts per second at the shortest pause.
     pub most_reads_hz: f64,
     /// Minimum and maximum age of a position when its last bit arrives, or `None` if unknown.
     pub age: Option<(Duration, Duration)>,
-    /// Maximum clock frequency for this cable in hertz, or `None` if the cable is longer than any in the manual.
+    /// Maximum clock frequency for this cable in hertz, or `None` if the manual lists no cable of this length.
     pub cable_hz: Option<u32>,
-    /// The violated limits.
+    /// Timing limits that are violated.
     pub warnings: Vec<Warning>,
 }
 
-/// Violated timing limit, with its value.
+/// A violated timing limit with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// The clock is too fast for the encoder.
     EncoderClock {
-        /// Highest, in hertz.
+        /// Maximum clock frequency in hertz.
         most_hz: u32,
     },
     /// The clock is too fast for the cable length.
     CableClock {
-        /// Highest, in hertz.
+        /// Maximum clock frequency in hertz.
         most_hz: u32,
     },
     /// The cable is longer than any listed in the manual.
     CableLong,
-    /// A clock level lasts longer than tm, which the encoder interprets as the end of the burst.
+    /// A clock level lasts longer than tm. The encoder then regards the burst as complete.
     ClockSlow {
-        /// Lowest clock, in hertz.
+        /// Minimum clock frequency in hertz.
         least_hz: f64,
     },
-    /// The pause is shorter than the encoder needs, so that it continues the old position or is not ready.
+    /// The pause is shorter than the encoder needs. The encoder then sends the old position or is not ready.
     PauseShort {
-        /// Shortest.
+        /// Minimum pause.
         least: Duration,
     },
-    /// The pause is longer than the encoder bears.
+    /// The pause is longer than the encoder allows.
     PauseLong {
-        /// Longest.
+        /// Maximum pause.
         most: Duration,
     },
-    /// Frames are read faster than positions are generated, so that positions repeat and the host must accept that.
+    /// Frames are read faster than the encoder takes positions, so some positions are read several times.
     Repeats {
         /// Time from one position to the next.
         update: Duration,
     },
     /// The family has no synchronous mode.
     NoSynchronous,
-    /// The encoder belongs to no family, so it is not known whether it has a synchronous mode.
+    /// It is unknown whether the encoder has a synchronous mode, because its family is unknown.
     SynchronousUnknown,
 }
 
-/// Cable table of the manual (2.7), with upper length limits in metres and maximum clock frequencies in hertz.
+/// Upper limits of cable lengths in metres, with the maximum clock frequencies in hertz. See the manual, 2.7.
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
-    /// General SSI times for an encoder of no family (SICK SSI description 2.2; reference section 1). The interval
-    /// between positions is unknown.
+    /// General SSI times for an encoder of no family. The interval between positions is unknown. See SICK SSI
+    /// description 2.2 and reference section 1.
     pub const GENERAL: Self =
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
-    /// Calculates the times of reading an encoder of no family.
+    /// Calculates the times for reading an encoder of no family.
     pub fn of_any_encoder(reads: &Reads) -> Timing {
         let mut timing = Self::GENERAL.reckon(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {
@@ -185,7 +185,7 @@ impl Times {
         timing
     }
 
-    /// Calculates the timing that results from the given conditions.
+    /// Calculates the times for reading this encoder family under the given conditions.
     pub fn reckon(&self, reads: &Reads) -> Timing {
         let mut warnings = Vec::new();
         let clock = reads.clock_hz.max(1.0);
@@ -257,7 +257,7 @@ impl Times {
 }
 
 impl Synchronous {
-    /// Returns the minimum and maximum age of a position, which differ only if the pause varies.
+    /// Returns the minimum and maximum age of a position. They are equal, because the pause is assumed to be constant.
     fn age(&self, burst: Duration, pause: Duration) -> (Duration, Duration) {
         let age = match self.taken {
             Taken::Behind { starts, .. } => pause.saturating_sub(micros(starts)) + burst,

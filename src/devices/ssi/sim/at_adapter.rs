@@ -1,4 +1,4 @@
-//! The SSI encoder behind a virtual adapter, configured in the query of a `sim:` link.
+//! Virtual SSI encoder behind a virtual adapter. The query of a `sim:` link configures it.
 
 use super::encoder::{Encoder, FrameSender};
 use super::injected_fault::InjectedFault;
@@ -12,28 +12,28 @@ pub const DELIVERED: &str = "atm60,code=gray";
 
 parameters! {
     pub struct Settings: ConfigError {
-        /// Family and settings of the encoder. A host that clocks a different number of bits receives a truncated
-        /// frame, or zeros after the frame.
+        /// Family and settings of the encoder. If the host clocks fewer bits, it receives a part of the frame; if it
+        /// clocks more bits, zeros follow the frame.
         encoder: Option<Encoder> = None,
             "ssi" => OptionalValue(Checked(AllowedValues::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
-        /// Active error bits, and words sent instead of the frame, each with its interval in seconds
-        /// (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`).
+        /// Active error bits, and words sent instead of the frame, such as `ERRSYNC:0.5,ERRSI:4` or `safety-fault`. The
+        /// number is the interval in seconds.
         troubles: String = String::new(), "ssi-error" => ANY;
     }
 }
 
 #[derive(Clone, Debug)]
 pub struct AtAdapter {
-    /// Encoder to use if the settings name none, or `None` for the factory settings.
+    /// Encoder to use if the settings do not name one, or `None` for the encoder with factory settings.
     encoder: Option<Encoder>,
 }
 
 impl AtAdapter {
-    /// Adapter for an encoder with factory settings, unless the settings specify another one.
+    /// Adapter with an encoder in factory settings, unless the link names another one.
     pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
 
-    /// Creates an adapter that uses the given encoder unless the settings name another.
+    /// Creates an adapter with the given encoder, unless the link names another one.
     pub const fn with_default_encoder(encoder: Encoder) -> Self {
         AtAdapter { encoder: Some(encoder) }
     }

@@ -9,12 +9,13 @@ use crate::units::Moment;
 pub struct Encoder {
     pub layout: Layout,
     pub direction: Direction,
-    /// Position at the shaft's zero, within the frame's range.
+    /// Position at the zero point of the shaft, within the range of the frame.
     pub preset: u64,
 }
 
 impl Encoder {
-    /// Returns the encoder for a family and settings such as `atm60,code=gray`, or `None` if the family is unknown.
+    /// Parses an encoder from a family with settings, such as `atm60,code=gray`. Returns `None` if the family is
+    /// unknown.
     pub(super) fn named(text: &str) -> Option<Self> {
         let (key, settings) = Settings::parse(text).ok()?;
         let families = Families::built_in();

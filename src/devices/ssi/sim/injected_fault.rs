@@ -1,16 +1,16 @@
-//! Injected faults in the frames of the virtual SSI encoder: active error bits, and words that report a fault instead
-//! of a position. The layout determines which faults exist (SICK SSI description, chapter 3).
+//! Simulated faults of the virtual SSI encoder: active error bits, and words that report a fault instead of a position.
+//! The layout defines the possible faults. See SICK SSI description, chapter 3.
 
 use std::time::Duration;
 
 use crate::devices::ssi::protocol::{Flags, Layout, Word};
 use crate::units::Moment;
 
-/// Error bit or word that reports a fault, and its timing.
+/// An error bit or a word that reports a fault, with its timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
     shows: FaultIndication,
-    /// Interval of the fault, or `None` if the fault is present from the start.
+    /// Period of an intermittent fault, or `None` if the fault is always present.
     period: Option<Duration>,
 }
 
@@ -18,10 +18,10 @@ pub(super) struct InjectedFault {
 enum FaultIndication {
     Bit {
         index: usize,
-        /// Whether the bit reports events since the previous transfer and is cleared by a transfer.
+        /// Whether a transfer clears the bit.
         cleared: bool,
     },
-    /// A word sent instead of the frame, right-justified.
+    /// A right-justified word that is sent instead of the frame.
     Word(u64),
 }
 
@@ -29,8 +29,10 @@ impl InjectedFault {
     const LEAST_PERIOD: f64 = 1e-6;
     const MOST_PERIOD: f64 = 86_400.0;
 
-    /// Parses faults such as `ERRSYNC:0.5,ERRSI`; returns `None` if the string is invalid. A name refers to an error
-    /// bit or a pattern of the layout, in upper or lower case, with hyphens for spaces.
+    /// Parses a list of faults such as `ERRSYNC:0.5,ERRSI`, or returns `None` if it is invalid.
+    ///
+    /// A name refers to an error bit or a pattern of the layout. It may be in upper or lower case, with hyphens instead
+    /// of spaces.
     pub(super) fn read(text: &str, layout: &Layout) -> Option<Vec<Self>> {
         let items = text.split(',').map(str::trim).filter(|item| !item.is_empty());
         items
@@ -50,9 +52,10 @@ impl InjectedFault {
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
     }
 
-    /// Returns whether the fault shows in a transfer, given the time of the previous transfer. A fault cleared by
-    /// transfers covers the interval since the previous one; an intermittent fault is present in the second half of its
-    /// period.
+    /// Returns whether a transfer shows the fault, given the time of the previous transfer.
+    ///
+    /// An intermittent fault is present in the second half of its period. If transfers clear the fault, it is shown if
+    /// it was present since the previous transfer.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });
@@ -72,7 +75,6 @@ impl InjectedFault {
         }
     }
 
-    /// Returns the error bit that is set, if any.
     pub(super) const fn flag(&self) -> Flags {
         match self.shows {
             FaultIndication::Bit { index, .. } => Flags::error(index),

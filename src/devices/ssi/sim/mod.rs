@@ -1,5 +1,5 @@
-//! The virtual SSI encoder: the words that it sends at a shaft position, and its injected faults. The adapter clocks
-//! them out and turns the shaft.
+//! The virtual SSI encoder: the words that it sends at a position of the shaft, and its simulated faults. The virtual
+//! adapter clocks the words and turns the shaft.
 //!
 //! | file | content |
 //! |---|---|

@@ -1,5 +1,5 @@
-//! Actions of the user on an encoder or its layout: changes take effect at once, everything else is a job of the
-//! session or a task.
+//! Actions of the user on an encoder or a layout. A change of the layout takes effect at once; everything else is a job
+//! of the session or a task.
 
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ impl Encoder {
         match action {
             SsiAction::SendLayout => {
                 let Some(url) = self.link_for_layout() else { return };
-                // The draft belongs to the encoder of the previous link.
+                // The draft belongs to the encoder at the previous link.
                 self.release_draft(services);
                 self.switch_link(&url);
                 self.session.source = Source::Link(url);
@@ -104,7 +104,7 @@ impl Encoder {
 
     fn start_trial(&mut self, with: TrialInput) {
         let layout = self.designer.layout();
-        // The trial starts from the word that was read, if one is shown.
+        // The trial starts with the word read last, if that word is displayed.
         if self.is_showing_live()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {
@@ -150,7 +150,7 @@ impl Encoder {
         self.find(services, move || read_frames(&path, clocks));
     }
 
-    /// Searches on a background thread, since several thousand layouts are tried.
+    /// Starts a search on a background thread, because it tries several thousand layouts.
     fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;

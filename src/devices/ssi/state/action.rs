@@ -1,4 +1,4 @@
-//! Actions of the selected SSI encoder or its layout.
+//! Actions on the selected SSI encoder or layout.
 
 use std::path::PathBuf;
 
@@ -17,14 +17,14 @@ pub enum SsiAction {
     AddErrorBit,
     RemoveErrorBit(usize),
     Try(TrialInput),
-    /// Sets the number of clocks per word for a search, or restores that of the layout with `None`.
+    /// Sets the number of clocks per word for a search, or returns to that of the layout with `None`.
     SetClocks(Option<u8>),
     Find,
-    /// Asks for a file with frames in order to find their layout.
+    /// Asks for a file with frames, whose layout is then searched for.
     AskFrames,
     FindIn(PathBuf),
     ForgetSearch,
-    /// Adopts a layout from the search result, given the index of its class and its index within that class.
+    /// Adopts a layout found by a search, given the index of its class and its index in the class.
     Take(usize, usize),
     ForgetErrors,
     AskExport(ExportFormat, Language),
@@ -32,14 +32,14 @@ pub enum SsiAction {
     AskSaveFrames,
     SaveFrames(PathBuf),
     SendLayout,
-    /// Turns the virtual encoder's shaft at the given speed in revolutions per minute.
+    /// Turns the shaft of the virtual encoder at a speed in revolutions per minute.
     Turn(f64),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TrialInput {
     Position(u64),
-    /// Sets the frame for a turn and a step within that turn.
+    /// Sets the frame for a turn and a step within the turn.
     Place(u64, u64),
     Bits(String),
     /// Inverts the bit at the given clock, counted from 1.

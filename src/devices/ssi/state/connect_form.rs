@@ -1,4 +1,4 @@
-//! Connection form of an SSI encoder behind an adapter, and its link. Nothing is opened here.
+//! Connection form of an SSI encoder behind an adapter. The form creates a link but does not open it.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -21,18 +21,18 @@ pub enum SsiLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries for another type of connection are kept but left out of the link. An empty
-/// entry means the default.
+/// Entries of the connection form. Entries of another type of connection are kept, but they are not part of the link.
+/// An empty entry stands for the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
     pub kind: SsiLinkKind,
-    /// Whether to connect over a network instead of a serial port of this machine.
+    /// Whether the adapter is connected over a network, rather than to a serial port of this computer.
     pub network: bool,
     pub port: String,
     pub host: String,
     pub tcp_port: String,
     pub file: String,
-    /// Whether the adapter leaves the encoder's supply on at the end.
+    /// Whether the adapter leaves the supply of the encoder on when the session ends.
     pub leave_supply: bool,
     pub typed: Typed,
     /// Link parameters without an entry in the form.
@@ -42,7 +42,7 @@ pub struct SsiForm {
 impl FormModel for SsiForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder initially offered by the window: slow enough to see the bits.
+    // The clock of the virtual encoder is slow enough to see the bits.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set("rpm", "6");
@@ -85,23 +85,23 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
-    /// Returns the entries of the form for a link, including those of a selected virtual encoder.
+    /// Returns the link parameters that have an entry in the form. Those of a virtual encoder are included if it is
+    /// selected.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries for the virtual encoder and its adapter.
     pub fn of_the_virtual() -> Vec<Entry> {
         [Settings::entries(), bridge::entries()].concat()
     }
 
-    /// Returns the entry for the encoder supply, and the remaining link entries.
+    /// Returns the parameter for the supply of the encoder, and the other link parameters.
     pub fn link_entries() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }
 
-    /// Fills in the entry of a parameter. Returns `false` if the parameter has no entry.
+    /// Fills in the entry for a parameter. Returns `false` if the form has no such entry.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfterSession::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfterSession::LEFT_ON.1;

@@ -1,5 +1,5 @@
-//! Design of a layout: every change can be undone; an impossible change is refused with a message and has no effect, so
-//! the frame is always valid.
+//! Design of a layout. Every change can be undone. An impossible change is refused with a message, so the frame is
+//! always valid.
 
 mod reshape;
 
@@ -23,26 +23,26 @@ const TO_BEGIN_WITH: &str = "ahm36";
 pub struct Design {
     pub profile: SsiProfile,
     pub layout: Layout,
-    /// Settings with which the family sends exactly this frame, or `None` if the layout has no family or its family
+    /// Settings with which the family sends exactly this frame. `None` if the layout has no family, or if its family
     /// cannot send the frame.
     pub settings: Option<Settings>,
-    /// Accepted settings that the family's manual does not mention.
+    /// Remarks about accepted settings that the manual of the family does not mention.
     pub advice: Vec<Advice>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Switches to a family's factory layout, given the family key.
+    /// Switches to the factory layout of the family with this key.
     Family(String),
-    /// Detaches the frame from its family, so that every part of it becomes editable.
+    /// Detaches the frame from its family. Every part of it can then be edited.
     Free,
     /// Changes the family settings.
     Settings(Box<Settings>),
     Frame(Box<Descriptor>),
-    /// Changes the positions or the code; the frame grows or shrinks accordingly.
+    /// Changes the positions or the code. The frame becomes longer or shorter accordingly.
     Position(Range, Code),
     Direction(Direction),
-    /// Sets the position at the shaft's zero.
+    /// Sets the position at the zero point of the shaft.
     Preset(u64),
     Reading(ReadingSettings),
     Name(String),
@@ -60,11 +60,11 @@ pub struct LayoutDesigner {
 }
 
 impl Design {
-    /// Creates the design of a layout with its family. If several settings produce the frame, the `requested` ones are
-    /// preferred, otherwise the fewest.
+    /// Creates the design of a layout with its family. If several settings result in the frame, the `requested` ones
+    /// are preferred, or else the fewest.
     ///
     /// # Errors
-    /// The reason why the layout is impossible.
+    /// Returns the reason why the layout is impossible.
     fn of(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.named(key));
@@ -90,20 +90,21 @@ impl Default for Design {
 }
 
 impl LayoutDesigner {
-    /// Creates the design of a saved layout. An impossible layout, which no file contains, is replaced by the default.
+    /// Creates a designer for a saved layout. An impossible layout is replaced by the default; it cannot come from a
+    /// file.
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
         LayoutDesigner { families, now, saved, history: History::default(), problem: None }
     }
 
-    /// Creates the design of a family's factory layout.
+    /// Creates a designer for the factory layout of a family.
     pub(super) fn factory_default(families: Arc<Families>) -> Self {
         let profile = parse_profile(TO_BEGIN_WITH, &families);
         LayoutDesigner::with(profile, families)
     }
 
-    /// Creates the design for a link. The layout is known only if the link leads to a virtual encoder.
+    /// Creates a designer for a link. The layout is known only if the link leads to a virtual encoder.
     pub(super) fn for_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == LinkScheme::Sim);
         let mut profile = parse_profile(sent.unwrap_or(DELIVERED), &families);
@@ -111,13 +112,13 @@ impl LayoutDesigner {
         LayoutDesigner::with(profile, families)
     }
 
-    /// Returns the reading settings after the link to the encoder was replaced. Parameters that differ between the
-    /// links are taken from the new one, and settings made by the user are kept.
+    /// Returns the reading settings after a change of the link. Parameters that differ between the links come from the
+    /// new link. Other settings are kept.
     pub(super) fn reading_after_link_change(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         reading_for_link(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
-    /// Returns the frame that the virtual encoder at the given link sends.
+    /// Returns the frame sent by the virtual encoder at a link.
     pub(super) fn descriptor_sent_by(&self, url: &LinkUrl) -> Descriptor {
         parse_profile(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
@@ -146,8 +147,8 @@ impl LayoutDesigner {
         self.family().map(|family| &family.times)
     }
 
-    /// Returns whether error and parity bits move with the end of the position, as determined by the family settings or
-    /// else by the frame.
+    /// Returns whether error and parity bits move with the end of the position. The family settings determine this, or
+    /// else the frame.
     pub fn error_bits_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
@@ -171,7 +172,7 @@ impl LayoutDesigner {
         }
     }
 
-    /// Changes the layout as a single undo step. Returns `false` if nothing changed.
+    /// Changes the layout as one undo step. Returns `false` if nothing changed.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let requested = match &edit {
             Edit::Settings(settings) => Some((**settings).clone()),
@@ -181,7 +182,7 @@ impl LayoutDesigner {
             Ok(design) => {
                 self.problem = None;
                 if design.profile == self.now.profile {
-                    // Other settings may send the same frame.
+                    // Different settings can result in the same frame.
                     self.now = design;
                     return false;
                 }
@@ -207,7 +208,7 @@ impl LayoutDesigner {
                 let Some(family) = self.families.named(&key) else {
                     return Err(TEXTS.text("ssi.no_family").with("key", key));
                 };
-                // A preset of the previous layout means another place.
+                // The old preset has no meaning in the new layout.
                 profile.preset = 0;
                 return resolved_profile(profile, family, Settings::default());
             }
@@ -246,7 +247,7 @@ impl LayoutDesigner {
             return false;
         }
         self.problem = None;
-        // It was possible when the step was made.
+        // The layout was possible when the step was made.
         let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
         self.now = design;
         true
@@ -292,7 +293,7 @@ impl PendingEdits for LayoutDesigner {
     }
 }
 
-/// Returns the reading settings for a link, with the link's parameters applied.
+/// Returns the reading settings with the parameters of the link for which `counts` is true.
 fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
@@ -303,7 +304,7 @@ fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&st
     }
 }
 
-/// Parses a layout, falling back to a minimal one if the string is invalid.
+/// Parses a layout of a family. An invalid text results in a minimal layout.
 fn parse_profile(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
         let family = families.named(&key)?;
@@ -312,7 +313,7 @@ fn parse_profile(text: &str, families: &Families) -> SsiProfile {
     resolved.unwrap_or_else(|| Design::default().profile)
 }
 
-/// Returns the profile with the frame that a family sends with the given settings. Direction and preset are kept.
+/// Returns the profile with the frame that a family sends with these settings. Direction and preset are kept.
 fn resolved_profile(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
     let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;

@@ -1,5 +1,5 @@
-//! Layout changes that survive a crash: stored entry by entry, so that changes made to the file by others are
-//! preserved.
+//! Drafts of layout changes, which survive a crash. They are stored entry by entry, so changes that others make to the
+//! file are preserved.
 
 use super::design::Edit;
 use super::encoder::Encoder;
@@ -11,8 +11,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Profile, ProfileDocument};
 use crate::store::DeviceKey;
 
-/// Changes to the layout, one per entry; empty if the layout is as saved. Earlier versions stored the whole layout as
-/// profile text.
+/// Changes to the layout, one for each changed entry. Earlier versions stored the complete profile as text.
 pub(crate) type Drafts = Vec<String>;
 
 impl HasSession for Encoder {
@@ -33,8 +32,10 @@ impl HasDraft for Encoder {
         None
     }
 
-    /// Returns `None`. SSI encoders do not report their identity, so a layout belongs to the link on which it was used;
-    /// a virtual encoder is described by its link.
+    /// Returns `None` for a layout that does not belong to a link.
+    ///
+    /// SSI encoders do not report their identity, so a layout belongs to the link on which it was used. The link
+    /// describes a virtual encoder completely.
     fn type_and_serial(&self) -> Option<(String, String)> {
         let Source::Link(url) = &self.session.source else { return None };
         let wire = if self.session.is_virtual() {
@@ -64,7 +65,7 @@ impl HasDraft for Encoder {
         match whole {
             Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
-            // The present file and the edits together are not a possible frame.
+            // The edits do not result in a possible frame with the present file.
             None => self.designer.refuse(TEXTS.text("ssi.draft_unfit")),
         }
     }
@@ -84,7 +85,7 @@ impl HasDraft for Encoder {
     fn apply_document(&mut self, file: ProfileFile, document: ProfileDocument) {
         let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
-        // Undo steps are kept unless the file has changed: then the edits remain edits.
+        // Undo steps are kept if the file has not changed. Otherwise the edits stay edits.
         if self.designer.design().profile == *profile {
             self.designer.mark_saved(profile.clone());
         } else {

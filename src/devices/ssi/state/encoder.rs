@@ -1,5 +1,5 @@
-//! An open SSI encoder or a layout of one: the layout being designed, a trial frame, the words read, and the result of
-//! a search. The encoder has no memory; nothing is ever written to it.
+//! An open SSI encoder or layout: the layout being designed, a trial frame, the words read, and the result of a search.
+//! The encoder has no memory, so nothing is written to it.
 
 use std::sync::Arc;
 
@@ -21,24 +21,23 @@ pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: LayoutDesigner,
     pub trial: Trial,
-    /// Whether the trial frame follows the most recently read word.
+    /// Whether the word read last is displayed instead of the trial frame.
     pub(super) follows: bool,
     pub record: Record,
     pub hunt: SearchState,
     pub(super) searches: u32,
-    /// Adapter identity and its settings for reading words, once known.
+    /// Identity of the adapter with its settings for reading words, once known.
     pub identity: Option<Identity>,
     pub check: Option<Vec<CheckLine>>,
     pub motor: Option<Motor>,
     pub(super) clocks: Option<u8>,
-    /// Reading settings last sent to the adapter, if any.
     pub(super) requested: Option<ClockSettings>,
 }
 
 impl Encoder {
     pub(super) fn with(session: Session<Ssi>, designer: LayoutDesigner) -> Self {
         let mut trial = Trial::default();
-        // A position whose bits can be distinguished.
+        // The bits of this position differ from each other.
         trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
         Encoder {
             record: Record::new(designer.layout().clone()),
@@ -60,8 +59,8 @@ impl Encoder {
         self.designer.design()
     }
 
-    /// Returns the displayed frame: the last word read if following is selected and a word is available, otherwise the
-    /// trial frame.
+    /// Returns the displayed frame. This is the word read last, if it is to be displayed and exists, or else the trial
+    /// frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_showing_live().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
@@ -76,17 +75,17 @@ impl Encoder {
         self.record.last()
     }
 
-    /// Returns the adapter's current stream, or `None` if it is not streaming.
+    /// Returns the stream of words from the adapter, or `None` if there is none.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
 
-    /// Returns the number of clocks per word being read: that of the layout, unless another number is being tried.
+    /// Returns the number of clocks per word. This is the number in the layout, unless another one is being tried.
     pub fn clocks(&self) -> u8 {
         self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
     }
 
-    /// Returns whether a number of clocks other than the layout's is being tried.
+    /// Returns whether a number of clocks is being tried that differs from the layout.
     pub fn has_own_clocks(&self) -> bool {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
@@ -132,8 +131,8 @@ impl Encoder {
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
 
-    /// Returns the link to a virtual encoder that would send this layout, if the connected virtual encoder sends
-    /// another. A link can only describe frames of a family.
+    /// Returns the link to a virtual encoder that sends this layout. Returns `None` if the present one already does, or
+    /// if the layout belongs to no family and so cannot be part of a link.
     pub fn link_for_layout(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
@@ -146,7 +145,7 @@ impl Encoder {
         })
     }
 
-    /// Returns whether this is a profile that is or will be stored in a file.
+    /// Returns whether the layout is a profile that is or can be stored in a file.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
     }
@@ -158,7 +157,7 @@ impl Encoder {
 }
 
 impl LayoutDesigner {
-    /// Returns the times of the family, or else the general SSI times from the manual.
+    /// Returns the timing limits of the family, or else the general limits of SSI.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)
     }
@@ -172,7 +171,7 @@ impl LayoutDesigner {
         self.design().profile.reads()
     }
 
-    /// Returns the user-defined name, or else the family's.
+    /// Returns the user-defined name of the layout, or else the name of the family.
     pub fn title(&self) -> String {
         let profile = &self.design().profile;
         if !profile.name.is_empty() {

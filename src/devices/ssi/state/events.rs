@@ -1,4 +1,4 @@
-//! Events from the line to an SSI encoder: identity of the adapter, words, and loss of the connection.
+//! Handling of events from the line: identity of the adapter, words, and loss of the connection.
 
 use std::convert::Infallible;
 
@@ -24,7 +24,7 @@ impl Kind for Ssi {
     const KIND: &'static str = KIND;
     type Edits = Drafts;
     type SessionHandle = Option<Motor>;
-    /// Uninhabited, because an SSI encoder is never written to.
+    /// No values exist, because nothing is written to an SSI encoder.
     type Review = Infallible;
 
     fn session_handle(session: &Session<Self>) -> Option<Motor> {
@@ -60,7 +60,7 @@ impl Encoder {
     /// Sends the reading settings to the adapter if they differ from those last sent.
     fn send_reading_settings(&mut self, services: &mut Services) {
         let asking = self.query_settings();
-        // Once it is identified, and nothing else runs; a refused setting is not sent again.
+        // The adapter must be identified and idle. Settings that it refused are not sent again.
         if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
             self.requested = Some(asking);
             self.submit(SsiJob::Set(asking), services);

@@ -22,7 +22,7 @@ pub use export::export;
 pub use family::{note, store};
 pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 
-/// Returns one or more texts that explain why a job ended early, each of which may be shown on its own line.
+/// Returns texts that explain why a job ended early. Each may be shown on its own line.
 pub fn job(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link(error),
@@ -31,7 +31,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }]
 }
 
-/// Returns the reason for a lost connection, or `None` if requests are still possible.
+/// Returns the reason for the loss of the connection, or `None` if the error does not end it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link(error)),
@@ -64,7 +64,6 @@ pub fn finding_text(finding: &FrameFinding) -> Text {
     }
 }
 
-/// Returns the text about an accepted setting that the manual does not describe.
 pub fn advice_text(advice: &Advice) -> Text {
     match advice {
         Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
@@ -72,7 +71,6 @@ pub fn advice_text(advice: &Advice) -> Text {
     }
 }
 
-/// Returns the text about a violated timing limit.
 pub fn timing(warning: &Warning) -> Text {
     let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
     let kilohertz = |hz: f64| hz / 1000.0;
@@ -93,7 +91,7 @@ pub fn timing(warning: &Warning) -> Text {
     }
 }
 
-/// Returns a one-line description of a frame with its clocks, positions, code and error bits.
+/// Returns a description of a frame in one line, with its clocks, positions, code and error bits.
 pub fn frame(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
@@ -111,7 +109,7 @@ pub fn frame(layout: &Layout) -> Text {
             TEXTS.text("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
         }
     };
-    // A name that ends with its clock already contains it.
+    // A name that ends with the clock number does not need it again.
     let named = |name: &str, clock: u8| match name.ends_with(&clock.to_string()) {
         true => name.to_owned(),
         false => format!("{name} {clock}"),
@@ -166,7 +164,7 @@ pub fn open(open: Open) -> Text {
     }
 }
 
-/// Returns the text that states whether the first layout found is certain and, if not, why.
+/// Returns whether the first layout found is certain and, if not, why.
 pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
@@ -188,7 +186,7 @@ pub fn evidence_for(evidence: &Evidence) -> Text {
         .with("bits", evidence.bits_seen)
 }
 
-/// Returns how often and when a finding occurred.
+/// Returns a text that states how often and when a finding occurred.
 pub fn finding_counts(noted: &CountedFinding) -> Text {
     let seconds = |time: crate::analysis::SampleTime| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };

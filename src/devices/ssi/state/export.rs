@@ -8,13 +8,13 @@ use crate::devices::ssi::protocol::{
 };
 use crate::devices::ssi::state::explain as words;
 
-/// Export format of a layout; profiles are exported separately.
+/// Export format of a layout. Profiles are exported separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ExportFormat {
     C,
-    /// IEC 61131-3 structured text function block.
+    /// Function block in IEC 61131-3 structured text.
     StructuredText,
-    /// IEC 61131-3 structured text function block for 32-bit controllers.
+    /// Function block in IEC 61131-3 structured text, for controllers with 32 bits.
     StructuredText32,
     Scl,
     LinuxCnc,
@@ -78,10 +78,10 @@ impl ExportFormat {
 }
 
 impl LayoutDesigner {
-    /// Returns the layout in the given format. The language applies to prose; program code is in English.
+    /// Returns the layout in the given format. Explanations are in the given language, and program code is in English.
     ///
     /// # Errors
-    /// The part of the layout that the format cannot represent.
+    /// Returns a message that names the property of the layout that the format cannot represent.
     pub fn export(&self, format: ExportFormat, language: Language) -> Result<String, Text> {
         if let Some(picture) = self.picture(format, language) {
             return Ok(picture.svg());
@@ -100,7 +100,7 @@ impl LayoutDesigner {
         })
     }
 
-    /// Returns the layout as a picture, or `None` if the format is plain text.
+    /// Returns the layout as a picture, or `None` if the format is text.
     pub fn picture(&self, format: ExportFormat, language: Language) -> Option<Picture> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| words::export(text).words(language);

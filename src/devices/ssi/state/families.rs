@@ -1,4 +1,4 @@
-//! The families of SSI encoders known to all sessions.
+//! The families of SSI encoders, shared by all sessions.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use crate::app::{AnyDevice, Severity};
 use crate::devices::ssi::jobs;
 use crate::devices::ssi::protocol::Families;
 
-/// Returns the known families: the built-in ones, plus the user's own once those are loaded. The first call starts
-/// loading them in a task.
+/// Returns the built-in families, and the user-defined ones once they are loaded. The first call starts to load them in
+/// a task.
 pub(super) fn families(services: &mut Services) -> Arc<Families> {
     if let Some(families) = services.shared_data::<Arc<Families>>() {
         return families.clone();

@@ -1,5 +1,5 @@
-//! The form of a layout as plain data, row by row, and the effect of each entry. A family has a row for each of its
-//! settings; any other frame has all rows.
+//! The form of a layout: its rows as data, and the effect of each entry. A family has a row for each of its settings,
+//! and any other frame has all rows.
 
 mod family;
 mod free;
@@ -24,11 +24,11 @@ pub enum Entry {
         value: u64,
         unit: Option<Text>,
     },
-    /// Frequency in hertz, displayed in a suitable unit.
+    /// Frequency in hertz, which is displayed in a suitable unit.
     Frequency(u32),
     Choice {
         options: Vec<Text>,
-        /// Index of the choice.
+        /// Index of the chosen option.
         chosen: usize,
     },
     Switch(bool),
@@ -45,19 +45,19 @@ pub enum FieldInput {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
-    /// Type of position range: bits, steps, round axis or length.
+    /// Kind of the range: bits, steps, round axis or length.
     Range,
-    /// Bits of the turns.
+    /// Number of bits for turns.
     Multiturn,
-    /// Bits within a turn.
+    /// Number of bits for steps within a turn.
     Singleturn,
     /// Number of steps per turn or in total.
     Steps,
-    /// Number of turns in a range with a fixed number of steps per turn.
+    /// Number of turns, if the number of steps per turn is fixed.
     Turns,
     RevolutionsAbove,
     RevolutionsBelow,
-    /// Bits of a length.
+    /// Number of bits of a linear position.
     Bits,
     /// Length of a step in nanometres.
     StepLength,
@@ -75,7 +75,7 @@ pub enum Field {
     Parity,
     ParityClock,
     Repeat,
-    /// Zeros between both.
+    /// Zeros between the two words.
     Gap,
     Direction,
     Preset,
@@ -88,9 +88,9 @@ pub enum Field {
     ClockRate,
     /// Microseconds between two bursts.
     Pause,
-    /// Cable length in metres; 0 disables the check.
+    /// Cable length in metres, or 0 if the cable is not checked.
     Cable,
-    /// Whether the encoder takes the position when the host starts clocking.
+    /// Whether the encoder takes a position when the host starts a transfer.
     Synchronous,
 }
 
@@ -102,7 +102,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// Returns the index of the error bit that the field belongs to, if any.
+    /// Returns the index of the error bit if the group belongs to one.
     pub fn error(&self) -> Option<usize> {
         match self.rows.first()?.field {
             Field::ErrorName(index) => Some(index),
@@ -110,19 +110,20 @@ impl Group {
         }
     }
 
-    /// Returns whether error bits can be added, which requires a frame without a family.
+    /// Returns whether error bits can be added. This requires a frame of no family.
     pub fn takes_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 
-    /// Returns whether the group folds in a low window: all but the position, which is used most, and the error bits.
+    /// Returns whether the group can be folded in a low window. The position, which is used most, and the error bits
+    /// always stay open.
     pub fn is_foldable(&self) -> bool {
         matches!(self.title, "ssi_form.frame" | "ssi_form.counting")
     }
 }
 
 impl Row {
-    /// Creates a number row. `unit` is the unit symbol, empty for none.
+    /// Creates a row with a number. `unit` is the symbol of its unit, or empty.
     fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
         let unit = match unit {
             "" => None,
@@ -136,7 +137,7 @@ impl Row {
         Row { field, name: TEXTS.text(name), entry: Entry::Switch(is_on), hint: None }
     }
 
-    /// Creates a choice row. `all` lists the options with their labels.
+    /// Creates a row with a choice. `all` lists the options with their labels.
     fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
         let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
         let options = all.iter().map(|(_, words)| words.clone()).collect();
@@ -180,10 +181,10 @@ impl LayoutDesigner {
         rows
     }
 
-    /// Applies an entry.
+    /// Converts an entry to a change of the layout.
     ///
     /// # Errors
-    /// The reason why the entry was refused.
+    /// Returns the reason why the entry was refused.
     pub(super) fn entered(&self, field: Field, input: &FieldInput) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
@@ -293,7 +294,7 @@ impl RangeKind {
     }
 }
 
-/// Returns the form rows for a frame's positions and code, limited to the given kinds of range.
+/// Returns the rows for the positions and the code of a frame. The range can be one of `kinds`.
 fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {
@@ -333,10 +334,10 @@ fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
     Row::choice(Field::Range, "ssi_form.range", &all, &RangeKind::of(range))
 }
 
-/// Parses a whole number in any common notation: 3600, 3 600, 0x0E10.
+/// Parses a whole number in any common notation, such as 3600, 3 600 or 0x0E10.
 ///
 /// # Errors
-/// The reason why the entry is invalid.
+/// Returns the reason why the entry is invalid.
 pub fn whole(text: &str) -> Result<u64, Text> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
     let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {
@@ -347,7 +348,6 @@ pub fn whole(text: &str) -> Result<u64, Text> {
     number.ok().filter(|_| !signed).ok_or_else(|| TEXTS.text("ssi_form.whole").with("text", text.trim()))
 }
 
-/// Converts a number to a byte, or returns `None` if the number is too large.
 fn byte(number: u64) -> Option<u8> {
     u8::try_from(number).ok()
 }

@@ -1,4 +1,4 @@
-//! SSI as a kind of device for the studio, before a device is open.
+//! SSI as a kind of device, before a device is open.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,7 @@ impl DeviceType for Encoder {
         Encoder::with(session, designer)
     }
 
-    /// Creates a profile of the first family's factory layout, with the first unused name.
+    /// Creates a profile with the factory layout of the first family, and gives it the first unused name.
     fn new_profile(id: SessionId, is_taken: &dyn Fn(&Path) -> bool, services: &mut Services) -> Option<Self> {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);

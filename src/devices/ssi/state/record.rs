@@ -1,5 +1,5 @@
-//! Recording of an SSI encoder: received words, decoded by the layout into lines over time, and the findings of its
-//! error bits. A change of the layout decodes the same words again.
+//! Recording of an SSI encoder: the received words, their positions as lines over time, and the findings about them. If
+//! the layout changes, the same words are decoded again.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -16,7 +16,7 @@ use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{Descriptor, FindingCounts, Flags, Layout, Meaning as Says, Range};
 use crate::units::Moment;
 
-/// Number of raw words kept, for decoding with another layout and for searches.
+/// Number of words stored for searches and for decoding with another layout.
 const KEPT: usize = 40_000;
 
 /// Words read from an encoder, decoded with its layout.
@@ -25,10 +25,9 @@ pub struct Record {
     layout: Layout,
     meaning: Meaning,
     kept: VecDeque<Words>,
-    /// Total number of words in `kept`.
     held: usize,
     tally: FindingCounts,
-    /// Time up to which findings are hidden, if any.
+    /// Time until which findings are hidden, if any.
     forgotten: Option<Moment>,
     last: Option<ReceivedWord>,
     stream: Option<Streamed>,
@@ -39,9 +38,9 @@ pub struct Record {
 pub struct ReceivedWord {
     pub at: Moment,
     pub clocks: u8,
-    /// Decoded word, or `None` if the layout has a different number of clocks.
+    /// Decoded word, or `None` if its number of clocks differs from the layout.
     pub decoded: Option<Decoded>,
-    /// Word as received, right-justified.
+    /// Right-justified word as received.
     pub word: u64,
 }
 
@@ -57,7 +56,7 @@ impl Streamed {
         1e9 / self.period_ns.max(1) as f64
     }
 
-    /// Returns whether the requested interval between words is shorter than possible.
+    /// Returns whether the adapter cannot provide the requested interval, because it is too short.
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
@@ -85,10 +84,10 @@ impl Record {
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
-    /// Adds new words; `dropped` is the number of words lost before they could be added.
+    /// Adds new words. `dropped` words were lost before them.
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
-            // Even if words were dropped, their numbers show how many there were.
+            // The numbers of streamed words show how many were dropped.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.record_dropped(dropped),
         }
@@ -99,7 +98,7 @@ impl Record {
         }
     }
 
-    /// Appends a run to the previous one. Missing words are counted, and runs are not joined across a gap.
+    /// Compares a run with the previous one. Missing words are counted, and the line has a gap there.
     fn follow(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -127,7 +126,7 @@ impl Record {
             let is_bad = !self.layout.is_valid(reading);
             let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
             let position = i64::try_from(reading.position).ok();
-            // Most words have no findings, and then the search is skipped.
+            // The search for findings is skipped for most words, which have none.
             let is_warned = reading.flags != Flags::NONE && warned();
             sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
@@ -150,7 +149,8 @@ impl Record {
         }
     }
 
-    /// Changes the layout. Stored words are decoded again and earlier recordings are dropped, unless only names differ.
+    /// Changes the layout. Stored words are decoded again, and earlier recordings are dropped. If only names differ,
+    /// the recording stays as it is.
     pub(super) fn reinterpret(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;
@@ -175,19 +175,19 @@ impl Record {
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
 
-    /// Returns the newest gapless run of stored words with the given number of clocks.
+    /// Returns the newest stored words without a gap that have the given number of clocks.
     pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
         let mut runs: Vec<&Words> = self.runs(clocks).collect();
         runs.reverse();
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
-    /// Returns the length of the newest gapless run of stored words with the given number of clocks.
+    /// Returns the number of the newest stored words without a gap that have the given number of clocks.
     pub fn count(&self, clocks: u8) -> usize {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
 
-    /// Iterates over adjoining runs from the newest to the oldest.
+    /// Returns an iterator over consecutive runs, from the newest to the oldest.
     fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
@@ -204,7 +204,7 @@ impl Record {
         &self.tally
     }
 
-    /// Hides the findings so far, even if the words are decoded again.
+    /// Hides the findings so far. They stay hidden if the words are decoded again.
     pub(super) fn reset_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);
@@ -214,7 +214,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Returns the latest stream, or `None` if words have since arrived one at a time.
+    /// Returns the current stream, or `None` if words are read one at a time.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
@@ -233,7 +233,7 @@ impl Recording for Record {
         &mut self.track.recorder
     }
 
-    // Words that an adapter could not send are included.
+    // The result includes words that an adapter could not send.
     fn dropped_count(&self) -> u64 {
         self.track.dropped_count().saturating_add(self.lost)
     }
@@ -246,7 +246,7 @@ impl Recording for Record {
     }
 }
 
-/// Returns the part of the layout that determines positions and verdicts.
+/// Returns the descriptor without names, which have no effect on positions and verdicts.
 fn unnamed_descriptor(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
     descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
@@ -254,7 +254,7 @@ fn unnamed_descriptor(layout: &Layout) -> Descriptor {
     descriptor
 }
 
-/// Returns the interpretation of a layout's positions.
+/// Returns the meaning of a layout's positions.
 fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));

@@ -1,4 +1,4 @@
-//! Search for the layout of frames: the frames read last, or those in a file.
+//! Search for the layout of recorded frames, which were either read last or come from a file.
 
 mod capture;
 #[cfg(test)]
@@ -26,13 +26,13 @@ pub enum Origin {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     pub origin: Origin,
-    /// Bits of each, 1…64.
+    /// Number of bits per frame, 1…64.
     pub clocks: u8,
-    /// The frames, right-justified.
+    /// Right-justified frames.
     pub frames: Vec<u64>,
     /// Number of incomplete bursts in a logic analyser recording.
     pub left_out: usize,
-    /// Whether the frames are given as numbers, which do not reveal the number of leading zeros.
+    /// Whether the frames are given as numbers, in which leading zeros are not visible.
     pub are_numbers: bool,
 }
 
@@ -43,43 +43,45 @@ pub enum SearchState {
     Running(u32),
     Found {
         origin: Origin,
-        /// Bits of each.
+        /// Number of bits per frame.
         clocks: u8,
         /// Number of incomplete bursts in a logic analyser recording.
         left_out: usize,
         frames: Vec<u64>,
         search: Box<Search>,
     },
-    /// The search failed because there were no frames, with the reason and a remedy.
+    /// The search failed because there were no frames. Contains the reason and a remedy.
     Failed(Text),
 }
 
 /// Parses a number of clocks.
 ///
 /// # Errors
-/// The text is not a whole number, or no frame can have this number of clocks.
+/// Returns a message if the text is not a whole number, or if no frame has so many clocks.
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
     let number = whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
     clocks.ok_or_else(|| TEXTS.text("ssi_find.clocks_range").with("clocks", number))
 }
 
-/// Reads frames from a text file, from a table of `position ssi --csv`, or from the edges in a logic analyser export. A
-/// text file has one frame per line, as bits in clock order or as 0x and hex digits, in the first column that looks
-/// like a frame. Hexadecimal frames have `clocks` bits; empty lines, a heading and lines that begin with # are skipped.
+/// Reads frames from a text file, from a table of `position ssi --csv`, or from a logic analyser export.
+///
+/// A text file has one frame per line, as bits in clock order or as 0x and hexadecimal digits. The first column that
+/// looks like a frame is used. Hexadecimal frames have `clocks` bits. Empty lines, a heading and lines that begin with
+/// # are skipped.
 ///
 /// # Errors
-/// The file cannot be read, or a line is not a frame. The message names the line and the reason.
+/// Returns a message if the file cannot be read, or if a line is not a frame. The message names the line.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     frames_of(&text, name, clocks)
 }
 
-/// Parses frames like [`read_frames`], from text whose origin is called `name`.
+/// Parses the text of a file like [`read_frames`]. `name` is the name of its origin.
 ///
 /// # Errors
-/// A line is not a frame. The message names the line and the reason.
+/// Returns a message with the number of the line that is not a frame.
 pub fn frames_of(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
     let read = match capture::levels(text) {
         Some(levels) => of_bursts(bursts(&levels?).map_err(words::bursts)?),
@@ -107,8 +109,8 @@ fn numbered_text(line: usize, why: Text) -> Text {
     TEXTS.text("ssi_find.line").with("line", line).with_text("why", why)
 }
 
-/// Parses a table of `position ssi --csv`, in which frames are decimal numbers, or returns `None` if the text is not
-/// such a table.
+/// Parses a table of `position ssi --csv`, in which frames are decimal numbers. Returns `None` if the text is not such
+/// a table.
 fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
     const HEADING: &str = "t_s,raw,";
     let rows = (1..).zip(text.lines()).map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')));
@@ -142,7 +144,7 @@ fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
 }
 
 fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
-    // The column of the frames and their bits, once a line has shown it.
+    // Column of the frames and number of bits, once a line has shown them.
     let mut own: Option<(usize, u8)> = None;
     let mut are_numbers = false;
     let mut frames = Vec::new();
@@ -160,7 +162,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
                 are_numbers = bits.is_none();
                 *own.insert((place, bits.unwrap_or(clocks)))
             }
-            // A heading.
+            // This line is a heading.
             (None, None) if number == 1 || columns.len() > 1 => continue,
             (None, None) => (0, clocks),
         };
@@ -177,8 +179,8 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
     }
 }
 
-/// Splits a line into columns at commas, semicolons, tabs or blanks. Blanks within groups of bits, of at most a byte
-/// each, do not separate columns.
+/// Splits a line into columns at commas, semicolons, tabs or blanks. Blanks between groups of up to eight bits do not
+/// separate columns.
 fn columns(line: &str) -> Vec<&str> {
     let first = line.split_whitespace().next().unwrap_or_default();
     let parted = line.contains([',', ';', '\t']);
@@ -191,13 +193,12 @@ fn columns(line: &str) -> Vec<&str> {
     columns.into_iter().map(|column| column.trim().trim_matches('"')).collect()
 }
 
-/// Returns whether a column looks like a frame, that is, consists of more than four bits or of 0x and hex digits.
+/// Returns whether a column looks like a frame. It must have more than four bits, or 0x and hexadecimal digits.
 fn is_frame(column: &str) -> bool {
     let hex = column.strip_prefix("0x").or(column.strip_prefix("0X"));
     hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
 }
 
-/// Returns the number of bits in a column, or `None` if the column does not consist of bits.
 fn bits_of(column: &str) -> Option<u8> {
     let bits = column.strip_prefix("0b").or(column.strip_prefix("0B")).unwrap_or(column);
     let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();

@@ -1,5 +1,5 @@
-//! A frame as a row of cells, one per clock, with its movable parts: the boundaries between its fields, and single
-//! bits. Computes the frame that results from a move without applying it.
+//! A frame as a row of cells, one for each clock, with its movable parts: the boundaries between fields, and single
+//! bits. A move returns the resulting frame and does not change the layout.
 
 mod moving;
 #[cfg(test)]
@@ -11,7 +11,7 @@ pub use words::{bare, cell, clocks, field, handle, hint, name, reach_text, short
 
 use crate::devices::ssi::protocol::{Flags, GrayCoverage, Layout, Meaning, Range, Role, Word};
 
-/// Frame divided into cells and fields.
+/// A frame divided into cells and fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
     layout: Layout,
@@ -22,25 +22,25 @@ pub struct Strip {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// Counted from 1.
+    /// Clock number, starting at 1.
     pub clock: u8,
     pub role: Role,
-    /// Index in the strip of the field that the cell belongs to.
+    /// Index of the field that contains the cell.
     pub field: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
     pub kind: Kind,
-    /// The first of them.
+    /// First clock of the field.
     pub first: u8,
-    /// The last of them.
+    /// Last clock of the field.
     pub last: u8,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// Nothing, before the position.
+    /// Zeros before the position.
     Before,
     /// Zeros between turns and steps.
     Between,
@@ -58,23 +58,24 @@ pub enum Kind {
     Again,
 }
 
-/// Movable part of a frame. A boundary is located after a clock (0 at the start), whereas a bit and the position are
-/// located on one.
+/// A movable part of a frame. A boundary is located after a clock, or at 0 before the first clock. A bit and the
+/// position are located on a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Handle {
-    /// Start of the position. Moving it exchanges bits of the turns with the zeros before them.
+    /// Start of the position. Moving it turns zeros before the position into turn bits, or turn bits into zeros.
     LeadEnd,
-    /// Boundary between adjoining turns and steps. Moving it transfers bits from one to the other.
+    /// Boundary between turns and steps without zeros between them. Moving it turns turn bits into step bits, or step
+    /// bits into turn bits.
     Split,
-    /// The end of the turns, followed by zeros before the steps.
+    /// End of the turns, before zeros that separate turns and steps.
     TurnsEnd,
-    /// Start of the steps after zeros.
+    /// Start of the steps, after zeros that separate turns and steps.
     BetweenEnd,
-    /// End of the position. Moving it exchanges bits of the steps with the free bits after them.
+    /// End of the position. Moving it turns free bits after the position into step bits, or step bits into free bits.
     StepsEnd,
-    /// The last clock that is coded or shifted together with the position.
+    /// End of the area that is coded or shifted together with the position.
     AreaEnd,
-    /// End of the first of two identical words.
+    /// End of the first word in a frame that sends the word twice.
     WordEnd,
     GapEnd,
     FrameEnd,
@@ -86,7 +87,7 @@ pub enum Handle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
     pub bit: bool,
-    /// Consequence for the position of an active error bit, or of a bit that should be 0 but is 1.
+    /// Effect on the position, if the bit is an active error bit, or is 1 instead of 0.
     pub tells: Option<Meaning>,
 }
 
@@ -117,7 +118,7 @@ impl Strip {
             Role::Parity => Kind::Parity,
             Role::Again(_) => Kind::Again,
         };
-        // Without a repetition there is only one kind of end.
+        // In a frame without a repetition, all zeros after the position are of the same kind.
         let kind = |at: usize, role: Role| match kind(at, role) {
             Kind::After if descriptor.repeat.is_none() => Kind::Behind,
             kind => kind,
@@ -152,17 +153,17 @@ impl Strip {
         &self.handles
     }
 
-    /// Returns the clock of a part, 0 to 64, or `None` if the frame lacks the part.
+    /// Returns the clock of a part, from 0 to 64, or `None` if the frame does not have the part.
     pub fn clock(&self, handle: Handle) -> Option<u8> {
         moving::clock(&self.layout, handle)
     }
 
-    /// Returns the strip after a part is moved to the given clock, or as close to it as possible; see [`moved`].
+    /// Returns the strip after a part was moved to a clock, or as close to it as possible. See [`moved`].
     pub fn moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
         Strip::of(&moved(&self.layout, handle, to, following))
     }
 
-    /// Returns the first and the last clock to which something can be moved.
+    /// Returns the first and the last clock to which a part can be moved.
     pub fn limits(&self, handle: Handle, following: bool) -> (u8, u8) {
         let end = |to| moving::clock(&moved(&self.layout, handle, to, following), handle).unwrap_or(to);
         (end(0), end(u8::MAX))
@@ -185,7 +186,7 @@ impl Strip {
                     Role::Error(index) if flags.has(Flags::error(index)) => {
                         descriptor.errors.get(index).map(|bit| bit.meaning)
                     }
-                    // Elsewhere a zero may carry the Gray code of its neighbours.
+                    // If the Gray code covers more than the position, a zero can be sent as a 1.
                     Role::Zero if descriptor.coded == GrayCoverage::Position && cell.bit != descriptor.inverted => {
                         Some(Meaning::Warning)
                     }
@@ -213,36 +214,36 @@ impl Field {
         matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
     }
 
-    /// Returns whether the field is an error or parity bit, which forms a field of its own even beside other such bits.
+    /// Returns whether the field is an error or parity bit. Each of these bits is a separate field.
     pub const fn is_single(&self) -> bool {
         matches!(self.kind, Kind::Error(_) | Kind::Parity)
     }
 }
 
 impl Handle {
-    /// Returns whether the handle is on a clock rather than between two clocks.
+    /// Returns whether the handle is located on a clock rather than between two clocks.
     pub const fn is_cell(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }
 }
 
-/// Returns whether any error or parity bits directly follow the position, and therefore move with it.
+/// Returns whether error or parity bits directly follow the position and so move with its end.
 pub fn follows(layout: &Layout) -> bool {
     !moving::adjacent_bits(layout).is_empty()
 }
 
-/// Returns whether the frame has patterns given as bits, which would change with the length of the frame.
+/// Returns whether the frame has patterns that are given as bits. They depend on the length of the frame.
 fn has_words(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Parts {
-    /// Numbers of turn bits and step bits, both above zero.
+    /// Numbers of turn bits and step bits. Neither is 0.
     Both(u8, u8),
-    /// Number of bits if there is only one kind of bits, of any width.
+    /// Number of bits, if there are only turn bits or only step bits.
     One(u8),
-    /// Number of bits required for the given number of steps.
+    /// Number of bits needed for a number of steps, which cannot be changed bit by bit.
     Whole(u8),
 }
 

@@ -1,6 +1,6 @@
-//! Text catalogue of SSI.
+//! Message catalogue of SSI.
 
 use crate::app::Catalogue;
 
-/// SSI message catalogue. Identifiers not found in it are looked up in the common catalogue.
+/// Message catalogue of SSI. Identifiers that it does not contain are looked up in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/ssi.ron"));

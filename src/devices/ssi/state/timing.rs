@@ -1,5 +1,5 @@
-//! Timing of a burst to scale: the lines, the times, and breaks of the time axis where nothing happens. Seconds count
-//! from the first falling edge (SICK SSI description 2.2; reference sections 1 and 5).
+//! Timing diagram of a burst to scale: the lines, the times, and breaks of the time axis where nothing happens. Times
+//! are in seconds from the first falling edge. See SICK SSI description 2.2 and reference sections 1 and 5.
 
 #[cfg(test)]
 mod tests;
@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
-/// Timing diagram of a burst and the time until the next burst has begun.
+/// Timing diagram of a burst, until the next burst has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     strip: Strip,
@@ -19,7 +19,7 @@ pub struct Diagram {
     marks: Vec<TimingMark>,
 }
 
-/// Section of time that is drawn. The axis is broken between two sections.
+/// A section of the time axis that is drawn. The axis is broken between two sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Start in seconds.
@@ -33,9 +33,9 @@ pub struct Span {
     pub activity: Lasting,
     /// Start in seconds.
     pub from: f64,
-    /// Latest end in seconds.
+    /// Maximum end in seconds.
     pub to: f64,
-    /// Earliest end in seconds.
+    /// Minimum end in seconds.
     pub least: f64,
 }
 
@@ -53,14 +53,14 @@ pub enum Lasting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingMark {
     pub event: TimingEvent,
-    /// In seconds.
+    /// Time in seconds.
     pub at: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TimingEvent {
     Latched,
-    /// A position is taken, which is sent with the next burst.
+    /// The encoder takes the position that it sends with the next burst.
     Taken,
     Started,
     Ready,
@@ -69,17 +69,17 @@ pub enum TimingEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bit {
-    /// Number of the clock that transmits the bit, counted from 1.
+    /// Number of the clock that transmits the bit, starting at 1.
     pub clock: u8,
-    /// Start, in seconds.
+    /// Start in seconds.
     pub from: f64,
-    /// End, in seconds.
+    /// End in seconds.
     pub to: f64,
 }
 
-/// Duration without an event after which the axis is broken, in bursts.
+/// Duration without an event that is replaced by a break, in bursts.
 const LONG: f64 = 1.5;
-/// Duration that is kept at either side of a break, in bursts.
+/// Duration that is drawn on either side of a break, in bursts.
 const KEPT: f64 = 0.4;
 /// Number of clocks of the next burst that are drawn.
 const NEXT: f64 = 2.5;
@@ -124,12 +124,11 @@ impl Diagram {
         &self.strip
     }
 
-    /// Returns the drawn sections of the time axis in order.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Returns the length of the break after a piece, in seconds; 0 after the last.
+    /// Returns the duration in seconds that is left out after a section. It is 0 after the last section.
     pub fn broken(&self, piece: usize) -> f64 {
         let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
         ends.map_or(0.0, |(own, next)| next.from - own.to)
@@ -143,7 +142,7 @@ impl Diagram {
         &self.marks
     }
 
-    /// Returns the times of the clock edges in seconds. The clock idles high, so that the first edge is a falling one.
+    /// Returns the times of the clock edges in seconds. The clock idles high, so the first edge falls.
     pub fn edges(&self) -> Vec<f64> {
         let (half, cycle) = (self.timing.period.as_secs_f64() / 2.0, self.timing.cycle.as_secs_f64());
         let own = (0..2 * u32::from(self.clocks())).map(|edge| f64::from(edge) * half);
@@ -151,7 +150,7 @@ impl Diagram {
         own.chain(next).collect()
     }
 
-    /// Returns the bits on the data line, each of which starts at a rising clock edge.
+    /// Returns the bits on the data line. Each bit starts at a rising edge of the clock.
     pub fn bits(&self) -> Vec<Bit> {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
@@ -159,15 +158,15 @@ impl Diagram {
         (1..=self.clocks()).map(|clock| Bit { clock, from: comes(clock), to: comes(clock + 1).min(burst) }).collect()
     }
 
-    /// Returns the start and end of a field on the data line, in seconds.
+    /// Returns the start and the end of a field on the data line in seconds.
     pub fn field(&self, field: &Field) -> (f64, f64) {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Returns the time at which the data line goes low after the bits, and the earliest and latest time at which it
-    /// rises again, in seconds. The line rises with the next burst at the latest.
+    /// Returns three times in seconds: the data line goes low after the bits, and it rises again between the second and
+    /// the third time. It rises with the next burst at the latest.
     pub fn low(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
@@ -183,7 +182,8 @@ impl Diagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// Returns texts for a moment: the time, and either the clock with its content or what the lines are waiting for.
+    /// Returns texts about a moment: its time, and the present clock with its content or the reason why the lines are
+    /// idle.
     pub fn state_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
@@ -233,11 +233,11 @@ pub fn skipped_operations(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }
 
-/// Formats a time with up to four significant figures in a suitable unit.
+/// Formats a time in a suitable unit with up to four significant figures.
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
-    // A value that rounds to a thousand of a unit is shown in the next one.
+    // A value that rounds to 1000 is shown in the next unit.
     let fits = UNITS.into_iter().rfind(|(_, unit)| seconds.abs() >= unit * 0.99995);
     let (id, unit) = fits.unwrap_or(if seconds == 0.0 { ("ssi.time_us", 1e-6) } else { ("ssi.time_ns", 1e-9) });
     let value = seconds / unit;
@@ -248,10 +248,10 @@ pub fn time(seconds: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// Formats a frequency with up to three decimals in a suitable unit, such as 2 MHz or 10.811 kHz.
+/// Formats a frequency in a suitable unit with up to three decimals, such as 2 MHz or 10.811 kHz.
 pub fn frequency(hertz: f64) -> Text {
     const UNITS: [(&str, f64); 3] = [("ssi.hertz", 1.0), ("ssi.kilohertz", 1e3), ("ssi.megahertz", 1e6)];
-    // A value that rounds to a thousand of a unit is one of the next.
+    // A value that rounds to 1000 is shown in the next unit.
     let fits = UNITS.into_iter().rfind(|(_, unit)| hertz.abs() >= unit * 0.999_999_5);
     let (id, unit) = fits.unwrap_or(("ssi.hertz", 1.0));
     let value = hertz / unit;
@@ -260,10 +260,10 @@ pub fn frequency(hertz: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// Parses a frequency such as 400000, 400 kHz or 1.5 MHz; a decimal comma is also accepted.
+/// Parses a frequency such as 400000, 400 kHz or 1.5 MHz. A decimal comma is accepted as well.
 ///
 /// # Errors
-/// The reason in words.
+/// Returns the reason why the text is not a frequency.
 pub fn read_frequency(text: &str) -> Result<u32, Text> {
     let wrong = || TEXTS.text("ssi_form.frequency").with("text", text.trim());
     let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_ascii_lowercase();
@@ -278,7 +278,7 @@ pub fn read_frequency(text: &str) -> Result<u32, Text> {
     if (0.0..=f64::from(u32::MAX)).contains(&hertz) { Ok(hertz as u32) } else { Err(wrong()) }
 }
 
-/// Returns the sections of the time axis, which are the whole burst and everything near an event after it.
+/// Returns the sections of the time axis to draw: the complete burst, and the time around each event after it.
 fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();

@@ -1,4 +1,4 @@
-//! Meaning of frames in the trace.
+//! Explanation of frames in the trace.
 
 use crate::app::{Explained, Text};
 use crate::buses::bridge::protocol::Request;

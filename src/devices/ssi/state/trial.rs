@@ -1,4 +1,4 @@
-//! Trial of a layout: a position and its bits, converted in both directions.
+//! Trial of a layout: a frame that can be entered as a position or as bits.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
@@ -13,10 +13,10 @@ pub struct Trial {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
-    /// The frame, right-justified.
+    /// Right-justified frame.
     pub frame: u64,
     pub reading: FrameReading,
-    /// Position and its location on the shaft or scale, if the bits represent a valid position.
+    /// Position and its location on the shaft or scale, or `None` if the bits do not represent a position.
     pub place: Option<(u64, Location)>,
     pub findings: Vec<FrameFinding>,
     /// Whether the position may be used.
@@ -37,7 +37,6 @@ impl Decoded {
 }
 
 impl Trial {
-    /// Returns the frame, right-justified.
     pub fn frame(&self) -> u64 {
         self.frame
     }
@@ -50,7 +49,7 @@ impl Trial {
         Decoded::of(layout, self.frame)
     }
 
-    /// Sets the frame to the given position. Error bits are kept.
+    /// Sets the position of the frame. Error bits are kept.
     pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
         let errors = error_bits(layout, layout.decode(self.frame).flags);
         match layout.encode(position, errors) {
@@ -62,7 +61,7 @@ impl Trial {
         }
     }
 
-    /// Sets the frame to the given turn and step within the turn.
+    /// Sets the position of the frame to a turn and a step within the turn.
     pub(super) fn set_turn_and_step(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
@@ -77,7 +76,7 @@ impl Trial {
         }
     }
 
-    /// Inverts the bit at the given clock, counted from 1.
+    /// Inverts the bit at a clock, counted from 1.
     pub(super) fn toggle(&mut self, layout: &Layout, clock: u8) {
         if (1..=layout.clocks()).contains(&clock) {
             self.set(self.frame ^ 1 << (layout.clocks() - clock));
@@ -88,7 +87,7 @@ impl Trial {
         *self = Trial { frame, problem: None };
     }
 
-    /// Switches to another layout, keeping the position if the new layout has it.
+    /// Switches to another layout. The position is kept if the new layout contains it.
     pub(super) fn follow(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
         let position = reading.position.min(now.coding().last());
@@ -97,7 +96,7 @@ impl Trial {
     }
 }
 
-/// Returns only those flags that refer to error bits, which can be encoded.
+/// Returns the flags of error bits. Only these can be encoded.
 fn error_bits(layout: &Layout, flags: Flags) -> Flags {
     let all = (0..layout.descriptor().errors.len()).map(Flags::error);
     all.filter(|error| flags.has(*error)).fold(Flags::NONE, Flags::with)

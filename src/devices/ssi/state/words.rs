@@ -1,4 +1,4 @@
-//! Job names for display.
+//! Names of the jobs.
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;

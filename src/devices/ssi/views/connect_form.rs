@@ -1,4 +1,4 @@
-//! The connection form of an SSI encoder: over an adapter, or virtual.
+//! The connection form of an SSI encoder, which is behind an adapter or virtual.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The encoder page: the encoder behind its adapter, its reported error bits, and its wiring.
+//! The encoder page: the adapter, reported error bits, and the wiring of the encoder.
 
 use egui::{RichText, Ui};
 
@@ -77,7 +77,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     });
 }
 
-/// Draws the findings such as error bits and patterns, including those from frames that were not displayed.
+/// Draws the findings. They include findings in frames that were not displayed.
 fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let noted = encoder.record.tally().finding_counts();
     let id = encoder.session.id;

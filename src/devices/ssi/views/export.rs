@@ -1,4 +1,4 @@
-//! The export page: the layout for other programs, with pictures displayed as pictures, for copying and saving.
+//! The export page: the layout in formats of other programs, to copy or save. Pictures are shown as pictures.
 
 use egui::{ScrollArea, Ui};
 

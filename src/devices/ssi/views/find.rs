@@ -1,5 +1,5 @@
-//! The search page: the layout of frames read last, or of those in a file. Results are ranked and explained; layouts
-//! that the frames cannot distinguish form one class, together with what would distinguish them.
+//! The search page: the layouts that fit the frames read last, or the frames in a file. Results are ranked and
+//! explained. Layouts that the frames cannot distinguish form a class, with the motion that would distinguish them.
 
 use egui::{RichText, Ui};
 
@@ -21,9 +21,9 @@ pub(super) struct FindUiState {
     unfolded: Option<usize>,
 }
 
-/// Maximum number of classes shown; the remaining ones fit even worse.
+/// Maximum number of classes shown. The other ones fit even worse.
 const CLASSES: usize = 6;
-/// Number of class members shown before expanding.
+/// Number of members of a class that are shown before it is expanded.
 const MEMBERS: usize = 4;
 
 pub(super) fn page_ui(
@@ -140,7 +140,6 @@ fn found_ui(
     }
 }
 
-/// Draws a class, which consists of layouts that the recorded frames cannot tell apart.
 fn class_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -195,7 +194,7 @@ fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) 
         return;
     };
     let family = encoder.designer.families().named(key);
-    // With the fewest settings; exchanged wires are not one of them.
+    // Swapped wires are not a setting, so they are ignored in the search for the fewest settings.
     let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
     let fewest = family.and_then(|family| family.settings_for_frame(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());

@@ -1,4 +1,4 @@
-//! Rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
+//! Drawing of the rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +63,7 @@ pub(super) fn rows_ui(
                         put(FieldInput::Number(whole(text)?));
                         Ok(())
                     });
-                    // The arrow keys count.
+                    // The arrow keys increase and decrease the number.
                     if response.has_focus() {
                         let (up, down) =
                             ui.input(|input| (input.key_pressed(Key::ArrowUp), input.key_pressed(Key::ArrowDown)));

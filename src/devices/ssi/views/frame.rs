@@ -61,12 +61,11 @@ pub(super) fn page_ui(
     buttons_ui(ui, theme, studio, device, encoder, actions);
 }
 
-/// Splits the form into the groups beside the trial frame and the groups below it (direction and preset, error bits).
+/// Divides the form into the groups beside the trial frame and the groups below it.
 fn columns(form: &[Group]) -> (&[Group], &[Group]) {
     form.split_at(form.len().min(2))
 }
 
-/// Draws the family, the strip, and the findings about both.
 fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
@@ -192,7 +191,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
             view.selected = Some(clock);
             actions.push(Action::device(id, Ssi::Try(TrialInput::Toggle(clock))));
         }
-        // The strip shows the resulting frame by itself.
+        // The strip itself shows the resulting frame.
         Some(StripEvent::Preview(..)) | None => {}
     }
     let words = match selected {
@@ -238,7 +237,6 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
     actions.extend(asked.map(|asked| Action::device(id, asked)));
 }
 
-/// Draws the undo and save buttons, and the button that adopts the layout for a connected encoder.
 fn buttons_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -265,7 +263,6 @@ fn buttons_ui(
     });
 }
 
-/// Draws the selection of a connected encoder for which to adopt the layout.
 fn adopt_for_device_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

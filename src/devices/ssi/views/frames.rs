@@ -1,4 +1,4 @@
-//! The frames of a search in recording order, decoded by the current layout.
+//! The list of the recorded frames in a search, decoded with the current layout.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -11,7 +11,7 @@ use crate::ui::controls::{card, paragraph};
 
 const ROWS: f32 = 12.0;
 
-/// Draws the list of frames. Clicking a frame decodes it with the layout.
+/// Draws the list of frames. A click on a frame decodes it with the layout.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -33,7 +33,7 @@ pub(super) fn card_ui(
         let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
         ui.label(theme.monospace(heading).color(theme.palette.muted));
         let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
-        // Rows of a table: no room around their buttons.
+        // The rows of the table have no space around their buttons.
         let spacing = ui.spacing_mut();
         (spacing.item_spacing.y, spacing.interact_size.y, spacing.button_padding.y) = (0.0, height, 0.0);
         let seen = ROWS * height;
@@ -71,7 +71,7 @@ fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usiz
     }
 }
 
-/// Formats a row with columns of fixed width and right-aligned numbers.
+/// Formats a row of the list. Numbers are right-aligned in columns of fixed width.
 fn row([number, frame, position, turns, steps]: &[&str; 5], digits: usize) -> String {
     let width = (digits + 2).max(8);
     format!("{number:>5}  {frame:<width$} {position:>10} {turns:>11} {steps:>9}")

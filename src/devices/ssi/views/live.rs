@@ -1,4 +1,4 @@
-//! The large display of an SSI position.
+//! Large display of an SSI position.
 
 use egui::{RichText, Ui};
 
@@ -41,7 +41,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(palette.warn));
     }
     if ui.available_height() < LOW {
-        // In a low window the plot needs the space.
+        // In a low window, the plot needs the space.
         let mut words = raw;
         if let Some((_, Location::Shaft { turns, steps, .. })) = place {
             words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));

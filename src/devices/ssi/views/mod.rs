@@ -24,13 +24,13 @@ use crate::ui::{NamedAction, Theme, icons, page};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Tab with the frame layout editor and a trial frame.
+    /// Page with the layout of the frame and a trial frame.
     #[default]
     Frame,
     Timing,
     Find,
     Export,
-    /// Adapter, reported error bits and wiring of the encoder.
+    /// Page with the adapter, reported error bits and the wiring of the encoder.
     Encoder,
 }
 
@@ -44,7 +44,7 @@ impl TabPage for Page {
     ];
 }
 
-/// UI state of a session's tabs that persists between frames, such as text buffers and selections.
+/// State of a session's pages that persists between UI frames, such as typed text.
 #[derive(Default)]
 pub(crate) struct SsiUiState {
     form: form::LayoutFormUiState,
@@ -92,11 +92,11 @@ impl TypedDeviceView for SsiView {
         });
     }
 
-    /// Draws nothing, because a transfer completes immediately.
+    /// Draws nothing, because a transfer ends immediately.
     fn running_ui(_: &mut Ui, _: &Theme, _: &AnyDevice, _: &Encoder, _: Page, _: &mut Vec<Action>) {}
 
     fn empty_ui(ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
-        // A layout needs no device.
+        // A layout can be created without a device.
         if button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
             actions.push(Action::New(Encoder::TAB));
         }
@@ -107,7 +107,7 @@ impl TypedDeviceView for SsiView {
     }
 }
 
-/// Returns a message in the window's language, from the SSI catalogue or else from the common one.
+/// Returns a message of the SSI catalogue, or else of the common one, in the language of the window.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,4 +1,4 @@
-//! A picture of an export, drawn from the same shapes as its file.
+//! Drawing of an exported picture. The exported file contains the same shapes.
 
 use egui::accesskit::Role;
 use egui::{
@@ -8,11 +8,11 @@ use egui::{
 use crate::devices::ssi::protocol::{Picture, PictureLabel, PictureShape, PolylineSegment};
 use crate::ui::Theme;
 
-/// Minimum scale at which the numbers are legible; below this scale, the picture scrolls.
+/// Minimum scale at which the numbers are legible. A picture that would be smaller can be scrolled.
 const LEAST_SCALE: f32 = 0.75;
 const MOST_SCALE: f32 = 1.4;
 
-/// Draws a picture on paper, scaled to the available width. The title serves as the accessible name.
+/// Draws a picture on a white background in the available width. Its title is the accessible name.
 pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
     ScrollArea::horizontal().id_salt("picture").auto_shrink([false, true]).show(ui, |ui| {
         let scale = (ui.available_width() / picture.width as f32).clamp(LEAST_SCALE, MOST_SCALE);
@@ -90,13 +90,13 @@ impl DiagramCanvas<'_> {
         let size = label.size as f32 * self.scale;
         let font = if label.is_bold { self.theme.bold_font(size) } else { FontId::proportional(size) };
         let align = if label.is_centred { Align2::CENTER_BOTTOM } else { Align2::LEFT_BOTTOM };
-        // Letters go below their baseline by about a fifth of their size.
+        // Descenders reach about a fifth of the font size below the baseline.
         let at = self.at(label.x.units(), label.y) + Vec2::new(0.0, 0.22 * size);
         self.ui.painter().text(at, align, &label.text, font, label.colour.map_or(Color32::BLACK, colour));
     }
 }
 
-/// Parses a colour from a file, falling back to black.
+/// Parses a colour. An invalid colour becomes black.
 fn colour(text: &str) -> Color32 {
     Color32::from_hex(text).unwrap_or(Color32::BLACK)
 }

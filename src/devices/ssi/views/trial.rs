@@ -1,4 +1,5 @@
-//! A trial frame: enter a position to see its bits, or paste bits to see the position; or use the word read last.
+//! The trial frame. A position can be entered to see its bits, or bits to see their position. The word read last can be
+//! used as well.
 
 use egui::{RichText, Ui};
 
@@ -19,12 +20,12 @@ pub(super) struct TrialUiState {
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
     bits: Option<String>,
-    /// Frame shown when typing began. Words that arrive meanwhile do not replace it.
+    /// Frame that was displayed when typing began. Words received meanwhile do not replace it.
     held: Option<Decoded>,
 }
 
 impl TrialUiState {
-    /// Returns whether the user is typing, as opposed to a refused entry being shown.
+    /// Returns whether the user is typing. An entry that was refused and is still shown does not count.
     fn is_being_edited(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
@@ -140,7 +141,7 @@ fn bits_ui(
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
-    // The width of the frame around the entry is added.
+    // The frame around the entry has its own width, which is added to that of the text.
     let width = (ui.available_width() - 18.0).max(0.0);
     let response = mono_entry(ui, theme, &mut text, width, &word, "");
     if response.has_focus() {

@@ -1,4 +1,4 @@
-//! The wiring card: SSI wires, supply, cable, and the other outputs of the encoder family.
+//! The wiring card: SSI wires, supply, cable, and the other outputs of the family.
 
 use egui::Ui;
 
@@ -12,7 +12,7 @@ use crate::ui::wiring::wires_ui;
 
 const WIRE: f32 = 84.0;
 
-/// Wire names and their signals (SICK SSI description 2.1, 2.2).
+/// Names of the wires with the ids of their descriptions. See SICK SSI description 2.1 and 2.2.
 const WIRES: [(&str, &str); 6] = [
     ("CLOCK+", "ssi_wiring.clock_plus"),
     ("CLOCK−", "ssi_wiring.clock_minus"),

@@ -59,7 +59,7 @@ fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
     }
 }
 
-/// Returns the name in the reference.
+/// Returns the name of an operation, as used in the reference.
 fn name(operation: Operation) -> &'static str {
     match operation {
         Operation::Hello => "HELLO",
@@ -148,7 +148,7 @@ fn hello_lines(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// Describes a frame read by an adapter, whose CRC is checked by the host.
+/// Describes a frame that an adapter has read. The CRC is checked by the host.
 fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

@@ -9,20 +9,20 @@ use crate::buses::ubicom::protocol::PositionWord;
 use crate::cli::decode::Explained;
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 
-/// Bytes that hold a frame, right-justified.
+/// Number of bytes that hold a right-justified frame.
 pub(super) const BYTES: usize = 6;
 
-/// Number of hexadecimal digits in a position word as written by `position` and the window: 33 bits.
+/// Number of hexadecimal digits in a position word of 33 bits, as shown by `position` and in the window.
 pub(super) const WORD_DIGITS: usize = 9;
 
-/// Decodes the bytes of one frame, or returns `None` if the number of bytes is wrong or surplus bits are set.
+/// Decodes the bytes of one frame. Returns `None` if the number of bytes is wrong or surplus bits are set.
 pub(super) fn decode_bytes(bytes: &[u8]) -> Option<Explained> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
     fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
 }
 
-/// Decodes a frame; `shown` is its original notation.
+/// Decodes a frame. `shown` is its original notation.
 pub(super) fn explain(raw: u64, shown: String) -> Explained {
     let mut more = form("position frame");
     let meaning = meaning(raw, &mut more);

@@ -7,7 +7,7 @@ use crate::cli::decode::Explained;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// Decodes frames. `requested` is the preceding request, and afterwards the last one among the frames.
+/// Decodes frames. `requested` is the request before the frames. It is replaced by the last request among them.
 pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let mut explained = Vec::new();
     let mut request = *requested;
@@ -70,7 +70,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     Ok(lines)
 }
 
-/// Returns the number of a register with its name, if the kit encoder has one.
+/// Returns the number of a register, with its name if the kit encoder has it.
 fn register_words(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),

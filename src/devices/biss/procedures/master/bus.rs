@@ -1,5 +1,6 @@
-//! Single exchanges over an adapter on the bus: a frame, or a register by bank and address. The selected bank is cached
-//! as long as the encoder cannot have restarted unnoticed, and discarded after every failure.
+//! Single exchanges over an adapter on the bus. An exchange reads a frame, or accesses a register by bank and address.
+//! The selected bank is cached while the encoder cannot have restarted unnoticed. The cache is cleared after every
+//! failure.
 
 use std::time::Duration;
 
@@ -15,8 +16,7 @@ use crate::units::Moment;
 
 /// Slave number of an encoder that is alone on its line.
 const SLAVE: u8 = 0;
-/// Maximum time since a reply for which the encoder cannot have restarted, because a restart takes longer (EDS 02:0Eh,
-/// 500 ms).
+/// Time since the last reply within which the encoder cannot have restarted. A restart takes 500 ms (EDS 02:0Eh).
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -35,7 +35,7 @@ impl<'a> Master<'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
-    /// Prepares the bus like [`ensure_bus_ready_for`](Self::ensure_bus_ready_for), with the known widths.
+    /// Prepares the bus with the known frame widths. See [`ensure_bus_ready_for`](Self::ensure_bus_ready_for).
     pub(super) fn ensure_bus_ready(&mut self) -> Result<(), Error> {
         let layout = self.station.frame();
         self.ensure_bus_ready_for(layout.data_bits(), layout.crc_bits())
@@ -50,13 +50,12 @@ impl<'a> Master<'a> {
             return Err(AdapterError::NoBiss { name: hello.name.clone() }.into());
         }
         let fastest = hello.max_clock_hz;
-        // The bus first: a frame shows whether the encoder already has power.
+        // The bus is configured first, because a frame shows whether the encoder already has power.
         self.set_bus(fastest, data_bits, crc_bits)?;
         self.switch_on()?;
         self.set_bus(fastest, data_bits, crc_bits)
     }
 
-    /// Sets clock and widths if they differ from the present ones.
     fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         let bus = Bus { clock_hz: self.station.clock_hz.min(fastest), data_bits, crc_bits };
         if self.station.bus == Some(bus) {
@@ -113,7 +112,7 @@ impl<'a> Master<'a> {
     pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         Ok(match self.register_write(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
-            // A command register may be cleared as soon as the command is carried out (`U`); the status shows the result.
+            // A command register may be cleared as soon as the command is executed (`U`). The status shows the result.
             Ok(0) if self.station.is_command(address) => Ok(WriteReaction::Yes),
             Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
@@ -135,7 +134,7 @@ impl<'a> Master<'a> {
         Ok(Ok(reads))
     }
 
-    /// Evaluates the reply to a register request, and its effect on the selected bank.
+    /// Evaluates the reply to a register request and updates the cached bank.
     fn register_answer(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
@@ -159,7 +158,8 @@ impl<'a> Master<'a> {
         Ok(Err(trouble))
     }
 
-    /// Notes that the adapter may have been reset and must be configured again, unless the failure is a cancellation.
+    /// Clears the settings that the adapter may have lost in a reset. A cancellation clears only the bank and the bus
+    /// settings.
     fn handle_possible_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
@@ -210,8 +210,8 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Examines more frames after five had wrong checksums and none was ever correct. With mere noise some frames are
-    /// correct, with wrong widths none.
+    /// Reads more frames after five had wrong checksums and none was ever correct. If the cause is noise, some of them
+    /// are correct. If the widths are wrong, none is.
     pub(super) fn retry_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
@@ -231,7 +231,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register gave no reply, to find out whether the line itself is at fault.
+    /// Reads a frame after a register gave no reply. The result shows whether the line itself is at fault.
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.read_frame_once() {
@@ -255,7 +255,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// Returns the maximum duration of an exchange, which consists of up to two attempts.
+    /// Returns the maximum duration of an exchange, which has up to two attempts.
     pub(super) fn longest_bus_exchange(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

@@ -1,4 +1,4 @@
-//! Streaming of frames. The adapter cannot do anything else during a stream, so any other request ends the stream
+//! Streaming of frames. The adapter handles no other requests during a stream, so any other request ends the stream
 //! first.
 
 use std::sync::Arc;
@@ -16,12 +16,13 @@ use crate::devices::biss::procedures::{Error, Station};
 const SLICE: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
-    /// Returns the next frames of a stream with the given interval in microseconds, or the shortest that the adapter
-    /// supports; starts the stream if necessary. Returns `None` over the configuration pin, which has no streams.
+    /// Returns the next frames of a stream, and starts the stream if necessary. The interval is `period_us`
+    /// microseconds, or the shortest that the adapter supports. Returns `None` over the configuration pin, which has no
+    /// streams.
     ///
     /// # Errors
-    /// When starting the stream, as for [`position`](Self::position); afterwards errors of the adapter, or
-    /// cancellation, after which the stream continues.
+    /// Starting a stream returns the same errors as [`position`](Self::position). Later, an error means that the
+    /// adapter failed or the job was cancelled. The stream continues after a cancellation.
     pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);
@@ -54,10 +55,10 @@ impl Master<'_> {
         }
     }
 
-    /// Ends a running stream, even after cancellation.
+    /// Ends a running stream, even after a cancellation.
     ///
     /// # Errors
-    /// Errors of the adapter; the stream is then ended before the next request.
+    /// Returns an error if the adapter fails. The stream is then ended before the next request.
     pub fn stop_frame_stream(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
@@ -74,7 +75,7 @@ impl Master<'_> {
         }
     }
 
-    /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
+    /// Records that a stream has failed, and ends the stream in the adapter if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.stop_frame_stream().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

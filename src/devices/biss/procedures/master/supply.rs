@@ -1,4 +1,4 @@
-//! Encoder supply over an adapter: switched on if requested, and restored at the end of the session.
+//! Supply of the encoder by an adapter. It is switched on if requested, and restored at the end of the session.
 
 use std::time::Duration;
 
@@ -7,12 +7,11 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// Time allowed for a store that a register write may start without showing it in a status; its duration is not
-/// published (`U`).
+/// Time allowed for a store that a register write may have started. No status shows the end of such a store, and its
+/// duration is not published (`U`).
 const SETTLES: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Switches the supply on if requested and not yet switched on.
     pub(super) fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
         if self.station.adapter.was_supplied_at_start().is_none() {
@@ -21,11 +20,11 @@ impl Master<'_> {
         }
         let measured = self.adapter().supply(Supply::voltage(millivolt))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
-        // Data sheet, 02:0Eh: 500 ms until registers can be read.
+        // Registers can be read 500 ms after power-up (data sheet, 02:0Eh).
         self.wait(Supply::POWER_UP)
     }
 
-    /// Returns whether the encoder has power. An encoder that sends a frame is powered, whatever its supply.
+    /// Returns whether the encoder has power from any supply. An encoder that sends a frame has power.
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
@@ -36,7 +35,7 @@ impl Master<'_> {
     /// while a store, a calibration or a restart may be in progress, because cutting the power would lose encoder data.
     ///
     /// # Errors
-    /// Errors of the adapter.
+    /// Returns an error if the adapter fails.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
         if self.station.transport != Transport::Adapter || !self.station.adapter.switches_supply_off() {
             return Ok(());
@@ -51,7 +50,7 @@ impl Master<'_> {
         })
     }
 
-    /// Returns whether the encoder may be executing something that requires power.
+    /// Returns whether a loss of power could interrupt an operation of the encoder.
     fn is_unfinished(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);
@@ -62,7 +61,7 @@ impl Master<'_> {
         let since = self.now().since(written_at);
         self.wait(SETTLES.saturating_sub(since))?;
         let Some(lock) = self.station.description.as_ref().and_then(|own| own.lock()) else { return Ok(false) };
-        // One that is silent is calibrating or restarting.
+        // An encoder that does not reply is calibrating or restarting.
         Ok(self.read(lock.mode_at).map(DeviceMode::new) != Ok(DeviceMode::OPERATION))
     }
 }

@@ -1,6 +1,6 @@
-//! Single exchanges over the configuration pin (reference UBICOM 1 and 2): a request, and the bytes received until the
-//! reply is complete or has timed out. Bytes that are not part of a frame are skipped, and a frame that pauses for 20
-//! ms is abandoned. The echo is recognised by its length, which no reply has.
+//! Single exchanges over the configuration pin. An exchange sends a request and receives bytes until the reply is
+//! complete or has timed out. Bytes that are not part of a frame are skipped, and a frame that pauses for 20 ms is
+//! abandoned. The echo is recognised by its length, which no reply has. See reference UBICOM 1 and 2.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::units::Moment;
 
 /// Length in bytes of the longest frame, which is the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
-/// Time after the reply time-out after which continuing noise is not a reply in progress.
+/// Time after the reply time-out during which bytes may still arrive. Bytes that keep arriving later are noise.
 const NOISE: Duration = Duration::from_secs(1);
 
 struct Timed {
@@ -167,7 +167,7 @@ impl Master<'_> {
         state.record_answer_start(at);
         state.echo.learn(received.echo_heard);
         if received.receiver.skipped() > 0 || received.damage.is_some() {
-            // The checksum of this reply is right, but the line has damaged other bytes.
+            // The checksum of this reply is correct, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
             self.station.noisy = true;

@@ -1,5 +1,5 @@
-//! Calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, about five seconds each, during which
-//! the encoder may not reply.
+//! Singleturn calibration. It has a counterclockwise and a clockwise run of about five seconds each, during which the
+//! encoder may not reply. See manual 6.4.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{
 
 /// Expected duration of a calibration run ("about 5 seconds", manual 6.4).
 const EXPECTED: Duration = Duration::from_secs(5);
-/// Time after which a run is considered failed.
+/// Time limit for a run.
 const LIMIT: Duration = Duration::from_secs(20);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +83,8 @@ impl Guide<'_, '_> {
             return self.run(&course, procedure, explain);
         }
         let ended = self.run_uncancellable(|guide| guide.run(&course, procedure, explain));
-        // Success saves the table by itself, and failure loses it; only a run that was never started changes nothing.
+        // A successful run saves the table, and a failed one loses it. Only a run that was never started changes
+        // nothing.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
             self.count_write_cycle();
         }

@@ -12,7 +12,7 @@ impl Guide<'_, '_> {
     pub(super) fn store_data(&mut self, area: &Area, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::DataWrite)?;
         let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
-        // Manual 6.5: not during motor operation.
+        // The motor must not run (manual 6.5).
         let OperatorDecision::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
         self.enter(&procedure)?;
         self.step(ProcedureStep::Open);
@@ -29,7 +29,7 @@ impl Guide<'_, '_> {
         self.await_status(&procedure, DataStatus::Open.byte())?;
         self.step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
-        // From here on the result of the store must be reported, even after cancellation.
+        // After this point, the result of the store must be reported even after a cancellation.
         self.run_uncancellable(|guide| guide.finish_data(&procedure, registers))
     }
 

@@ -34,13 +34,13 @@ pub enum Failure {
         /// Time waited, in seconds.
         seconds: u64,
     },
-    /// The user did not fulfil the task in the time allowed.
+    /// The operator did not fulfil the task in time.
     #[error("the conditions are not met: {blockers:?}")]
     NotReady { task: Task, blockers: Vec<StartBlocker> },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: String, expected: String, got: String },
-    /// The description of the encoder lacks what the plan requires.
+    /// The description of the encoder does not contain the procedure.
     #[error("no description of this procedure for this encoder")]
     NotDescribed { kind: ProcedureKind },
 }

@@ -16,25 +16,25 @@ use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
 };
 
-/// Time during which a restarting encoder receives nothing (data sheet, 02:0Eh).
+/// Time that the encoder needs for a restart, during which nothing is sent to it (data sheet, 02:0Eh).
 const RESTART: Duration = Duration::from_millis(500);
-/// Time after which a restart is considered failed.
+/// Time limit for a restart.
 const RESTART_PATIENCE: Duration = Duration::from_secs(5);
-/// Time during which a calibrating encoder may not reply, about five seconds (manual 6.4).
+/// Time limit for the silence of a calibrating encoder, which lasts about five seconds (manual 6.4).
 pub(super) const SILENCE: Duration = Duration::from_secs(10);
 /// Interval at which a status register is polled.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Interval between position readings. At 2000 rpm half a turn takes 15 ms, which must not be missed by an encoder
-/// without a multiturn.
+/// Interval between position readings. At 2000 rpm, half a turn takes 15 ms. At longer intervals, turns of an encoder
+/// without a multiturn would be missed.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval between measurements while waiting for the operator.
+/// Interval between questions to the operator.
 const ASKING: Duration = Duration::from_millis(200);
-/// Duration of a motor speed measurement, and of a check that a shaft is at rest.
+/// Duration of a motor speed measurement.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
-/// Time after which a device mode is considered not accepted.
+/// Time limit for the encoder to accept a device mode.
 const MODE: Duration = Duration::from_millis(500);
-/// Time after which a status is no longer expected.
+/// Time limit for an expected status.
 const STATUS: Duration = Duration::from_secs(5);
 /// Duration of silence after which an encoder is considered to have started calibrating (`U`). A damaged reply causes a
 /// shorter silence.
@@ -63,7 +63,7 @@ pub(super) struct RunProgress {
     pub(super) limit: Duration,
 }
 
-/// The operator's answer, with the measurement at that time.
+/// The operator's decision about a task, with the measurement at that time.
 pub(super) enum OperatorDecision {
     Go(Option<Motion>),
     Skip,
@@ -84,7 +84,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.master
     }
 
-    /// Records that the encoder was found in operation; the password may still be set.
+    /// Records that the encoder was found in operation. `password` tells whether the password is set.
     pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -131,8 +131,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Returns the encoder to operation and clears the password, whatever has happened. Sends nothing if the encoder is
-    /// already in operation.
+    /// Returns the encoder to operation and clears the password. Sends nothing if the encoder is already in operation.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
         self.step(ProcedureStep::LeadBack);
@@ -166,8 +165,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Sends a command. If its reception is uncertain, the next exchange must determine it from the status or the
-    /// written values.
+    /// Sends a command. If it is uncertain whether the encoder received the command, no error is returned. The next
+    /// exchange must then check the status or the written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -175,7 +174,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Sends the command that writes the flash, which from then on is considered written until proven otherwise.
+    /// Sends the command that writes the flash. From then on, the flash is considered written unless a reply proves
+    /// otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
         self.set_activity(Activity::Saving);
@@ -197,7 +197,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         Err(Failure::NotVerified { item: address.to_string(), expected: hex(expected), got: hex(got) })
     }
 
-    /// Waits until a status register has the expected value.
     pub(super) fn await_status(&mut self, procedure: &Procedure, expected: u8) -> Result<(), Failure> {
         let end = self.master.now() + STATUS;
         loop {
@@ -220,8 +219,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         result
     }
 
-    /// Starts a run and polls the status until the run is complete, reporting the expected duration. `explain`
-    /// interprets unexpected statuses; the status from before the command is ignored until it changes.
+    /// Starts a run, polls the status until the run is complete, and reports the progress. `explain` returns the
+    /// failure for an unexpected status. The status from before the command is ignored until it changes.
     pub(super) fn run(
         &mut self,
         course: &RunProgress,
@@ -280,7 +279,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Gives the operator a task at the motor, and repeats a measurement until it meets the conditions and the operator
+    /// Gives the operator a task at the motor. Measures repeatedly until the conditions are met and the operator
     /// confirms.
     pub(super) fn attend(&mut self, task: Task) -> Result<OperatorDecision, Failure> {
         self.step(ProcedureStep::Await(task));
@@ -306,7 +305,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Reads positions for the time between two questions, and the temperature if relevant.
+    /// Reads positions until the next question to the operator. The temperature is also read if the task depends on it.
     fn measure(&mut self, task: Task, monitor: &mut SpeedMonitor) -> Result<Measured, Failure> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
@@ -365,8 +364,8 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// Returns the encoder to operation from any mode and clears the password. A running calibration is allowed to finish,
-/// since leaving it would lose the table. Returns the previous mode.
+/// Brings the encoder from any mode back to operation, clears the password, and returns the previous mode. A running
+/// calibration is allowed to finish, because leaving it would lose the table.
 pub(super) fn lead_back(
     master: &mut Master<'_>,
     description: &Description,
@@ -398,7 +397,7 @@ pub(super) fn lead_back(
     Err(Error::StaysUnlocked { mode: stays })
 }
 
-/// Sends what a procedure requires before its mode is left. A refusal does not prevent leaving.
+/// Sends the command that a procedure requires before its mode is left. A refusal is ignored.
 fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
     use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };
@@ -423,7 +422,7 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
 fn ignore_refusal(ended: Result<(), Error>) -> Result<(), Error> {
     match ended {
         Err(Error::Refused { .. }) => Ok(()),
-        // It is not known whether it was received: the next exchange shows whether the encoder is still there.
+        // It is not known whether the command was received. The next exchange shows whether the encoder is still there.
         Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
         ended => ended,
     }

@@ -1,10 +1,11 @@
-//! State of an encoder as far as its replies reveal it, reported if the link is lost during a procedure.
+//! The state of an encoder, as far as it is known from its replies. It is reported if the link is lost during a
+//! procedure.
 
 use super::Run;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// The possible values of a quantity: one, or several if a reply is missing.
+/// The possible values of a quantity. There are several if a reply is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PossibleValues<T>(Vec<T>);
 
@@ -23,7 +24,7 @@ pub enum Activity {
     Running(Run),
     /// Values have been entered but not saved, and are discarded when the mode is left or power is lost.
     Entered,
-    /// Flash that was, or may have been, written, so that either the old or the new values are stored.
+    /// The flash was written, or may have been. Either the old or the new values are stored.
     Saving,
     Restarting,
 }
@@ -52,11 +53,11 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         }
     }
 
-    /// Records a write that sets the value to `after`; its result determines the possible values.
+    /// Updates the possible values after a write of `after`. They depend on the result of the write.
     pub(super) fn record_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::known(after),
-            // It was not sent, or not accepted.
+            // The value was not sent, or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
             Err(_) => self.or(after),
         }
@@ -77,13 +78,14 @@ impl LeftState {
         self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
     }
 
-    /// Records that a restart command was sent, which the encoder may not have received.
+    /// Records that a restart command was sent. The encoder may not have received it.
     pub(super) fn may_have_restarted(&mut self) {
         self.may_have_lost_power();
         self.activity = Activity::Restarting;
     }
 
-    /// Records that the encoder is out of reach: without power it starts again in operation, with the password cleared.
+    /// Records that the encoder is out of reach. If it loses power, it starts again in operation with the password
+    /// cleared.
     pub(in crate::devices::biss::procedures) fn may_have_lost_power(&mut self) {
         self.mode.or(DeviceMode::OPERATION);
         self.password.or(false);

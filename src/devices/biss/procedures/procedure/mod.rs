@@ -41,7 +41,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, PositionFilter, P
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The operator skipped the procedure, or the part of it after the first run.
+    /// The operator skipped the whole procedure, or everything after the first run.
     Skipped {
         after: Option<Run>,
     },
@@ -54,7 +54,6 @@ pub enum Outcome {
         /// Width of the singleturn in bits.
         singleturn_bits: u8,
     },
-    /// A preset was performed.
     PresetFired {
         parts: PresetParts,
         from: PositionReading,
@@ -91,11 +90,12 @@ impl Guide<'_, '_> {
     }
 }
 
-/// Returns an encoder to operation, clears the password, and returns the previous mode. Works even if the link was lost
-/// or another host changed the mode, and waits for an encoder that is silent because it is calibrating.
+/// Brings an encoder back to operation, clears the password, and returns the previous mode. This also works after the
+/// link was lost or another host changed the mode. If the encoder is silent because it is calibrating, the function
+/// waits for it.
 ///
 /// # Errors
-/// Errors of the exchange, or the encoder does not return to operation.
+/// Returns an error if the exchange fails or the encoder does not return to operation.
 pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
         master.with_reply_timeout(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;

@@ -1,5 +1,5 @@
-//! The operator at the motor during a procedure: tasks, concurrent measurements and confirmations. In the window the
-//! operator is a user at a button, in a test a script; on a production line there is none.
+//! The operator at the motor during a procedure: tasks, measurements and confirmations. In the window the operator is a
+//! user, and in a test a script. On a production line, there may be no operator.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use super::Motion;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Run {
     CalibrationCounterclockwise,
-    /// Second calibration run, whose failure loses the table.
+    /// Second calibration run. If it fails, the table is lost.
     CalibrationClockwise,
     WiegandClockwise,
     WiegandCounterclockwise,
@@ -30,7 +30,7 @@ impl SpeedRange {
         SpeedRange { least, greatest }
     }
 
-    /// Returns the range of accepted speeds, widened by the measuring accuracy.
+    /// Returns the range of accepted speeds, which includes the measuring tolerance.
     pub fn measured(self) -> Self {
         SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
@@ -58,19 +58,19 @@ impl Run {
         if self.is_calibration() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
-    /// Returns the speed with the best result (manual 6.4). For the Wiegand test all are equal.
+    /// Returns the speeds that give the best result (manual 6.4). For the Wiegand test, these are all allowed speeds.
     pub const fn recommended_range(self) -> SpeedRange {
         if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
     }
 
-    /// Returns the allowed speed variation in revolutions per minute (manual 6.4), or `None` for the Wiegand test, for
-    /// which the manual only requires a constant speed.
+    /// Returns the allowed speed variation of a calibration in revolutions per minute (manual 6.4). Returns `None` for
+    /// the Wiegand test, for which the manual only requires a constant speed.
     pub const fn max_fluctuation(self) -> Option<f64> {
         if self.is_calibration() { Some(2.0) } else { None }
     }
 
-    /// Returns the speed variation that still counts as steady at the given speed, within the limits of the
-    /// measurement.
+    /// Returns the maximum speed variation, in revolutions per minute, at which the motor counts as steady. It depends
+    /// on the speed because of the measuring accuracy.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.max_fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
@@ -85,7 +85,7 @@ impl Run {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
     Turn(Run),
-    /// Keep the shaft at rest, because data are not accessed while it turns.
+    /// Keep the shaft at rest, because data is not accessed while it turns.
     Stand,
     /// Keep the shaft at rest at the angle that the preset value will be assigned to.
     StandAtPlace,
@@ -111,7 +111,7 @@ pub enum StartBlocker {
     },
     /// The motor is still accelerating, or its speed varies.
     Unsteady {
-        /// Revolutions per minute.
+        /// Speed variation in revolutions per minute.
         spread: f64,
     },
     /// The temperature is outside 25…40 °C (manual 6.4).
@@ -140,7 +140,6 @@ pub struct OperatorPrompt {
     /// Conditions that currently prevent the start.
     pub blockers: Vec<StartBlocker>,
     pub advice: Vec<Advice>,
-    /// Time since the task was given.
     pub waited: Duration,
 }
 
@@ -193,7 +192,7 @@ impl OperatorPrompt {
         }
     }
 
-    /// Returns whether nothing prevents a start.
+    /// Returns whether all conditions for the start are met.
     pub fn is_ready(&self) -> bool {
         self.blockers.is_empty()
     }
@@ -216,7 +215,7 @@ pub enum Answer {
     /// Skip this part and continue with the next.
     Skip,
     Cancel,
-    /// Give up, with the conditions that prevented the start, because no operator is present.
+    /// Give up because no operator is present. The conditions that prevented the start are reported.
     GiveUp,
 }
 
@@ -228,21 +227,21 @@ pub trait Operator {
     fn attend(&mut self, demand: &OperatorPrompt) -> Answer;
 }
 
-/// Stand-in for an absent operator that starts as soon as all conditions are met, and gives up after a time limit.
+/// A substitute for an operator. It starts as soon as all conditions are met, and gives up after a time limit.
 #[derive(Clone, Copy, Debug)]
 pub struct UnattendedOperator {
     pub patience: Duration,
 }
 
 impl UnattendedOperator {
-    /// Time after which a missing measurement is no longer expected.
+    /// Additional time allowed for the first measurement.
     const MEASURING: Duration = Duration::from_secs(5);
 }
 
 impl Operator for UnattendedOperator {
     fn attend(&mut self, demand: &OperatorPrompt) -> Answer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, StartBlocker::Temperature { .. }));
-        // So that it ends with an obstacle if there is one.
+        // With a measurement, the reason for giving up is more specific.
         let measures = if demand.blockers == [StartBlocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
         if demand.is_ready() {
             Answer::Go
@@ -254,12 +253,12 @@ impl Operator for UnattendedOperator {
     }
 }
 
-/// Remote operator whose answers arrive through this channel. Clones share the channel.
+/// A channel for the answers of an operator in another thread. Clones share the channel.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 
 impl OperatorChannel {
-    /// Answers the current task. Answers to another task, or from before the task was given, are ignored.
+    /// Answers the current task. An answer is ignored if it is for another task or was sent before the task was given.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
     }

@@ -1,5 +1,5 @@
-//! Preset (manual 6.7): the value is stored, or becomes the present position of the shaft. The encoder restarts after
-//! either.
+//! Preset. The value is stored, or the current shaft position is set to it. In both cases, the encoder restarts. See
+//! manual 6.7.
 
 use super::guide::{Guide, OperatorDecision};
 use super::{Activity, Failure, Outcome, ProcedureStep, Task};
@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Reciprocal of the allowed jitter around the new value, in revolutions: 0.35°.
+/// Reciprocal of the allowed jitter around the new value, in revolutions. The jitter is 0.35°.
 const TREMBLE: u64 = 1024;
 
 impl Guide<'_, '_> {
@@ -69,7 +69,7 @@ fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
     range.ok_or(Failure::NotDescribed { kind: procedure.kind })
 }
 
-/// Returns the position of the shaft after the preset as a single number of steps.
+/// Returns the shaft position after the preset, as a single number of steps.
 fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
     let steps = if parts.includes_singleturn() { value.singleturn() } else { from.steps };
     let turns = if parts.includes_multiturn() { value.multiturn() } else { from.turns };

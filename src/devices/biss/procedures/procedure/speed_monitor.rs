@@ -1,5 +1,5 @@
-//! Motion of the shaft, derived from positions: direction, speed, variation and standstill. The monitor itself reads
-//! nothing.
+//! Motion of the shaft, calculated from its positions: direction, speed, variation and standstill. The monitor sends no
+//! requests.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -9,11 +9,11 @@ use crate::devices::biss::procedures::PositionReading;
 
 #[derive(Debug)]
 pub(super) struct SpeedMonitor {
-    /// Nanoseconds.
+    /// Duration of the window in nanoseconds.
     window: i64,
     unwrap: Option<PositionUnwrapper>,
     steps_per_turn: f64,
-    /// Positions of the current and the previous window, oldest first.
+    /// Positions of the window, oldest first. The first one is at or before the start of the window.
     places: VecDeque<(SampleTime, i64)>,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct SpeedMonitor {
 pub struct Motion {
     /// Mean speed in revolutions per minute, positive for clockwise rotation, in which positions increase.
     pub rpm: f64,
-    /// Maximum speed deviation of a quarter of the measurement, in revolutions per minute.
+    /// Maximum deviation from the mean speed in a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
     pub travel: f64,
 }
@@ -58,7 +58,7 @@ impl SpeedMonitor {
             self.places.clear();
         }
         self.places.push_back((time, place.steps));
-        // The position before the window is its start.
+        // The last position before the window marks its start.
         while self.places.get(1).is_some_and(|(second, _)| time.nanoseconds_since(*second) >= self.window) {
             self.places.pop_front();
         }

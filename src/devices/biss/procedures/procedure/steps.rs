@@ -1,4 +1,4 @@
-//! The steps of each operation in order. A view lists them in advance and marks them as they are reported.
+//! The steps of each operation, in order. A view lists them in advance and marks them as they are reported.
 
 use std::time::Duration;
 
@@ -8,9 +8,8 @@ use crate::devices::biss::protocol::DeviceMode;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProcedureStep {
-    /// Checking conditions that do not depend on the motor: the filter.
+    /// Check of the filter, which does not depend on the motor.
     Conditions,
-    /// Waiting for the operator at the motor.
     Await(Task),
     Enter(DeviceMode),
     Open,
@@ -18,7 +17,6 @@ pub enum ProcedureStep {
     Run(Run),
     Results,
     Save,
-    /// Execution of the preset.
     Fire,
     Restart,
     LeadBack,
@@ -48,7 +46,8 @@ pub enum StepDetail {
     Demand(OperatorPrompt),
 }
 
-/// Returns the steps of an operation. A restart needs no separate step to return the encoder to operation.
+/// Returns the steps of an operation. A restart also returns the encoder to operation, which is then not a separate
+/// step.
 pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

@@ -1,4 +1,5 @@
-//! Test of the Wiegand sensor (manual 6.3): pulses over 515 revolutions clockwise, then counterclockwise.
+//! Test of the Wiegand sensor. Pulses are collected over 515 revolutions clockwise, then counterclockwise. See manual
+//! 6.3.
 
 use std::time::Duration;
 
@@ -10,7 +11,7 @@ use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, W
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
-    /// Whether the result is saved in the encoder, which shows it after a restart.
+    /// Whether the result is saved in the encoder. The saved result shows after a restart.
     pub saved: bool,
     pub clockwise: Option<Motion>,
     pub counterclockwise: Option<Motion>,
@@ -53,7 +54,7 @@ impl Guide<'_, '_> {
             let statuses = [WiegandStatus::WaitForDirection, WiegandStatus::Counterclockwise, WiegandStatus::Complete];
             (WiegandCommand::StartCounterclockwise, statuses)
         };
-        // The slowest motor with which a start is allowed takes 62 s.
+        // At the slowest permitted speed, this takes 62 s.
         let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
         let expected = Duration::from_secs_f64(f64::from(WiegandResult::REVOLUTIONS) / rpm * 60.0);
         let course = RunProgress {
@@ -77,7 +78,7 @@ impl Guide<'_, '_> {
         })
     }
 
-    /// Saves the result. Only the encoder's status confirms this, because the result cannot be read back before a
+    /// Saves the result. Only the status of the encoder confirms this, because the result cannot be read back before a
     /// restart.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Save);

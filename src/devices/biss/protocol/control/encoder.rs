@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, with_crc};
 
-/// The encoder side of the control channel, driven cycle by cycle. Call [`next_cds`](Self::next_cds) at the start of a cycle and
-/// [`receive_cdm`](Self::receive_cdm) at its end.
+/// The encoder side of the control channel, driven cycle by cycle. Each cycle starts with a call of
+/// [`next_cds`](Self::next_cds) and ends with a call of [`receive_cdm`](Self::receive_cdm).
 #[derive(Clone, Debug)]
 pub struct Encoder {
     slave: u8,
@@ -37,18 +37,18 @@ enum State {
     Rest,
     /// Ignoring a frame that is unintelligible or addressed to another encoder.
     Ignoring,
-    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, the first one highest.
+    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, with the first one highest.
     Head { bits: u32, cycle: u8 },
-    /// Waiting for the encoder's start bit S after that of the host.
+    /// About to send the start bit S. In a read, the value must be known first.
     Start { address: u8, access: Access },
-    /// Sending DATA and CRC4, of which `sent` bits of `word` have been sent after the start bit S. In a write, `word`
-    /// grows with the received bits.
+    /// Sending DATA and CRC4. After the start bit S, `sent` bits of `word` have been sent. In a write, received bits
+    /// are appended to `word`.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
-    /// Read access, with DATA and CRC4 once the value is known.
+    /// Read access. Contains DATA and CRC4 once the value is known.
     Read(Option<u16>),
     Write,
 }
@@ -60,7 +60,8 @@ impl Encoder {
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Creates the control channel of an encoder with the given number on its line, 0 to 7; a kit encoder is number 0.
+    /// Creates the control channel of an encoder. `slave` is its number on the line, 0 to 7, which is 0 for a kit
+    /// encoder.
     pub fn new(slave: u8) -> Self {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
@@ -133,7 +134,7 @@ impl Encoder {
             }
             Self::HEAD_BITS if !matches!(bits & 3, 0b01 | 0b10) => (State::Ignoring, None),
             0..=Self::HEAD_BITS => (State::Head { bits, cycle }, None),
-            // The S after R and W.
+            // The start bit S after R and W is missing.
             _ if bits & 1 == 0 => (State::Ignoring, None),
             _ => {
                 let access = if bits & 0b100 != 0 { Access::Read(None) } else { Access::Write };
@@ -150,7 +151,7 @@ fn begin(address: u8, access: Access) -> (State, Option<Event>) {
     }
 }
 
-/// Handles one bit of DATA and CRC4; `sent` counts the bits, including the current one.
+/// Handles one bit of DATA and CRC4. `sent` counts the bits and includes the current one.
 fn transfer(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);

@@ -3,11 +3,11 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// The host side of the control channel, driven cycle by cycle. Only one request runs at a time, and the line rests in
-/// between.
+/// The host side of the control channel, driven cycle by cycle. Only one request runs at a time, and the line is idle
+/// between requests.
 #[derive(Clone, Debug)]
 pub struct Host {
-    /// Number of consecutive cycles with CDM = 0, up to the number that matters.
+    /// Number of consecutive cycles with CDM = 0. The counter saturates.
     zeros: u8,
     waiting: Option<Request>,
     state: State,
@@ -18,7 +18,8 @@ pub struct Host {
 pub struct Step {
     /// CDM bit of the cycle. During the time-out, the clock line carries the inverse of this bit.
     pub cdm: bool,
-    /// Outcome if the request ended in this cycle: the values read, or those that the encoder echoed after a write.
+    /// Outcome if the request ended in this cycle. It contains the values read, or the values that the encoder echoed
+    /// after a write.
     pub outcome: Option<Result<Vec<u8>, ControlError>>,
 }
 
@@ -31,7 +32,7 @@ enum State {
         bits: u32,
         cycle: u8,
     },
-    /// Waiting for the encoder's start bit S after that of the host.
+    /// Waiting for the encoder's start bit S. The host repeats its own meanwhile.
     Start {
         transfer: Transfer,
         cycles: u8,
@@ -55,7 +56,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns bit `at`, counted from the first, of the DATA and CRC4 bits that the host sends.
+    /// Returns one of the DATA and CRC4 bits that the host sends. The bit at 0 is sent first.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -72,7 +73,7 @@ impl Host {
     const LAST_OF_HEAD: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Submits a request, which is sent as soon as the line is at rest.
+    /// Submits a request, which is sent as soon as the line is idle.
     ///
     /// # Errors
     /// Returns the request if another one is in progress.
@@ -89,7 +90,7 @@ impl Host {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Abandons the request. The encoder discards it during the zeros that precede the next one.
+    /// Abandons the request. The encoder discards it during the zeros before the next request.
     pub fn abort(&mut self) {
         self.waiting = None;
         self.rest();

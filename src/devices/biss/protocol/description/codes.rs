@@ -10,27 +10,16 @@ use super::super::status::DeviceMode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum CodeTable {
-    /// Codes of [`DeviceMode`].
     DeviceMode,
-    /// Codes of [`WiegandCommand`].
     WiegandCommand,
-    /// Codes of [`WiegandStatus`].
     WiegandStatus,
-    /// Codes of [`CalibrationCommand`].
     CalibrationCommand,
-    /// Codes of [`CalibrationStatus`].
     CalibrationStatus,
-    /// Codes of [`DataCommand`].
     DataCommand,
-    /// Codes of [`DataStatus`].
     DataStatus,
-    /// Codes of [`FilterCommand`].
     FilterCommand,
-    /// Codes of [`FilterStatus`].
     FilterStatus,
-    /// Codes of [`PresetCommand`].
     PresetCommand,
-    /// Codes of [`PresetStatus`].
     PresetStatus,
 }
 

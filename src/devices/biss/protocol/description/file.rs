@@ -1,5 +1,5 @@
-//! The file format of a description. Rows are checked while they are read, so that errors can be reported with their
-//! position.
+//! Deserialization of description files. Each row is checked while the parser reads it, because only then is the row's
+//! position known.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -24,7 +24,7 @@ use crate::bits::ByteOrder;
 /// Parses a description file.
 ///
 /// # Errors
-/// Returns the flaw and its position.
+/// Returns the error and its position in the file.
 pub(super) fn parse(text: &str) -> Result<Description, (Position, DescriptionErrorKind)> {
     flaw::take();
     let read: Result<File, SpannedError> = ron::from_str(text);
@@ -200,7 +200,8 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     }
 }
 
-/// Implements deserialization that checks each row, so that errors contain the position of the row.
+/// Implements `Deserialize` for types whose rows are checked while they are read. Errors then have the position of the
+/// row.
 macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
@@ -316,9 +317,8 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row of a description, with the items that no other row may claim.
+/// A row of a description file. It claims items such as registers, which no other row may claim.
 trait Row {
-    /// Returns the items that no other row may claim.
     fn claimed_items(&self) -> Vec<Claim>;
 }
 
@@ -348,7 +348,7 @@ impl Row for Procedure {
     }
 }
 
-/// A list of rows that claim no item twice.
+/// A list of rows in which no item is claimed twice.
 struct Rows<T>(Vec<T>);
 
 impl<T> Default for Rows<T> {

@@ -17,7 +17,8 @@ use super::name::Name;
 pub(super) struct GermanTexts(BTreeMap<String, String>);
 
 impl GermanTexts {
-    /// Adds the German names. `text` is the file content, which is searched for the position of an unused entry.
+    /// Adds the German names to the English ones. `text` is the content of the file, which is searched for the position
+    /// of an unused entry.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,
@@ -39,7 +40,7 @@ impl GermanTexts {
     }
 }
 
-/// Returns the position of an entry, counted from 1; the start of the file if the entry is written in an unusual form.
+/// Returns the line and column of an entry, counted from 1. Returns the start of the file if the entry is not found.
 fn location_of(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
     let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(starts_with_colon));

@@ -11,7 +11,7 @@ pub struct Name {
 }
 
 impl Name {
-    /// Creates a name in English, which may be empty for a part without a name.
+    /// Creates a name without a translation. The name may be empty.
     pub fn new(english: impl Into<String>) -> Self {
         Name { english: english.into(), german: None }
     }

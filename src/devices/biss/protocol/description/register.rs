@@ -14,25 +14,25 @@ pub struct Register {
     pub width: u8,
     /// Name in the manual.
     pub name: Name,
-    /// Role of the register, if it has one for the program.
+    /// Purpose of the register in the program, if it has one.
     pub role: Option<Role>,
     /// Permitted access.
     pub access: Access,
     /// Byte order of the value.
     pub order: ByteOrder,
-    /// Factory setting of each byte, or empty if unknown.
+    /// Factory settings of the bytes. The list is empty if they are unknown.
     pub default: Vec<u8>,
     /// How the value is decoded.
     pub decoding: ValueDecoding,
     /// Unit symbol, which may be empty.
     pub unit: String,
-    /// Values that spend a flash write cycle when written.
+    /// Values that use up one flash write cycle when they are written.
     pub saves: Vec<u8>,
-    /// First firmware that has the register.
+    /// Oldest firmware that has the register.
     pub since: Firmware,
 }
 
-/// The purpose of a register that the program relies on.
+/// The purpose of a register that the program accesses by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -54,7 +54,7 @@ pub enum Role {
     Mode,
     /// Password that unlocks the device mode.
     Password,
-    /// Filter in use.
+    /// Active position filter.
     Filter,
     /// Firmware version.
     Firmware,
@@ -87,18 +87,18 @@ pub enum ValueDecoding {
     Hex,
     /// Linear scaling, which multiplies the number by `factor` and adds `offset`.
     Scaled {
-        /// Value of one step.
+        /// Factor by which the number is multiplied.
         factor: f64,
-        /// Value at 0.
+        /// Value that corresponds to the number 0.
         offset: f64,
     },
     /// Named bits, numbered from 0 for the lowest bit.
     Bits(Vec<(u8, Name)>),
     /// Named values.
     Choice(Vec<(u64, Name)>),
-    /// Version, shown as the bytes in order with dots in between, such as 1.6.0.
+    /// Version number. Its bytes are shown in order, separated by dots, such as 1.6.0.
     Version,
-    /// Characters in order of their addresses.
+    /// Text with one character per byte, in ascending order of address.
     Text,
 }
 
@@ -119,7 +119,7 @@ pub enum Decoded<'a> {
     Text(String),
 }
 
-/// A range of plain data banks, in which each byte is a separate value.
+/// A range of banks without separately defined registers. Each byte is a separate value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// Name in the manual.
@@ -130,7 +130,7 @@ pub struct Area {
     pub last: u8,
     /// Permitted access.
     pub access: Access,
-    /// Command of the data procedure that opens the area for writing.
+    /// Command that opens the area for writing, if it must be opened. The command belongs to the data write procedure.
     pub open: Option<u8>,
 }
 
@@ -152,12 +152,13 @@ impl Register {
 
     /// Returns whether the register contains the byte at the given address.
     pub fn contains(&self, address: RegisterAddress) -> bool {
-        // Global addresses of a bank are consecutive, and a register does not leave its bank.
+        // Global addresses of a bank are consecutive, and a register lies within one bank.
         let first = self.address.global();
         (first..first + u16::from(self.width)).contains(&address.global())
     }
 
-    /// Returns the number encoded by the bytes, or `None` if the number of bytes differs from the register's width.
+    /// Returns the number that the bytes represent. Returns `None` if the number of bytes differs from the register's
+    /// width.
     pub fn number(&self, bytes: &[u8]) -> Option<u64> {
         let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         (bytes.len() == usize::from(self.width)).then(|| match self.order {
@@ -200,7 +201,7 @@ impl Register {
         })
     }
 
-    /// Returns whether writing the given value spends a flash write cycle.
+    /// Returns whether writing the given value uses up a flash write cycle.
     pub fn is_save(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }

@@ -1,4 +1,4 @@
-//! Messages for mistakes in a description file.
+//! Messages for errors in a description file.
 
 use super::layout;
 use crate::app::{Text, explain as general};

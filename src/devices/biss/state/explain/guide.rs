@@ -97,19 +97,18 @@ pub fn advice_text(advice: Advice) -> Text {
     }
 }
 
-/// Returns the text on what a calibration requires of the motor and the encoder.
+/// Returns the text about the requirements of a calibration for the motor and the encoder.
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
-/// Returns the text on what a Wiegand test requires of the motor.
+/// Returns the text about the requirements of a Wiegand test for the motor.
 pub fn wiegand_requirements() -> Text {
     revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 
-/// Adds the number of revolutions per direction in a Wiegand test to a text.
 fn revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
@@ -162,7 +161,7 @@ pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
         let named = |words| TEXTS.text("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first line states the action or the verdict; the others add details.
+    // The first line states the action or the verdict. The other lines add details.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
             0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),

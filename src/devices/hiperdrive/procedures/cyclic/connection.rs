@@ -27,12 +27,11 @@ pub struct Connection {
     figures: LinkStatistics,
 }
 
-/// Number of intervals without a packet after which no motion may start, and a connection with a moving drive is
-/// lost.
+/// Number of intervals without a packet after which no motion may start. If a drive is moving, the connection is lost.
 const LOST: u32 = 3;
 /// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
-/// Length of the header that a target may send before the data. The target's description would specify it (`U`).
+/// Length in bytes of the header that a target may send before the data. The manual does not specify it (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
@@ -72,15 +71,16 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether no packet has arrived for three intervals, for whatever reason, so that the positions of the
-    /// drives are unknown.
+    /// Returns whether no packet has arrived for three intervals. The positions of the drives are then unknown.
     pub fn has_timed_out(&self, now: Moment) -> bool {
         self.began && now.since(self.last_received) > self.come_interval * LOST
     }
 
-    /// Returns the time without packets if it is too long. During motion, the limit is three intervals of listening,
-    /// because a busy computer that could not listen may still have packets queued. At rest, and as an absolute limit,
-    /// it is the time that the target itself waits for a packet.
+    /// Returns the time without packets if it is too long.
+    ///
+    /// During motion, the limit is three intervals of listening. A busy computer that could not listen may still have
+    /// packets queued. At rest, the limit is the time that the target itself waits for a packet. This is also the
+    /// absolute limit.
     pub fn excessive_silence(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;

@@ -1,4 +1,4 @@
-//! All drives of a cyclic connection with their dead-men, from opening to end.
+//! The drives of a cyclic connection from opening to end, each with its dead-man control.
 
 use std::time::Duration;
 
@@ -33,9 +33,9 @@ struct Ending {
     off: u32,
 }
 
-/// Duration of the stop ladder, and the time for braking.
+/// Time for the stop ladder, including braking.
 const LADDER: Duration = Duration::from_millis(700);
-/// Number of packets that switch the drives off; more than one is sent, since a packet may be lost.
+/// Number of packets that switch the drives off. Several are sent, since one may be lost.
 const OFF: u32 = 3;
 
 impl Drives {
@@ -75,7 +75,7 @@ impl Drives {
         self.words.as_ref().map(ParameterWords::readings)
     }
 
-    /// Returns why the connection has ended without being closed.
+    /// Returns the reason for the loss if the connection was lost.
     pub const fn lost(&self) -> Option<&ConnectionLoss> {
         self.lost.as_ref()
     }
@@ -90,7 +90,7 @@ impl Drives {
         off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))
     }
 
-    /// Begins to end the connection. The drives are stopped, then switched off.
+    /// Starts to close the connection. The drives are stopped, then switched off.
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(Ending { since: now, off: 0 });
@@ -98,7 +98,7 @@ impl Drives {
         }
     }
 
-    /// Records that the connection was lost. The drives are still told to stop, since they may receive packets.
+    /// Records that the connection was lost. Stop commands are still sent, since the drives may receive them.
     pub fn connection_lost(&mut self, now: Moment, why: ConnectionLoss) {
         if self.lost.is_none() && !self.is_finished() {
             self.lost = Some(why);
@@ -117,12 +117,11 @@ impl Drives {
         true
     }
 
-    /// Returns when [`poll`](Self::poll) has something to send.
     pub const fn poll_at(&self) -> Moment {
         self.connection.poll_at()
     }
 
-    /// Returns the packet that is due now, if any. All packets received so far must have been passed on before.
+    /// Returns the packet that is due now, if any. All packets received so far must have been handled before.
     pub fn poll(
         &mut self,
         now: Moment,

@@ -11,7 +11,7 @@ pub struct LinkStatistics {
     pub interval: Duration,
     pub sent: u64,
     pub received: u64,
-    /// Number of packets that had not arrived before a later one did.
+    /// Number of packets that were missing when a later one arrived.
     pub missed: u64,
     /// Number of packets that were overtaken by a newer one, or received twice.
     pub stale: u64,
@@ -36,7 +36,7 @@ pub enum ConnectionLoss {
     Silent { after: Duration },
     #[error(transparent)]
     Port(#[from] LinkError),
-    /// The drive does not stop, whatever is sent, so the connection was closed to make it stop.
+    /// The drive ignored every stop command, so the connection was closed to make it stop.
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
     /// The session's own TCP connection is lost.

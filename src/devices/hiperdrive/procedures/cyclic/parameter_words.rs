@@ -9,8 +9,9 @@ use crate::units::Moment;
 
 /// Reads the watched parameters in turn.
 ///
-/// A request is repeated in every packet until its reply has arrived. Before the next request the words are cleared in
-/// both directions, so that a late reply is never mistaken for the reply to a later request of the same parameter.
+/// A request is repeated in every packet until its reply has arrived. The words are then cleared in both directions
+/// before the next request. A late reply is therefore never mistaken for the reply to a later request of the same
+/// parameter.
 #[derive(Clone, Debug, Default)]
 pub struct ParameterWords {
     watched: Vec<ParameterNumber>,
@@ -42,7 +43,7 @@ enum Phase {
     /// Nothing is requested, but the device has not yet confirmed that.
     #[default]
     Clear,
-    /// Nothing has been requested since the given time, and a parameter waits to be read.
+    /// The request has been cleared since the given time, and a parameter waits to be read.
     Clearing {
         since: Moment,
     },
@@ -54,7 +55,7 @@ enum Phase {
     },
 }
 
-/// Time limit for a reply, for which the manual gives no value (`U`).
+/// Time limit for a reply. The manual gives no value (`U`).
 const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {

@@ -27,7 +27,7 @@ pub enum MotionRequest {
         target: i32,
         effort: SpeedTorque,
     },
-    /// Moves by a number of scaled steps from the present position, as a positioning job that a stop ends.
+    /// Moves by a number of scaled steps from the present position. The motion is a positioning job, which a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
@@ -40,8 +40,8 @@ pub enum MotionRequest {
         direction: Direction,
         /// Speed and torque; limited to [`SpeedTorque::JOG`] if `outward` is set.
         effort: SpeedTorque,
-        /// Whether the motion may lead further out from a position outside the limits, which with a wrong reference can
-        /// be the only way back.
+        /// Whether a drive outside its limits may move further outward. With a wrong reference, this can be the only
+        /// way back.
         outward: bool,
     },
     Run {
@@ -74,7 +74,7 @@ pub struct SpeedTorque {
 /// Permission of a drive to move: limits, locks and exceptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Permit {
-    /// Parameters 158 and 160, or `None` if they have not been read.
+    /// Lower and upper limit (parameters 158 and 160), or `None` if they have not been read.
     pub limits: Option<(i32, i32)>,
     pub locks: Vec<Lock>,
     /// Whether the drive may run past its limits.
@@ -90,9 +90,9 @@ pub enum Lock {
     Unread,
     /// Parameter 186 is 255 or not a time, so the drive could continue to move after a loss of communication.
     NoTimeout,
-    /// The scale has changed, and the limits with it, but the user has not confirmed the limits yet.
+    /// The scale has changed, and the limits with it. The user has not confirmed the limits yet.
     LimitsUnconfirmed,
-    /// Parameter 152 is not 1.
+    /// The drive is not requested: parameter 152 is not 1.
     NotRequested,
     /// The parameters were read too long ago, and another master may have changed them since.
     Outdated,
@@ -113,7 +113,7 @@ pub enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
     Job {
-        /// In scaled steps.
+        /// Target position in scaled steps.
         target: i32,
     },
     Run {
@@ -126,11 +126,11 @@ pub enum MotionKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
     Mode,
-    /// Disable operation, 0401h.
+    /// Disables operation by sending 0401h.
     Operational,
-    /// 0000h.
+    /// Switches the drive off by sending 0000h.
     Off,
-    /// Closes the cyclic connection, so that the watchdogs of the drives stop them.
+    /// Closes the cyclic connection. The watchdogs of the drives then stop them.
     Close,
 }
 
@@ -141,7 +141,7 @@ pub enum Ended {
     RangeEnd,
     Stopped,
     Replaced,
-    /// Not refreshed in time.
+    /// The request was not refreshed in time.
     Stale,
     Deaf,
     Lost,
@@ -151,7 +151,7 @@ pub enum Ended {
     Locked(Lock),
     /// The request was refused, and nothing was sent.
     Refused(Refusal),
-    /// The drive remains in this state and has not followed a control word on the way to the requested state.
+    /// The drive did not follow a control word and remains in this state.
     NoAnswer(State),
     NotStarted,
     /// The drive has left the state required for a motion.
@@ -159,12 +159,12 @@ pub enum Ended {
     /// The drive is at rest, but has not reached its target.
     Short,
     Beyond {
-        /// In scaled steps.
+        /// Position in scaled steps.
         position: i32,
     },
     /// The drive is moving away from its target, or against the direction of its run.
     WrongWay {
-        /// In scaled steps.
+        /// Position in scaled steps.
         position: i32,
     },
 }
@@ -175,30 +175,30 @@ pub enum Refusal {
     /// Speed or torque is 0 %.
     NoEffort,
     Outside {
-        /// In scaled steps.
+        /// Target position in scaled steps.
         target: i32,
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         low: i32,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
     /// The drive is outside its limits, and the motion would lead further outside.
     Outward {
-        /// In scaled steps.
+        /// Position in scaled steps.
         position: i32,
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         low: i32,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits according to status bit 15, although its position is inside, so the direction
-    /// back is unknown.
+    /// Status bit 15 reports a drive outside its limits, although its position is inside. The direction back is
+    /// unknown.
     Unclear {
-        /// In scaled steps.
+        /// Position in scaled steps.
         position: i32,
-        /// Parameter 158.
+        /// Lower limit in scaled steps, parameter 158.
         low: i32,
-        /// Parameter 160.
+        /// Upper limit in scaled steps, parameter 160.
         high: i32,
     },
     Endless,
@@ -271,7 +271,7 @@ impl TargetState {
         }
     }
 
-    /// Returns the goal that corresponds to a state. Faults and the switch-on lock rank lowest.
+    /// Returns the target state that corresponds to a drive state. Faults and the switch-on lock rank lowest.
     pub(super) const fn of(state: State) -> TargetState {
         match state {
             State::NotReady | State::Fault | State::Locked => TargetState::Off,
@@ -287,8 +287,8 @@ impl SpeedTorque {
     pub const NONE: SpeedTorque = SpeedTorque { speed: Percent::NONE, torque: Percent::NONE };
     /// Default speed and torque of a jog: 10 % and 25 %.
     pub const JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };
-    /// Default speed and torque of a move: a quarter of the speed, which leaves time for STOP after a mistyped target,
-    /// and the torque that an axis may require.
+    /// Default speed and torque of a move: 25 % speed and full torque. The low speed leaves time to stop after a
+    /// mistyped target, and an axis may need the full torque.
     pub const MOVE: SpeedTorque = SpeedTorque { speed: percent(25), torque: Percent::FULL };
 
     pub fn at_most(self, other: SpeedTorque) -> Self {
@@ -316,7 +316,7 @@ impl Default for Permit {
 }
 
 impl Permit {
-    /// Creates a permit for motion within the given limits, without locks, with the factory scale of 65536 steps per
+    /// Creates a permit for motion within the given limits. It has no locks and the factory scale of 65536 steps per
     /// turn.
     pub const fn within(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
@@ -325,7 +325,7 @@ impl Permit {
     /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
     ///
     /// # Errors
-    /// [`Refusal`].
+    /// Returns the [`Refusal`] if the motion is not permitted.
     pub fn check(&self, request: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
         if !request.moves() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Reasons why a running act ends early.
+//! Reasons why a running action ends early.
 
 use super::{CONTACT_TIMEOUT, DeadMan, Ended, Lock, MotionIntent, MotionKind, MotionRequest, Permit, Refusal, Stage};
 use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
@@ -27,7 +27,7 @@ impl DeadMan {
         }
     }
 
-    /// Accepts a pause or resume, which continue the job, only as the next request, because a stop in between may have
+    /// Accepts a pause or a resume of the job. It must be the very next request, because a stop in between may have
     /// been missed.
     fn follow(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
         let mark = self.mark(now);
@@ -83,7 +83,7 @@ impl DeadMan {
         if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) = (self.stage, self.runs())
             && status.has(StatusBit::SetpointAcknowledged) == acknowledged
         {
-            // The drive has restarted: the word on the wire would start the job again.
+            // The drive has restarted. The control word being sent would start the job again.
             return Some(Ended::Left(state));
         }
         let motion = act.motion?;

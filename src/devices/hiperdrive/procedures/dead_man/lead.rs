@@ -47,7 +47,7 @@ impl StateSequencer {
         StateSequencer { goal, acknowledges: false, word: None }
     }
 
-    /// Creates a lead out of a fault or the switch-on lock, to the ready state.
+    /// Creates a sequence that leads the drive out of a fault or the switch-on lock to the ready state.
     const fn out() -> Self {
         StateSequencer { goal: TargetState::Ready, acknowledges: true, word: None }
     }
@@ -56,7 +56,7 @@ impl StateSequencer {
         self.goal
     }
 
-    /// Returns whether the lead only removes torque or keeps it off, so that no refresh is required.
+    /// Returns whether the sequence only removes torque or keeps it off. It then needs no refresh.
     pub(super) fn only_removes_torque(&self, state: State) -> bool {
         self.goal <= TargetState::of(state) || self.goal == TargetState::Off
     }
@@ -69,7 +69,7 @@ impl StateSequencer {
     fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> StateSequenceStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
-        // The drive has received a word for long enough to have processed it: the edge that follows must not be missed.
+        // The drive has had enough time to process the word, so it will not miss the edge that follows.
         let seen =
             |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
         let state = status.state();
@@ -85,7 +85,7 @@ impl StateSequencer {
             (_, goal) => match TargetState::of(state) {
                 level if level > goal => goal.word(),
                 level if level < goal => level.above().word(),
-                // Nothing else starts before it stands still.
+                // Nothing else starts before the drive is at rest.
                 _ if state == State::Moving => W::ENABLED,
                 _ if after_run && goal == TargetState::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
                 _ => return StateSequenceStep::There,
@@ -148,7 +148,7 @@ impl DeadMan {
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
     }
 
-    /// Holds the present state or a lower one after the lead has been abandoned.
+    /// Holds the present state or a lower one after a sequence was abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { TargetState::Ready } else { TargetState::Enabled };
         self.level = match state {

@@ -51,7 +51,7 @@ pub(super) struct Mark {
     pub(super) report: u64,
 }
 
-/// Number of reports after a mark. The last of them certainly describes the time after the mark.
+/// Number of reports to wait for after a mark. The last of them certainly describes the time after the mark.
 const REPORTS: u64 = 2;
 
 impl Mark {
@@ -91,7 +91,7 @@ impl DeadMan {
             Stage::Lead(lead) => self.go_on(now, actual, lead),
             Stage::Arm { since, acknowledged } => {
                 if self.runs() || !toggled(acknowledged) {
-                    // It has received the word.
+                    // The drive has received the control word.
                     if mark.is_past(since, Duration::ZERO) {
                         self.stage = Stage::Start { since: mark, acknowledged };
                     }
@@ -127,7 +127,7 @@ impl DeadMan {
 
     fn check_motion_end(&mut self, mark: Mark, actual: ActualValues, stands: Mark) {
         let Stage::Go { since, .. } = self.stage else { return };
-        // A report from before the start may still say that it stands still, or has reached another target.
+        // A report from before the start may still show standstill, or another target as reached.
         let late = mark.is_past(since, SETTLE);
         if self.runs() {
             if late && mark.is_past(stands, SETTLE) {
@@ -157,15 +157,15 @@ impl DeadMan {
         }
     }
 
-    /// Escalates the stop while the drive does not stop, and holds its state once it is at rest. After a run, that
-    /// state is ready, from which the next motion leads up again.
+    /// Escalates the stop until the drive is at rest, then holds its state. After a run, that state is ready, from
+    /// which the next motion leads up again.
     fn raise_stop_level(&mut self, mark: Mark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
             return;
         }
         if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
-            // Not above the level's own word.
+            // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
         } else if mark.at.since(since) >= LEVEL_TIME {
             let level = level.next();
@@ -173,7 +173,7 @@ impl DeadMan {
         }
     }
 
-    /// Supervises a drive at rest. The held state follows the drive down, and a moving drive is stopped.
+    /// Supervises a drive at rest. If the drive falls to a lower state, that state is held. A moving drive is stopped.
     fn watch(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(TargetState::Operational),
@@ -211,7 +211,7 @@ impl DeadMan {
             (Stage::Stop { level: StopLevel::Operational, .. }, _) => ControlWord::OPERATIONAL,
             (Stage::Stop { level: StopLevel::Off | StopLevel::Close, .. }, _) => ControlWord::OFF,
             (stage, Some(Motion { kind, .. })) => moving(stage, kind, actual),
-            // Without an act there is no motion in these stages.
+            // Without an action there is no motion in these stages.
             (_, None) => ControlWord::READY,
         };
         let target = match (&self.stage, motion.and_then(|motion| motion.kind.target())) {

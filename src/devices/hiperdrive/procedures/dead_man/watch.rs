@@ -25,7 +25,8 @@ pub enum Side {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     At(Side),
-    /// Status bit 15 is set, although the position is more than a degree inside both limits, or near both.
+    /// Status bit 15 is set, but the position does not show which limit the drive has passed. It is near both limits or
+    /// more than a degree inside them.
     Unclear,
 }
 
@@ -35,11 +36,11 @@ pub(super) struct Watch {
     outside: Option<Outside>,
     /// Smallest distance so far: to the target of a job, or in the direction of a run.
     best: i64,
-    /// Position of a waiting job after braking.
+    /// Position after braking while a job is paused.
     waits_at: Option<i32>,
     /// Whether the user has allowed motion further outward while the button is pressed.
     freed: bool,
-    /// Whether a run started at the end of the range towards which it leads, so that there may be no travel left.
+    /// Whether a run started at the end of the range towards which it leads. There may be no travel left.
     pub(super) at_end: bool,
 }
 
@@ -57,12 +58,12 @@ impl Outside {
 }
 
 impl Permit {
-    /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the limit that is
-    /// within a degree. Returns `None` if the drive is inside, or if no limits are known.
+    /// Returns how a drive is outside its limits, by its position or else by status bit 15. Status bit 15 counts for
+    /// the limit that is within a degree. Returns `None` if the drive is inside, or if no limits are known.
     pub fn outside(&self, actual: ActualValues) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
-            // In a range so narrow that both limits are within a degree, it may be either.
+            // In a very narrow range both limits are within a degree, and the drive may be at either of them.
             match [Side::Below, Side::Above].map(|side| side.beyond(actual.position, limits) >= -degree) {
                 [true, false] => Outside::At(Side::Below),
                 [false, true] => Outside::At(Side::Above),
@@ -138,18 +139,18 @@ impl Watch {
         let distance = motion.distance(actual);
         self.best = self.best.min(distance);
         let is_job = matches!(motion.kind, MotionKind::Job { .. });
-        // The target of a job is within the limits: up to a degree from it is no overrun.
+        // The target of a job is within the limits, so a deviation of up to a degree is no overrun.
         let beyond = if is_job && distance <= degree { None } else { self.check_limits(motion, actual, permit) };
         // At its target a job may overshoot by its accuracy.
         let arrives = is_job && self.best <= ACCURACY * degree;
         let allowed = if arrives { ACCURACY * degree } else { degree };
-        // A user who enables the way out watches the axis: a drive that counts the other way comes in by it.
+        // A user who allows outward motion watches the axis. A drive that counts the wrong way moves inward on this
+        // path.
         let leaves = distance > self.best.saturating_add(allowed) && !self.freed;
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }
 
-    /// Detects that the drive continues to move during a waiting job, by more than a degree from its position after
-    /// braking.
+    /// Detects motion while a job is paused: more than a degree from the position after braking.
     fn wait(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<Ended> {
         if !has_braked {
             self.waits_at = None;
@@ -172,7 +173,7 @@ impl Watch {
             return if runs && is_end { Some(Ended::RangeEnd) } else { beyond };
         };
         match side(actual.position, limits) {
-            // Through the whole range, and out at the other side.
+            // The drive has crossed the whole range and left it on the other side.
             Some(side) if Outside::At(side) != began => return beyond,
             // Status bit 15 may be late.
             None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
@@ -183,11 +184,11 @@ impl Watch {
 }
 
 impl Permit {
-    /// Checks whether a motion may begin at this position. From outside the limits it may only lead back in, unless the
-    /// user has allowed motion further outward while the button is pressed.
+    /// Checks whether a motion may begin at this position. From outside the limits it may only lead back in. The user
+    /// can allow motion further outward while the button is pressed.
     ///
     /// # Errors
-    /// [`Refusal::Outward`], [`Refusal::Unclear`].
+    /// Returns [`Refusal::Outward`] or [`Refusal::Unclear`] if the motion would lead, or could lead, further outside.
     pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), Refusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
@@ -217,8 +218,8 @@ impl DeadMan {
             act.watch = None;
         }
         let Some(watch) = &mut act.watch else {
-            // Before the start, including the first report after leading up: the conditions for a start apply there as
-            // well.
+            // The motion has not started yet, so the conditions for a start apply. This includes the first report after
+            // leading up.
             let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
             let refusal = doubted.or_else(|| permit.check_position_limits(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {

@@ -1,7 +1,7 @@
 //! Opening and closing the cyclic connection over explicit messages (reference 7). Its packets are in `cyclic`.
 //!
-//! The connection sizes and types that a device accepts would be in its description (`U`). They are tried in this
-//! order: with parameter words, point to point; then multicast; then without parameter words.
+//! The connection sizes and types that a device accepts are not documented (`U`). They are tried in this order: with
+//! parameter words, point to point; then multicast; then without parameter words.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -32,8 +32,8 @@ pub struct Opened {
 
 /// Vendor ID of this program, which is an unassigned number (reference 9).
 const VENDOR: u16 = 0x1234;
-/// Time-out multiplier for eight intervals, so that a host may be late once. Long intervals use four, so that drives
-/// stop soon.
+/// Code of the time-out multiplier for eight intervals, which tolerates a host that is late once. Long intervals use
+/// the code for four intervals, so that drives stop soon.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
 /// Shortest interval that counts as long.
@@ -50,10 +50,10 @@ const KINDS: [u16; 3] = [KIND, 0x0123, 0x0124];
 const SIZES: [u16; 3] = [0x0109, 0x0127, 0x0128];
 
 impl Master<'_> {
-    /// Opens the cyclic connection; the target sends its packets to the local `port`.
+    /// Opens the cyclic connection. The target sends its packets to the local `port`.
     ///
     /// # Errors
-    /// [`Error::OtherMaster`], [`Error::Refused`]; errors of the exchange.
+    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device refuses, or an error if the exchange fails.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<Opened, Error> {
         let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
@@ -88,7 +88,7 @@ impl Master<'_> {
     /// Closes a cyclic connection, ignoring cancellation. A connection that has already ended counts as closed.
     ///
     /// # Errors
-    /// [`Error::Refused`]; errors of the exchange.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
         match self
@@ -136,8 +136,8 @@ impl Master<'_> {
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
-        // A second open would be refused as in use, so it is sent once. If its reply is not understood, the connection may
-        // be open.
+        // The request is sent once, because a second one would be refused as in use. The connection may be open even if
+        // the reply is not understood.
         let requested = self.request_with_items(RequestedItem::Open, &open.request(), &[ours], ONCE);
         let opened = requested.and_then(|(reply, items)| match ForwardOpenSuccess::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),

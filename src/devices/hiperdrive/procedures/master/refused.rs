@@ -1,5 +1,5 @@
-//! Diagnosis of a refused parameter: whether the drive exists, whether it is requested, and the present range of the
-//! value, as far as can be determined.
+//! Diagnosis of a refused parameter. It determines, as far as possible, whether the drive exists and is requested, and
+//! the present range of the value.
 
 use super::{Master, RetryPolicy, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
@@ -17,7 +17,7 @@ impl Master<'_> {
     /// Determines why a parameter was refused, as far as possible.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns an error if the exchange fails.
     pub(super) fn refusal_reason(
         &mut self,
         requested: RequestedItem,
@@ -35,7 +35,7 @@ impl Master<'_> {
         if self.is_zero(number, VARIANT, drive)? {
             return Ok(Error::NoDrive { drive });
         }
-        // The request is refused in this state: is the drive not requested?
+        // The drive refuses the request in its present state. The cause may be that it is not requested.
         if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED, drive)? {
             return Ok(Error::NotRequested { drive });
         }
@@ -75,8 +75,8 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference
-    /// 4), and no limit is farther from 0 than the turns of the drive (reference 5).
+    /// Returns the present range of a parameter. Limit 160 is above limit 158, and position and reference lie between
+    /// them (reference 4). No limit is farther from 0 than the turns of the drive (reference 5).
     fn current_range(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,
@@ -89,7 +89,7 @@ impl Master<'_> {
         let mut of_drive = |base| match ParameterNumber::for_drive(base, drive) {
             Some(number) => match self.read_number(number) {
                 Ok(value) => Ok(Some(value)),
-                // The cause of the original refusal is what counts.
+                // Only the cause of the original refusal is reported.
                 Err(error) if error.is_unavailable() => Ok(None),
                 Err(error) => Err(error),
             },

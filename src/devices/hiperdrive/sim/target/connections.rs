@@ -1,8 +1,10 @@
 //! The connection manager: opening and closing cyclic and explicit connections, and unwrapping requests.
 //!
-//! Assumptions (`U`): one cyclic connection, to one master; sizes with and without parameter words, intervals from 5 to
-//! 100 ms, no configuration data and no multicast. Explicit connections (class 3) are available, and end with their
-//! session. A ForwardOpen with long fields (5Bh) is not supported.
+//! Assumptions (`U`):
+//! - There is one cyclic connection, to one master.
+//! - It has sizes with and without parameter words, intervals from 5 to 100 ms, no configuration data and no multicast.
+//! - Explicit connections (class 3) are available, and end with their session.
+//! - A ForwardOpen with long fields (5Bh) is not supported.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -70,7 +72,6 @@ impl Connections {
         self.cyclic.is_some()
     }
 
-    /// Returns the time at which the next packet must be sent.
     pub(super) fn due(&self) -> Option<Moment> {
         self.cyclic.as_ref().map(Cyclic::due)
     }
@@ -210,7 +211,7 @@ impl Plant {
         if fits { Ok(()) } else { Err(ASSEMBLY) }
     }
 
-    /// 0 fits all.
+    /// Checks an electronic key. A field of 0 matches every device.
     fn check_key(&mut self, key: &ElectronicKey) -> Result<(), Refusal> {
         let own = self.identity();
         let fits = |wanted: u16, own: u16| wanted == 0 || wanted == own;
@@ -289,8 +290,8 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     }
 }
 
-/// Unwraps the request in an Unconnected_Send, which consists of time-out, length, request padded to whole words, and
-/// an ignored route.
+/// Unwraps the request in an Unconnected_Send. The data contain a time-out, a length, the request padded to whole
+/// words, and a route, which is ignored.
 fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };
     let length = usize::from(u16::from_le_bytes([*low, *high]));

@@ -1,8 +1,10 @@
 //! The cyclic connection of class 1: packets received and sent, each at its time.
 //!
-//! Assumptions (`U`): the first packet is sent one interval after the connection was opened; every packet in sequence
-//! counts, whatever its data count; a packet that is old, has a wrong length or belongs to another connection is
-//! dropped and counted, and does not keep the connection alive.
+//! Assumptions (`U`):
+//! - The first packet is sent one interval after the connection was opened.
+//! - Every packet in sequence counts, whatever its data count.
+//! - A packet that is old, has a wrong length or belongs to another connection is dropped and counted. It does not keep
+//!   the connection alive.
 
 use std::net::SocketAddrV4;
 use std::time::Duration;
@@ -50,8 +52,8 @@ impl Cyclic {
 }
 
 impl Plant {
-    /// Sends the packets that are due, each with the state of the drives at its time, and closes the connection of a
-    /// lost master.
+    /// Sends the packets that are due and closes the connection of a lost master. Each packet has the state of the
+    /// drives at its time.
     pub(super) fn send_due_packets(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);
@@ -67,7 +69,7 @@ impl Plant {
             let packet = IoPacket {
                 connection: cyclic.to_originator_id,
                 sequence: cyclic.sequence,
-                // The lower half.
+                // The count is the lower half of the sequence number.
                 count: cyclic.sequence as u16,
                 header: None,
                 data: self.station.image(at).emit(cyclic.layout),

@@ -21,7 +21,7 @@ type Refusal = EncapsulationStatus;
 impl Plant {
     /// Returns the reply to a frame, if there is one.
     pub(super) fn answer(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
-        // By ODVA, a frame with unknown options is void, and so is one with the status of a reply.
+        // By ODVA, a frame with unknown options or with the status of a reply is void.
         if frame.options != 0 || frame.status != EncapsulationStatus::OK {
             return None;
         }

@@ -1,8 +1,10 @@
 //! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
 //!
-//! Assumptions (`U`): a session ends with its TCP connection; a cyclic connection does not, and ends by its own
-//! time-out, since its packets show that the master is alive. Bytes that are not frames, and UnRegisterSession, end the
-//! TCP connection. A target that lost its supply replies again after the next connection.
+//! Assumptions (`U`):
+//! - A session ends with its TCP connection. A cyclic connection ends only by its own time-out, since its packets show
+//!   that the master is alive.
+//! - Bytes that are not frames, and UnRegisterSession, end the TCP connection.
+//! - A target that lost its supply replies again after the next connection.
 //!
 //! | file | content |
 //! |---|---|
@@ -34,8 +36,8 @@ use crate::sim::line::TransitQueue;
 use crate::sim::{ByteDevice, DatagramDevice, SimulatedFaults};
 use crate::units::Moment;
 
-/// A TCP connection of one originator to a virtual adapter or hub, and the datagrams of all originators. Created from a
-/// [`Config`]; [`connection`](Self::connection) and cloning create the connection of another originator.
+/// A TCP connection of one originator to a virtual adapter or hub, with the datagrams of all originators. It is created
+/// from a [`Config`]. [`connection`](Self::connection) and cloning create the connection of another originator.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<Plant>>,
@@ -47,7 +49,7 @@ pub struct Target {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
-    /// Whole frames over TCP.
+    /// Number of complete frames received over TCP.
     pub frames: u64,
     /// Number of streams that were not frames.
     pub broken: u64,
@@ -91,7 +93,7 @@ impl Target {
         (plant.listens, plant.udp) = (at, at.port());
     }
 
-    /// Replaces the faults, as for a cable that is repaired or breaks later. The counts of frames and saves are kept.
+    /// Replaces the injected faults. The counts of frames and saves are kept.
     pub fn set_faults(&self, faults: &SimulatedFaults) {
         self.lock().set_faults(faults);
     }

@@ -31,8 +31,8 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
 /// Address assigned by a virtual DHCP or BOOTP server.
 const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Value of attribute 1 of the TCP/IP object: an address was obtained. Attribute 2, below, means BOOTP, DHCP and
-/// settable.
+/// Value of attribute 1 of the TCP/IP object: an address was obtained. The value of attribute 2 below means BOOTP, DHCP
+/// and settable.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
@@ -65,7 +65,7 @@ impl Network {
             if stored { self.stored.clone() } else { InterfaceConfiguration { address: GIVEN, mask: NETWORK, ..NONE } };
     }
 
-    /// Restores the factory settings. The address is kept until the supply is switched.
+    /// Restores the factory settings. The address is kept until the next power cycle.
     pub(super) fn factory(&mut self) {
         (self.control, self.stored) = (dhcp_control(), NONE);
     }
@@ -77,11 +77,11 @@ impl Network {
             ConfigurationControl::ATTRIBUTE => self.control.emit().to_vec(),
             4 => {
                 let path = EPath::instance(ETHERNET_LINK, 1).emit();
-                // Two words.
+                // The length of the path is given in words.
                 [&(path.len() as u16 / 2).to_le_bytes()[..], &path].concat()
             }
             InterfaceConfiguration::ATTRIBUTE => self.present.emit(),
-            // Empty host name.
+            // The host name is empty.
             6 => vec![0, 0],
             _ => return None,
         };

@@ -9,11 +9,11 @@ use crate::devices::hiperdrive::protocol::{Access, ParameterNumber, ParameterRow
 
 /// Device type of a communications adapter, from ODVA's list.
 const DEVICE_TYPE: u16 = 0x0C;
-/// Chosen (`U`).
+/// Product code of the virtual device. The value is assumed (`U`).
 const PRODUCT_CODE: u16 = 1;
 const REVISION: Revision = Revision { major: 1, minor: 2 };
-/// Bits 7 to 4 of the status word without a cyclic connection and with a running connection. Bit 0 means that the
-/// connection has an owner.
+/// Status word of the identity object without a cyclic connection. Bits 7 to 4 give the state of the connection, and
+/// bit 0 means that it has an owner.
 const NOT_CONNECTED: u16 = 0x0030;
 const CONNECTED: u16 = 0x0061;
 const ETHERNET_LINK: u16 = 0xF6;
@@ -42,7 +42,7 @@ impl Plant {
             revision: REVISION,
             status: if self.connections.has_cyclic() { CONNECTED } else { NOT_CONNECTED },
             serial_number: match serial {
-                // 16 bits.
+                // The serial number has 16 bits.
                 Some(Value::Number(number)) => number as u32,
                 _ => 0,
             },
@@ -89,7 +89,7 @@ impl Plant {
         }
         let value = self.station.read(self.now, number).map_err(|refused| refused.status())?;
         let data = row.kind.emit(&value).map_err(|_| GeneralStatus::STATE)?;
-        // Texts are short.
+        // Strings are short, so their length fits in a byte.
         let length = (self.counted_texts && row.kind.length().is_none()).then_some(data.len() as u8);
         Ok(length.into_iter().chain(data).collect())
     }

@@ -149,8 +149,8 @@ impl Plant {
         self.faults.transmit_byte(&mut self.rng, 0).carried.is_some()
     }
 
-    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all, so a fault that affects one
-    /// byte on a serial line affects all bytes here.
+    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all. A fault that affects one
+    /// byte on a serial line therefore affects all bytes here.
     pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.transmit_byte(&mut self.rng, 0);
         let carried = passage.carried?;

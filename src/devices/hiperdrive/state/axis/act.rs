@@ -7,29 +7,29 @@ use crate::app::Language;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
-    /// Write parameters, by their numbers for drive 1, through a plan that does not save.
+    /// Writes parameters, by their numbers for drive 1, through a plan that does not save.
     Try(Vec<(u16, i64)>),
-    /// Assign a position to the present location of the drive, without saving.
+    /// Assigns a position to the present location of the drive, without saving.
     SetPosition(i32),
     ConfirmLimits,
     Move(i32),
     Take,
     Give,
     Save,
-    /// Write the previous values back, without saving.
+    /// Writes the previous values back, without saving.
     Restore(Vec<(u16, i64)>),
     Acknowledge,
-    /// Record the user's statement that the supply was off.
+    /// Records the user's statement that the supply was off.
     BelieveRestart,
     PowerCycle,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisButton {
-    /// Execute the task of the current step, which is a request, a write or a save.
+    /// Executes the task of the current step: a request, a write or a save.
     Do,
     Confirm,
-    /// Widen the limits to the full travel of the drive.
+    /// Widens the limits to the full travel of the drive.
     Widen,
     Go(TestTarget),
     Take,
@@ -45,13 +45,13 @@ pub enum AxisAction {
     Begin,
     Edit(Box<Entries>),
     Press(AxisButton),
-    /// Adopt the present position as the limit that the current step sets.
+    /// Adopts the present position as the limit that the current step sets.
     TakePlace,
     Next,
     Skip,
     Back,
     Cancel,
-    /// Ask where to save the report of a completed set-up.
+    /// Asks where to save the report of a completed set-up.
     AskReport,
     SaveReport(PathBuf, Language),
 }

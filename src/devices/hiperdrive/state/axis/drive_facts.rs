@@ -17,7 +17,7 @@ pub struct DriveFacts {
     pub is_virtual: bool,
     pub controlled: bool,
     pub moves: bool,
-    /// The act and direction of a held jog button.
+    /// Action number and direction of a held jog button.
     pub held: Option<(u64, Direction)>,
     pub actual: Option<ActualValues>,
     /// Time of the last report from the drive on the session's clock, if known.
@@ -29,13 +29,13 @@ pub struct DriveFacts {
     pub unsaved: BTreeMap<u16, i64>,
     /// Number of times this program has set the position.
     pub times_set: u32,
-    /// Parameter 152.
+    /// Whether the drive is requested, parameter 152.
     pub requested: Option<bool>,
-    /// Parameters 154 and 156.
+    /// Position scale, parameters 154 and 156.
     pub scale: Option<PositionScale>,
     /// Pitch of the spindle, if confirmed by the user.
     pub pitch: Option<Length>,
-    /// Parameters 158 and 160.
+    /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
     pub family: Option<Family>,
     pub locks: Vec<Lock>,

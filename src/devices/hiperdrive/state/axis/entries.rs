@@ -11,9 +11,9 @@ use crate::devices::hiperdrive::state::ruler::{PositionRangeError, PositionUnit,
 /// Typed values in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {
-    /// Pitch of the spindle in length per turn.
+    /// Pitch of the spindle in millimetres per turn.
     pub pitch: String,
-    /// Length of a step.
+    /// Length of a step in millimetres.
     pub resolution: String,
     pub reference: String,
     pub lower: String,
@@ -22,14 +22,14 @@ pub struct Entries {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
-    /// Parameters 154 and 156.
+    /// Position scale for parameters 154 and 156.
     pub scale: PositionScale,
     pub ruler: Ruler,
     /// Lower limit for the set-up, given by the travel of the drive.
     pub lower: i32,
-    /// As `lower`.
+    /// Upper limit for the set-up, given by the travel of the drive.
     pub upper: i32,
-    /// Present limits in millimetres under the new scale, if their numbers do not change.
+    /// Present limits in millimetres under the new scale, if their step numbers do not change.
     pub unchanged: Option<(f64, f64)>,
 }
 
@@ -42,7 +42,7 @@ pub struct ReferencePosition {
 }
 
 impl Entries {
-    /// Creates the initial entries from the known data of the spindle. No pitch is proposed, since an unconfirmed pitch
+    /// Creates the initial entries from the known data of the spindle. An unconfirmed pitch is not proposed, since it
     /// would yield wrong measurements.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
@@ -68,7 +68,7 @@ impl Entries {
     /// Returns the pitch of the spindle.
     ///
     /// # Errors
-    /// Explains why the entry is invalid.
+    /// Returns the reason if the entry is invalid.
     pub fn pitch(&self) -> Result<Length, Text> {
         length("hd_axis.pitch", &self.pitch, 1000.0)
     }
@@ -76,13 +76,13 @@ impl Entries {
     /// Returns the values that result from the entered pitch and resolution.
     ///
     /// # Errors
-    /// Explains why the entries are invalid.
+    /// Returns the reason if an entry is invalid.
     pub fn preview(&self, seen: &DriveFacts) -> Result<Preview, Text> {
         let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
         let turns = seen.family.unwrap_or(Family::Short).factory_turns();
-        // Steps too fine for 32 bits exclude a part of the travel.
+        // With very fine steps, a part of the travel does not fit in 32 bits.
         let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
         let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
         let unchanged = seen.limits.and_then(|(low, high)| {
@@ -95,7 +95,7 @@ impl Entries {
     /// Returns the number to assign to the present location of the axis.
     ///
     /// # Errors
-    /// Explains why the number is invalid or outside the limits.
+    /// Returns the reason if the number is invalid or outside the limits.
     pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<ReferencePosition, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
@@ -110,7 +110,7 @@ impl Entries {
     /// Returns the lower limit.
     ///
     /// # Errors
-    /// Explains why the entry is invalid.
+    /// Returns the reason if the entry is invalid.
     pub fn lower_limit(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.lower", &self.lower, ruler)
     }
@@ -118,13 +118,12 @@ impl Entries {
     /// Returns the upper limit.
     ///
     /// # Errors
-    /// Explains why the entries are invalid.
+    /// Returns the reason if the entry is invalid.
     pub fn upper(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.upper", &self.upper, ruler)
     }
 }
 
-/// Formats a number without trailing zeros.
 fn trimmed_number(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -138,7 +137,7 @@ pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
 
 fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
     let millimetres = within(TEXTS.text(what), text, 0.001, most)?;
-    // At least a thousand, at most a thousand million.
+    // The result is between a thousand and a thousand million.
     Ok(Length { nanometres: (millimetres * 1e6).round() as u64 })
 }
 

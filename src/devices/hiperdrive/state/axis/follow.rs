@@ -1,4 +1,4 @@
-//! Progress of the run through buttons, completed writes and data from the drive.
+//! Progress of the set-up through buttons, completed writes and data from the drive.
 
 use super::entries::{Entries, typed};
 use super::standstill::PositionChange;
@@ -29,14 +29,13 @@ impl Axis {
         }
     }
 
-    /// Goes to the next step if the current step is complete; `when` is the time as written in the report.
+    /// Goes to the next step if the current step is complete. `when` is the time as written in the report.
     pub(crate) fn go_on(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.check_can_continue(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
-    /// Skips the current step, if allowed.
     pub(crate) fn skip(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.can_skip(seen) {
             self.leave(seen, true, when);
@@ -50,7 +49,7 @@ impl Axis {
             return;
         }
         if self.step == AxisStep::Reference {
-            // The user has set or confirmed it.
+            // The user has set or confirmed the reference.
             self.unexplained = None;
         }
         let next = self.step.neighbour(1);
@@ -121,7 +120,7 @@ impl Axis {
             Some(DriveRequest::Try(values)) => {
                 self.agree(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The mark is never saved.
+                // The restart mark is never saved.
                 self.saved &= self.step == AxisStep::PowerCycle;
                 self.returned.clear();
             }
@@ -156,13 +155,13 @@ impl Axis {
         }
     }
 
-    /// Records that a request was not written; `begun` tells whether part of it may have been.
+    /// Records that a request was not carried out completely. `begun` tells whether part of it may have been written.
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
                 self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The mark is never saved: apart from it everything is as saved.
+                // The restart mark is never saved. Apart from it, everything is as saved.
                 if self.step != AxisStep::PowerCycle {
                     (self.partly, self.saved) = (true, false);
                 }
@@ -186,12 +185,12 @@ impl Axis {
         self.power = self.power.map(Power::gone);
     }
 
-    /// Records that all parameters were read; `switched` tells whether the virtual supply has been switched since.
+    /// Records that all parameters were read. `switched` tells whether the virtual supply has been switched since.
     pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
-    /// Processes the present data of the drive, updating the travel, the end of a test move, and the validity of all
+    /// Processes the present data of the drive. Updates the travel, the end of a test move, and the validity of all
     /// results.
     pub(crate) fn look(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
@@ -236,7 +235,7 @@ impl Axis {
         }
     }
 
-    /// Undoes the results of the given step and all later steps; `taught` tells whether taught entries are discarded as
+    /// Undoes the results of the given step and all later steps. `taught` tells whether taught entries are discarded as
     /// well.
     fn undo_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {

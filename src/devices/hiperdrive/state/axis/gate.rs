@@ -18,7 +18,7 @@ impl Axis {
     /// Returns the request that a button triggers.
     ///
     /// # Errors
-    /// Explains why the button cannot be pressed now.
+    /// Returns the reason if the button cannot be pressed now.
     pub fn ask(&self, button: AxisButton, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -139,7 +139,7 @@ impl Axis {
     /// Checks whether the axis may be moved.
     ///
     /// # Errors
-    /// Explains why the axis may not be moved.
+    /// Returns the reason if the axis may not be moved.
     pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -167,7 +167,7 @@ impl Axis {
     /// Checks whether the present location of the axis can become a limit.
     ///
     /// # Errors
-    /// Explains why the location cannot become a limit.
+    /// Returns the reason if the location cannot become a limit.
     pub fn check_can_adopt_place(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_text() {
             return Err(words::invalidated_text(step));
@@ -185,7 +185,7 @@ impl Axis {
     /// time was meant for the previous step.
     ///
     /// # Errors
-    /// Returns the remaining time.
+    /// Returns the remaining time if the step is too new.
     pub fn check_step_settled(looked_at: Duration) -> Result<(), Duration> {
         match SETTLES.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
@@ -193,12 +193,10 @@ impl Axis {
         }
     }
 
-    /// Returns whether the user can go back to the previous step now.
     pub fn can_go_back(&self, seen: &DriveFacts) -> bool {
         self.step != AxisStep::Request && self.asked.is_none() && !seen.moves
     }
 
-    /// Returns whether the current step can be skipped now.
     pub fn can_skip(&self, seen: &DriveFacts) -> bool {
         self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_text().is_none()
     }
@@ -206,7 +204,7 @@ impl Axis {
     /// Checks whether the current step is complete, so that the next step may follow.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns the missing condition if the step is not complete.
     pub fn check_can_continue(&self, seen: &DriveFacts) -> Result<(), Text> {
         let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {
@@ -267,7 +265,7 @@ impl Axis {
     /// Returns the target of a test move.
     ///
     /// # Errors
-    /// The limits are not known.
+    /// Returns an error if the limits are not known.
     pub fn target(&self, place: TestTarget, seen: &DriveFacts) -> Result<i32, Text> {
         let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         Ok(place.between(low, high))

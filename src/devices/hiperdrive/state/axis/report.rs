@@ -7,7 +7,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     pub name: String,
-    /// The variant, if known.
     pub variant: Option<Text>,
     pub serial_number: String,
 }

@@ -1,6 +1,6 @@
 //! Comparison of two positions of an axis at standstill. Parameter 198 is the number written last, and no parameter
-//! reveals where it was written (manual, 198 and 107): a reference set again to the same number elsewhere is visible
-//! only as a position that jumps without motion.
+//! reveals where it was written (manual, 198 and 107). If the reference is set again to the same number elsewhere, the
+//! only sign is a position that jumps without motion.
 
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ struct StandstillReading {
     position: i32,
     scale: PositionScale,
     origin: Origin,
-    /// Last act of the user that had ended by then.
+    /// Last action of the user that had ended at the time of the reading.
     act: Option<u64>,
 }
 
@@ -45,7 +45,6 @@ pub(super) enum PositionChange {
 }
 
 impl StandstillMonitor {
-    /// Records that the connection was lost.
     pub(super) const fn interrupt(&mut self) {
         self.interrupted = true;
     }
@@ -65,7 +64,7 @@ impl StandstillMonitor {
         let stands = !seen.moves && actual.status.has(StatusBit::StandingStill) && actual.speed == 0;
         let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
-        // After a motion a changed position means nothing.
+        // After a motion, a changed position means nothing.
         let before = std::mem::replace(&mut self.last, stands.then_some(now))?;
         let same_act = is_interrupted || stands && before.act == now.act;
         let is_comparable = same_act && before.scale == scale && before.origin == origin;

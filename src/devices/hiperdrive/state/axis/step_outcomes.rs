@@ -1,12 +1,12 @@
 //! Results of the axis set-up, step by step. Each records the facts of the drive on which it depends. If one of them
-//! changes, whoever changed it, the result becomes void together with all later ones.
+//! changes for any reason, the result becomes void together with all later ones.
 
 use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// Origin of positions, given by the position set last (198), the number of times this program set a position, and the
-/// number of jumps at standstill. Only a jump reveals a reference set again to the same number.
+/// Origin of positions. It is given by the position set last (198), the number of times this program set a position,
+/// and the number of jumps at standstill. Only a jump reveals a reference that was set again to the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
@@ -56,7 +56,7 @@ impl StepOutcomes {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// Records the result of a step. Returns whether it differs from the previous result, in which case the results of
+    /// Records the result of a step. Returns whether it differs from the previous result. If it does, the results of
     /// later steps are void.
     pub(super) fn make(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };

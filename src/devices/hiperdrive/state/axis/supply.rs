@@ -1,5 +1,5 @@
-//! Power-cycle check: the state before the supply was lost, the state after it returned, and the proof that it was off
-//! at all. A connection that was lost and restored proves nothing.
+//! Power-cycle check: the state before and after the supply was lost, and the proof that it was off at all. A
+//! connection that was lost and restored proves nothing.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
@@ -28,7 +28,7 @@ pub enum RestartEvidence {
     /// The restart is proven by a reading, in which parameter 182 has its factory setting again.
     Read,
     Switched,
-    /// The restart is stated by the user and not proven by a reading.
+    /// The restart is stated by the user. No reading proves it.
     Said,
     /// The restart is unproven. The connection was lost, which can have other causes.
     Unproven,
@@ -45,7 +45,7 @@ pub enum Power {
     Back {
         before: StateBeforePowerOff,
         kept: bool,
-        /// Steps between the positions before and after the restart, or `None` if one of them is unknown.
+        /// Steps between the positions before and after the restart. `None` if one of them is unknown.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -84,8 +84,8 @@ impl Power {
         }
     }
 
-    /// Records that the parameters were read again. Unless something shows that the supply was off, any reading may be
-    /// the first one after the power cycle.
+    /// Records that the parameters were read again. This reading may be the first one after the power cycle, unless an
+    /// earlier one has shown that the supply was off.
     pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before)
@@ -95,7 +95,7 @@ impl Power {
         let Some(scale) = seen.scale else { return self };
         let restart = match (switched, before.marked, is_marked(seen)) {
             (true, ..) => RestartEvidence::Switched,
-            // Also if the connection was lost before the mark was known to be set.
+            // This also applies if the connection was lost before the mark was known to be set.
             (_, _, Some(true)) => RestartEvidence::Disproved,
             (_, true, Some(false)) => RestartEvidence::Read,
             _ => RestartEvidence::Unproven,
@@ -133,7 +133,7 @@ pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != factory_mark()?)
 }
 
-/// Returns a value that marks a drive, which is next to the factory setting.
+/// Returns a value that marks a drive: the factory setting plus 1.
 pub(super) fn mark() -> Option<i64> {
     factory_mark().map(|value| value + 1)
 }

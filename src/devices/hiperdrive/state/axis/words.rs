@@ -80,7 +80,7 @@ pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
             Some(text.with_number("steps", per_turn, decimals))
         }
         AxisStep::Confirm | AxisStep::Upper => {
-            // A confirmed value stays, also after others were taught.
+            // Confirmed limits stay, even after others were taught.
             let confirmed = axis.confirmed.filter(|_| step == AxisStep::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))

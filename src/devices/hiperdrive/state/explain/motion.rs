@@ -1,4 +1,4 @@
-//! Messages about motion: why a drive may not move, why an act was refused, how one ended.
+//! Messages about motion: why a drive may not move, why a request was refused, how a motion ended.
 
 use super::names::{parameter, state};
 use crate::app::explain::link;
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Phase, Refus
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Explains why motion is locked and what to do.
+/// Explains why motion is locked, and what to do.
 pub fn lock(lock: Lock) -> Text {
     TEXTS.text(match lock {
         Lock::Unread => "hd_lock.unread",
@@ -21,7 +21,7 @@ pub fn lock(lock: Lock) -> Text {
     })
 }
 
-/// Explains why an act was refused and what to do; `place` formats steps in the user's unit.
+/// Explains why a request was refused, and what to do. `place` formats steps in the user's unit.
 pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         Refusal::Locked(own) => lock(own),
@@ -50,7 +50,7 @@ pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// Describes how an act ended, and what to do if it did not end well.
+/// Describes how an action ended, and what to do if it did not end well.
 pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         Ended::Done => TEXTS.text("hd_end.done"),
@@ -73,8 +73,7 @@ pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// IDs of the texts with which a motion ends badly while the drive can be moved again. These notices end with the next
-/// motion.
+/// Text IDs of motions that ended badly although the drive can be moved again. These notices end with the next motion.
 pub const MOTION_ENDS: [&str; 9] = [
     "hd_end.range_end",
     "hd_end.stale",

@@ -153,7 +153,7 @@ pub fn warning(warning: &Warning) -> Text {
 }
 
 pub fn written(written: &Written) -> Text {
-    // An action of the device is not read back.
+    // A service of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }

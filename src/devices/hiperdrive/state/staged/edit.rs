@@ -10,10 +10,10 @@ use crate::devices::hiperdrive::state::ruler::Ruler;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
     Set(ParameterNumber, i64),
-    /// Revert a parameter to the value of the device or the profile.
+    /// Reverts a parameter to the value of the device or the profile.
     Revert(ParameterNumber),
     Leave(ParameterNumber),
-    /// Set both limits of a drive at once, for limits that cannot be set one after the other.
+    /// Sets both limits of a drive at once, for limits that cannot be set one after the other.
     Limits {
         drive: DriveNumber,
         /// Lower limit, in steps of the edited scale.
@@ -22,13 +22,13 @@ pub enum Edit {
     },
     Scale {
         drive: DriveNumber,
-        /// Steps per turn.
+        /// New position scale, which gives the steps per turn.
         scale: PositionScale,
         limits: LimitsPolicy,
     },
 }
 
-/// How limits change when the size of a step changes.
+/// How the limits change when the size of a step changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
     InPlace,

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// A finding that the user should check. An edit can cause one, for example because another scale moves the limits.
+/// A finding that the user should check. An edit can cause one, for example if a new scale moves the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mark {
     /// A value from a profile or an earlier edit is not allowed.
@@ -38,7 +38,7 @@ impl Mark {
 }
 
 impl Staged {
-    /// Returns all findings; `position` gives the position of a drive in steps of its present scale.
+    /// Returns all findings. `position` gives the position of a drive in steps of its present scale.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();
@@ -48,7 +48,7 @@ impl Staged {
         let moved: Vec<ParameterNumber> =
             of_drives.iter().filter(|mark| matches!(mark, Mark::LimitsMove { .. })).flat_map(Mark::numbers).collect();
         let check = |(number, value): (&ParameterNumber, &i64)| {
-            // Limits that moved with the scale are reported, in turns.
+            // Limits that moved with the scale are already reported, in turns.
             let moves = moved.contains(number);
             let travel = if moves { Travel::UNKNOWN } else { travel(*number, wanted, &self.families) };
             number.row()?.check(*number, *value, travel).err()

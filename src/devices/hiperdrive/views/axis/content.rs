@@ -53,7 +53,6 @@ pub(super) fn content_ui(
     }
 }
 
-/// Draws the buttons of the step, on one line if there is room.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
@@ -118,7 +117,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
         && shown.axis.invalidated_text().is_none()
-        // Shown above already.
+        // The reason is already shown above.
         && shown.axis.check_can_continue(shown.seen).err().as_ref() != Some(&why)
     {
         super::warning_ui(ui, theme, &why);
@@ -129,7 +128,6 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     }
 }
 
-/// Draws the two hold-to-run buttons, which jog slowly and with low torque.
 fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
@@ -219,7 +217,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
         entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
             let go = format!("{} {}", say(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
-            // The results of the three are drawn below each other.
+            // The results of the three test moves are drawn below each other.
             let size = vec2(GO, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.set_min_width(GO);
@@ -238,7 +236,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
     }
 }
 
-/// Draws the control of the supply, which is switched here for a virtual device and by hand for a real one.
+/// Draws the control of the supply. A virtual device is switched here, a real one by hand.
 fn power_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));

@@ -1,8 +1,9 @@
-//! Acknowledged words (reference 4), and those whose echo looks like a busy encoder (reference 6.11a).
+//! Words with an echo (reference 4), including those whose echo looks like the word of a busy encoder (reference
+//! 6.11a).
 //!
-//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0, as has the processing word, which
-//! may contain any data, including those just sent. Such an echo counts once it has lasted longer than any processing
-//! by this encoder so far; an edge of cam 0 is also read out before the program is left, since leaving stores it.
+//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0. So does the word of a busy encoder,
+//! which may also contain the data just sent. Such an echo is accepted after it has lasted longer than any processing
+//! by this encoder so far. An edge of cam 0 is also read out before the program is left, since leaving stores it.
 
 use std::time::Duration;
 
@@ -12,26 +13,27 @@ use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// IN word of a busy encoder without further bits. The echo of cam 0's start at 0 is identical.
+/// IN word of a busy encoder without further bits. The echo is the same if the start of cam 0 is set to 0.
 const BUSY: u32 = 0xC000_0000;
 /// Maximum number of attempts to set an edge of cam 0. None of the attempts stores the edge.
 const TRIES: u32 = 4;
 
 impl Master<'_> {
-    /// Sends an acknowledged word until its exact echo is stable.
+    /// Sends a setting until its exact echo is stable.
     ///
     /// # Errors
-    /// [`Error::Illegal`], with nothing sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; errors of
-    /// the exchange.
+    /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
+    /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
         self.resend_setting(command, 0)
     }
 
-    /// Sends a word whose echo proves nothing. `question` reads the value back, and the word is repeated, with a longer
-    /// wait each time, until the encoder has accepted it.
+    /// Sends a setting whose echo is ambiguous and reads the value back with `question`. Both are repeated with longer
+    /// waiting times until the encoder has accepted the value.
     ///
     /// # Errors
-    /// As [`set`](Self::set); [`Error::NotTaken`] with the name `item`.
+    /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, and otherwise the same errors as
+    /// [`set`](Self::set).
     pub(in crate::devices::interbus::procedures) fn set_and_read_out(
         &mut self,
         command: Command,
@@ -58,7 +60,7 @@ impl Master<'_> {
         self.wait_for_acknowledgement(command, tried, false)
     }
 
-    /// Sends a word like [`set`](Self::set), but also accepts a missing echo while the encoder keeps running (`U`).
+    /// Sends a word until its echo is stable. A missing echo is also accepted if the encoder keeps running (`U`).
     pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.await_no_value()?;
@@ -81,13 +83,14 @@ impl Master<'_> {
                     Some(Err(Error::Refused { sent: command, error }))
                 }
                 _ if may_run && rests.is_settled() => Some(Ok(())),
-                // The echo of an earlier word may still be there or arrive late, with other data than sent (manual 5.3).
+                // An earlier word may be echoed late or still be echoed, with other data. See manual 5.3.
                 _ => None,
             }
         })
     }
 
-    /// Returns how long an echo that looks like a busy encoder must persist, or `None` if the echo is unambiguous.
+    /// Returns how long the echo of a command must persist. The result is `None` if it cannot be confused with a busy
+    /// encoder.
     fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

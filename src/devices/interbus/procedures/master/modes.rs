@@ -1,4 +1,4 @@
-//! Mode of an encoder: reading it, changing it, and returning to the previous one.
+//! Mode of an encoder, which a job reads, changes and finally restores.
 
 use std::time::Duration;
 
@@ -8,31 +8,32 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::ExpectedWord;
 use crate::devices::interbus::protocol::{Command, ReadOutNumber, Reply, StartupMode};
 
-/// Time for which a requested cam value may remain after `00000000` before `80000000` is tried (`U`).
+/// Time limit for a requested cam value to disappear after 00000000h. After it, 80000000h is sent (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
-/// Number of additional readings, since the first may still return an old word.
+/// Number of additional readings, because the first one may return an old word.
 const LOOKS: u32 = 2;
 const LOOK: Duration = Duration::from_millis(10);
-/// Time for which a mode reading stays valid between two steps of a job that both return the encoder to its mode.
+/// Time for which the known mode stays valid after a step of a job that returned the encoder to it.
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Runs `work` and returns the encoder to its previous mode, even after an error.
+    /// Runs `work` and returns the encoder to its previous mode. This is also done after an error.
     ///
     /// # Errors
-    /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
+    /// Returns the error of `work`, [`Error::NotRunning`] if the work cannot begin, or [`Error::NotLedBack`] if the
+    /// mode cannot be restored.
     pub fn run_guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let ended = self.begin().and_then(|()| work(self));
         self.end(ended)
     }
 
-    /// Returns the encoder to its state before [`begin`](Self::begin), even if the work in between failed.
+    /// Returns the encoder to its state before [`begin`](Self::begin). This is also done if the work has failed.
     ///
     /// # Errors
-    /// The error of the work; [`Error::NotLedBack`].
+    /// Returns the error of the work, or [`Error::NotLedBack`] if the state cannot be restored.
     pub(in crate::devices::interbus::procedures) fn end<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
-            // Nothing more can be sent.
+            // The link is lost, so nothing more can be sent.
             Err(error @ Error::Link(_)) => Err(error.clone()),
             _ => self.run_uncancellable(Self::lead_back),
         };
@@ -49,12 +50,12 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends a parameterisation, an error or a read-out left by another program, and returns the resulting mode. Any
-    /// values that were set but not stored are stored, which counts as one store. A persistent error is left to the
-    /// reader of the IN word, since the encoder can be read and set regardless.
+    /// Ends a parameterisation, an error or a read-out of another program and returns the resulting mode. Values that
+    /// were set but not stored are now stored, which counts as one store. A persistent error is not reported, since the
+    /// encoder can still be read and set.
     ///
     /// # Errors
-    /// Errors of the handshake and the exchange.
+    /// Returns [`Error::NotLedBack`] with the cause if the encoder cannot be returned to operation.
     pub fn end_leftover_operation(&mut self) -> Result<StartupMode, Error> {
         let ended = self.run_uncancellable(|master| {
             master.release_run()?;
@@ -79,10 +80,11 @@ impl Master<'_> {
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Switches the encoder to a mode and checks that the switch took effect.
+    /// Switches the encoder to a mode and checks the result.
     ///
     /// # Errors
-    /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; errors of the handshake and the exchange.
+    /// Returns [`Error::NoMode`], [`Error::NotSelectable`] or [`Error::UnknownMode`] if the switch is not possible.
+    /// Other errors come from the handshake or the exchange.
     pub(in crate::devices::interbus::procedures) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
         use StartupMode::{Cams, K2, K3, Unknown, Velocity};
         match (self.is, wanted) {
@@ -104,12 +106,12 @@ impl Master<'_> {
         }
     }
 
-    /// Keeps the current mode, so that the encoder is not returned to another one after the job.
+    /// Marks the present mode as the one to which the encoder returns after the job.
     pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
         self.found = self.is;
     }
 
-    /// Reads the encoder's state and mode, so that no word is sent that the encoder would misinterpret.
+    /// Reads the state and the mode of the encoder, which determine the meaning of the words to be sent.
     pub(in crate::devices::interbus::procedures) fn begin(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
@@ -148,7 +150,7 @@ impl Master<'_> {
         if self.known.kept == Some(mode) || self.known.hold.is_some_and(|(held, _)| held == mode) {
             return Ok(());
         }
-        // Checks whether this read-out has ended the mode. Words for cams have other effects in another one.
+        // Checks whether this read-out has ended the mode. In another mode, words for cams have other effects.
         self.rest()?;
         if is_equivalent_mode(self.read_startup_mode()?, mode) {
             self.known.kept = Some(mode);
@@ -158,7 +160,7 @@ impl Master<'_> {
         self.go(mode)
     }
 
-    /// Returns whether nothing was sent to the encoder, or the encoder is in normal operation.
+    /// Returns whether the encoder is in its initial mode and no word other than normal operation is active.
     fn is_in_initial_state(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
@@ -170,8 +172,8 @@ impl Master<'_> {
         Ok(mode)
     }
 
-    /// Sends a word that changes the mode, followed by `00000000` if the encoder then keeps the mode, or otherwise by
-    /// the word that keeps the mode (`U`: the manual does not say which). The encoder is then asked for its mode.
+    /// Sends a word that changes the mode, then 00000000h, and reads the mode. If the encoder does not keep the mode,
+    /// the word that keeps it is sent instead of 00000000h. The manual does not define which word is required (`U`).
     fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
@@ -206,7 +208,7 @@ impl Master<'_> {
             return Ok(());
         }
         let Some(found) = self.found else {
-            // It never reported its mode, so only read-outs were sent.
+            // Only read-outs were sent, since the encoder never reported its mode.
             self.cycle(Command::Normal)?;
             return Ok(());
         };
@@ -223,7 +225,7 @@ impl Master<'_> {
         if self.unsure {
             self.read_startup_mode()?;
         }
-        // A read-out may end a mode as well.
+        // A read-out may also have ended the mode.
         if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
             self.rest()?;
             self.read_startup_mode()?;
@@ -234,7 +236,7 @@ impl Master<'_> {
         self.rest()
     }
 
-    /// Removes `80000000`, which may already be the OUT word and takes effect only on its edge.
+    /// Sends 00000000h, so that a following 80000000h has the edge that it needs to take effect.
     fn release_run(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
@@ -242,7 +244,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Sends the idle word, which requests nothing from the encoder.
+    /// Sends the word that keeps the mode without a request.
     fn rest(&mut self) -> Result<(), Error> {
         self.await_no_value()?;
         let word = self.idle_command();
@@ -254,7 +256,7 @@ impl Master<'_> {
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
-    /// Waits until the IN word contains no value, since the next value would look the same.
+    /// Waits until the IN word contains no value. A new value could not be distinguished from the old one.
     pub(super) fn await_no_value(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_question);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -276,8 +278,8 @@ impl Master<'_> {
         }
     }
 
-    /// Sends `00000000` while parameters or cams are being set until the IN word contains no value, since `80000000`
-    /// would store the settings. A value that persists can be told apart from the next echo.
+    /// Sends 00000000h until the IN word contains no value. It is used while parameters or cams are being set, since
+    /// 80000000h would store them. A value that persists is accepted because it differs from the next echo.
     fn end_query(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, ExpectedWord::Run, patience, |CycleResult { word, same, .. }| {
@@ -291,7 +293,7 @@ impl Master<'_> {
     }
 }
 
-/// Returns whether the two modes are equal or both give the position.
+/// Returns whether two modes are equal. K2 and K3 count as equal, since both return the position.
 pub(super) fn is_equivalent_mode(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)

@@ -1,4 +1,5 @@
-//! Notes about an encoder that a job switches to another mode, so that the next run can complete an interrupted one.
+//! Records of the encoders that a job switches to another mode. If the job is interrupted, the next run restores the
+//! mode.
 
 use super::Master;
 use super::modes::is_equivalent_mode;
@@ -11,15 +12,15 @@ pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<ModeSwitch>,
-    /// Number of cam programs left without a change, each of which the encoder may nevertheless have stored (reference
-    /// 5).
+    /// Number of cam programs that were left without a change. The encoder may nevertheless have stored each of them.
+    /// See reference 5.
     left: u64,
-    /// Whether the running cam program was changed. If so, its store is counted as part of the write.
+    /// Whether the selected cam program was changed. If so, its store is counted as part of the write.
     is_set: bool,
 }
 
 impl<'a> Master<'a> {
-    /// Uses `journal` to record what must be known after this job.
+    /// Sets the journal that records mode switches and stores.
     #[must_use]
     pub fn with_journal(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
@@ -32,7 +33,7 @@ impl Master<'_> {
         self.notes.serial_number = Some(serial_number.to_string());
     }
 
-    /// Records, in advance, the number of cam programs to be selected for reading.
+    /// Records that the given number of cam programs is about to be selected for reading.
     pub(in crate::devices::interbus::procedures) fn record_program_reads(
         &mut self,
         programs: usize,
@@ -51,7 +52,7 @@ impl Master<'_> {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
-    /// Returns the encoder to its original mode if an interrupted earlier run left it in the given mode.
+    /// If an interrupted run left the encoder in the given mode, marks the original mode as the one to return to.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
         if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_excursions()) {
             return Ok(());
@@ -60,7 +61,7 @@ impl Master<'_> {
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
         let Some(excursion) = journal.recorded_excursion(&serial_number) else { return Ok(()) };
         if is_equivalent_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
-            // It was returned, or another mode was selected since.
+            // The encoder was returned, or another mode has been selected since.
             journal.record_return(&serial_number);
             return Ok(());
         }
@@ -74,7 +75,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Records, before the switch, that the encoder will enter the given mode.
+    /// Records that the encoder is about to enter the given mode.
     pub(super) fn record_mode_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
         if let Some(StartupMode::Cams(_)) = self.is
             && !std::mem::take(&mut self.notes.is_set)
@@ -96,7 +97,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Records that returning the encoder to operation stored settings made by another program.
+    /// Records that settings of another program were stored when the encoder was returned to operation.
     pub(super) fn record_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;
@@ -105,13 +106,13 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes the end of a step of the job, and whether the encoder is back in its previous state.
+    /// Records the possible stores at the end of a step, and whether the encoder is back in its initial mode.
     pub(super) fn record_step_end(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {
             return;
         };
-        // It still has to leave the program in which it was left.
+        // If the encoder is not back, it has yet to leave its program, which may store it.
         journal
             .record_possible_stores(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
         if is_back && excursion.take().is_some() {

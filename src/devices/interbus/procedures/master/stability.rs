@@ -1,31 +1,31 @@
-//! How long an IN word has been unchanged, or a condition has held, in cycles and in time. A gateway may be read more
-//! often than it updates from the bus; all readings between two updates count as one.
+//! Measurement of how long an IN word or a condition has been stable, in cycles and in time. A gateway may be read more
+//! often than it updates its registers. All readings between two updates then contain the same word.
 
 use std::time::Duration;
 
 use crate::units::Moment;
 
-/// Number of consecutive cycles after which an echo or a value is stable (reference 4).
+/// Number of consecutive cycles after which an echo or a value is stable. See reference 4.
 const STANDS: u32 = 2;
-/// Minimum duration of a stable echo or value: longer than a gateway usually keeps one word (`U`).
+/// Minimum duration of a stable echo or value. It exceeds the time for which a gateway usually keeps a word (`U`).
 const STANDS_FOR: Duration = Duration::from_millis(10);
-/// Time after which a word is accepted even if it might answer the previous request (`U`).
+/// Time after which a word is accepted even if it could be the answer to the previous request (`U`).
 pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
-/// Number of cycles used in place of a duration for recordings, in which no time passes.
+/// Number of cycles that replaces a duration in recordings, in which no time passes.
 const STAYS: u32 = 20;
 
-/// Returns the minimum number of cycles to wait for an answer, including cycles with old words. A single lost reply can
-/// use up the whole time limit.
+/// Returns the minimum number of cycles to wait for an answer. It allows for cycles with old words, and for a lost
+/// reply that uses up the whole time limit.
 pub(super) const fn least_cycles(recorded: bool) -> u32 {
     if recorded { STAYS + 4 } else { 8 }
 }
 
-/// Minimum time limit. A shorter one would miss words that persist.
+/// Lower limit for the time limit of the handshake. A shorter one would miss words that must persist.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StabilityTimer {
-    /// Whether only cycles count, as in a recording, in which no time passes.
+    /// Whether only cycles count. This applies to recordings, in which no time passes.
     timeless: bool,
     cycles: u32,
     since: Option<Moment>,
@@ -33,7 +33,7 @@ pub(super) struct StabilityTimer {
 }
 
 impl StabilityTimer {
-    /// Creates a check whose condition does not hold yet.
+    /// Creates a timer whose condition does not hold yet.
     pub(super) const fn new(timeless: bool) -> Self {
         StabilityTimer { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
     }
@@ -48,7 +48,7 @@ impl StabilityTimer {
         self.lasted = now.since(*self.since.get_or_insert(now));
     }
 
-    /// Returns whether the condition has held long enough to exclude an old answer.
+    /// Returns whether the condition has held long enough for an echo or a value.
     pub(super) fn is_stable(self) -> bool {
         self.cycles >= STANDS && self.is_stable_for(STANDS_FOR)
     }
@@ -57,14 +57,13 @@ impl StabilityTimer {
         self.has_lasted(STAYS_FOR)
     }
 
-    /// Returns whether the condition has held for the given time and, with a slow gateway, for the minimum number of
-    /// cycles.
+    /// Returns whether the condition has held for the given time and for the minimum number of cycles.
     pub(super) fn has_lasted(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.is_stable_for(duration)
     }
 
-    /// Returns the time from the first cycle to the last in which the condition held.
+    /// Returns the time from the first to the last cycle in which the condition held.
     pub(super) const fn stable_duration(self) -> Duration {
         self.lasted
     }

@@ -1,4 +1,4 @@
-//! Assignment of table columns by their header in English or German, or else by their number.
+//! Recognition of table columns by their header in English or German. Without a header, their number determines them.
 
 use super::Column;
 use crate::analysis::capture::Delimiter;
@@ -33,12 +33,12 @@ impl Columns {
         }
         let has = |column| places.iter().any(|(own, _)| *own == column);
         let has_edge = has(Column::Start) || has(Column::Stop);
-        // A column of cams in addition to one of names contains only numbers.
+        // If there is also a column of names, the column of cams contains only numbers.
         let cam_or_name = has(Column::Cam) && !has(Column::Name);
         has_edge.then_some(Columns { places, cam_or_name })
     }
 
-    /// Infers the columns of a table without a header from their number.
+    /// Returns the columns of a table without a header, depending on how many there are.
     pub(super) fn from_column_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {
@@ -56,7 +56,7 @@ impl Columns {
     }
 }
 
-/// Returns the delimiter that occurs outside quotes on most lines. A comma must be more frequent than the others,
+/// Returns the delimiter that occurs on most lines, outside quotes. A comma must be more frequent than the others,
 /// since it may be a decimal separator.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
@@ -68,7 +68,7 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
     };
     let count = |sign| text.lines().filter(|line| has(line, sign)).count();
     let all = [(Delimiter::Comma, ','), (Delimiter::Semicolon, ';'), (Delimiter::Tab, '\t')];
-    // Of equal ones, the last counts.
+    // If several are equally frequent, the last one is used.
     let most = all.into_iter().map(|(delimiter, sign)| (delimiter, count(sign))).max_by_key(|(_, count)| *count);
     most.filter(|(_, count)| *count > 0).map_or(Delimiter::Comma, |(delimiter, _)| delimiter)
 }

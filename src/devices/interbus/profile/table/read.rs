@@ -1,4 +1,4 @@
-//! Parsing of a table into rows: split by csv-core, columns assigned by header, each edge rounded to the nearest step.
+//! Parsing of a table into rows. The crate csv-core splits the lines, and each edge is rounded to the nearest step.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -10,21 +10,21 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// Maximum number of rows in a cam table: enough for eight programs of eight cams, with room for errors.
+/// Maximum number of rows in a cam table. All eight programs need 64 rows.
 const MOST_ROWS: usize = 1000;
-/// Maximum number of characters of an invalid cell that are shown in a message.
+/// Maximum number of characters of an invalid cell that a message contains.
 const SHOWN: usize = 24;
 
 struct TableLine {
-    /// Counted from 1.
+    /// Line number, counted from 1.
     number: u64,
     cells: Vec<String>,
 }
 
-/// A row whose cam may still be undetermined.
+/// A row whose cam is not assigned yet, unless the row names one.
 struct Draft {
     line: u64,
-    /// Column of the cam entry, or else the first column.
+    /// Column that error messages refer to. This is the column of the cam or of the name, or else the first column.
     column: u64,
     program: ProgramNumber,
     cam: Option<CamNumber>,
@@ -93,7 +93,8 @@ impl CamTable {
         columns
     }
 
-    /// Assigns a cam to each row. Rows that name a cam come first, and the other rows receive the remaining cams.
+    /// Assigns a cam to each row. The cams that rows name are assigned first, and the other rows receive the remaining
+    /// cams.
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
@@ -127,7 +128,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Adds a note for each track with several pulses, since every pulse uses a cam.
+    /// Adds a note for each name with several pulses, since every pulse uses a cam.
     fn add_pulse_notes(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
@@ -147,7 +148,7 @@ impl CamTable {
 fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
-        // A line is a row: an unclosed quote affects one line only.
+        // Each line is parsed as a row, so an unclosed quote affects only one line.
         let cells = cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
         if cells.iter().any(|cell| !cell.is_empty()) {
             lines.push(TableLine { number, cells });
@@ -156,13 +157,13 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     lines
 }
 
-/// Returns the cells of a line without their quotes and surrounding blanks.
+/// Splits a line into cells, without their quotes and surrounding blanks.
 fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
-    // Quotes are removed: the output is never longer than the input, nor has it more ends than characters.
+    // Since quotes are removed, the output is not longer than the input and has no more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
     let (mut read, mut written, mut ended) = (0, 0, 0);
     loop {
-        // An empty input ends the row.
+        // An empty input tells the parser that the row has ended.
         let input = line.as_bytes().get(read..).unwrap_or_default();
         let (Some(room), Some(marks)) = (out.get_mut(written..), ends.get_mut(ended..)) else { break };
         let (result, taken, wrote, fields) = reader.read_record(input, room, marks);
@@ -224,7 +225,7 @@ fn parse_draft(
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Returns both edges in steps. A pulse that spans the whole range ends just before its start.
+/// Returns both edges in steps. If a pulse spans the whole range, its stop is the step before its start.
 fn edges(
     options: &TableOptions,
     start: f64,
@@ -246,8 +247,7 @@ fn edges(
     Ok((edge(start, first), edge(stop, last)))
 }
 
-/// Parses a number with a decimal point, or with a decimal comma if commas do not separate columns. The number may be
-/// followed by a unit.
+/// Parses a number, which may be followed by a unit. A decimal comma is only accepted if `comma` is set.
 fn number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
@@ -259,11 +259,11 @@ fn number(text: &str, comma: bool) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
 
-/// Parses a whole number, optionally preceded by one of the given words.
+/// Parses a whole number, which may be preceded by one of the given words.
 fn whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
-    // Digits only: a track may be called 1e3.
+    // Only digits are accepted, since a name such as 1e3 is possible.
     let is_whole = !bare.is_empty() && bare.bytes().all(|c| c.is_ascii_digit());
     bare.parse().ok().filter(|_| is_whole)
 }

@@ -1,4 +1,4 @@
-//! Cam words that change the running program (reference 5).
+//! Cam words that change the selected program (reference 5).
 
 use super::{Activity, Encoder, Fault, INVALID, InWordContent};
 use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, Value};
@@ -22,7 +22,7 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// Activates cams. A mask with more than 8 cams is invalid data (reference 6.9, `U`).
+    /// Sets the mask of active cams. A mask with more than 8 bits is invalid (`U`). See reference 6.9.
     pub(super) fn activate(&mut self, mask: u16) -> Result<(), Fault> {
         self.0.mask = u8::try_from(mask).map_err(|_| Fault::WrongData)?;
         Ok(())
@@ -42,8 +42,7 @@ impl Encoder {
         self.set(now, taken);
     }
 
-    /// Ends a read-out. If values are set but not stored, the encoder returns to setting, in which the position and
-    /// outputs are invalid.
+    /// Ends a read-out. If values are set but not stored, the position and outputs remain invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
             None => self.switch_activity(Activity::Running, InWordContent::Live),

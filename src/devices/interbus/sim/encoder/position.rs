@@ -1,4 +1,5 @@
-//! The position that an encoder derives from its shaft, and the other IN words during operation (reference 1, 3 and 5).
+//! The position that an encoder derives from its shaft, and the other IN words of a running encoder (reference 1, 3 and
+//! 5).
 
 use super::{Encoder, LOST};
 use crate::devices::interbus::protocol::{CamOutput, Class, Single, StartupMode, Value};
@@ -6,38 +7,39 @@ use crate::devices::interbus::sim::memory::PLACES;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Sets the position to the preset. A preset beyond the range, which is possible after a gear change, wraps.
+    /// Sets the position to the preset. After a change of the gear, the preset may be beyond the range, in which case
+    /// it wraps.
     pub(super) fn trigger_preset(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
         let zero_shift = u64::from(self.memory.zero_shift) % steps;
         let wanted = (u64::from(self.memory.preset) + steps - zero_shift) % steps;
-        // The first position of the disc with this position.
+        // This is the first disc step that has the wanted position.
         let place = (wanted * range).div_ceil(steps);
         self.offset = place as i64 - self.turned(now);
     }
 
-    /// Returns the shaft position, counted in the configured direction.
+    /// Returns the shaft position in the configured counting direction.
     fn turned(&self, now: Moment) -> i64 {
         let place = self.shaft.place(now);
         if self.memory.counterclockwise { -place } else { place }
     }
 
-    /// Returns the position at `now`, in steps.
+    /// Returns the position in steps.
     fn position(&self, now: Moment) -> Value {
         let gear = self.memory.gear;
         let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));
-        // Below the range, which has at most 26 bits.
+        // The disc position is below the range, which has at most 26 bits.
         let position = u64::from(gear.position(place as u32).get()) + u64::from(self.memory.zero_shift);
         Value::of_word((position % u64::from(gear.steps())) as u32)
     }
 
-    /// Returns the IN word in normal operation.
+    /// Returns the IN word of a running encoder.
     pub(super) fn live(&self, now: Moment) -> u32 {
         let position = self.position(now);
         match (self.class, self.mode) {
             (Class::K1, _) => {
-                // 12 of the 13 bits of a turn.
+                // A K1 encoder sends 12 of the 13 bits of a turn.
                 let place = self.turned(now).rem_euclid(i64::from(PLACES)) >> 1;
                 Single::parse_k1(place as u16 & 0x0FFF).emit()
             }

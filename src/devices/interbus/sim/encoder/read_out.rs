@@ -6,19 +6,20 @@ use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
-/// Flag that indicates an encoder that counts turns.
+/// Flag of an encoder that counts turns.
 const MULTITURN: u32 = 2;
-/// Upper part of a chip register value, chosen for the simulation; the lower part is the register number.
+/// Upper part of the value of a chip register. It is chosen for the simulation. The lower part is the number of the
+/// register.
 const CHIP: u32 = 0x40;
 
 impl Encoder {
-    /// Handles 2021xxxxh.
+    /// Handles a read-out request (2021xxxxh).
     pub(super) fn read_out(&mut self, now: Moment, read_out: ReadOutNumber) {
         let value = self.value(now, read_out);
         self.show(value);
     }
 
-    /// Handles 2020xxxxh, which reads the running program.
+    /// Handles a request that reads the selected program (2020xxxxh).
     pub(super) fn read_cams(&mut self, command: Command) {
         let StartupMode::Cams(number) = self.mode else { return };
         let program = self.memory.program(number);
@@ -34,7 +35,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// Sends a read-out value, or for `None` the error word for a nonexistent cam, register or number.
+    /// Sends the value of a read-out. `None` sends the error of a cam, register or number that does not exist.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
         self.switch_activity(Activity::ReadingOut, InWordContent::Word(word));

@@ -1,23 +1,23 @@
-//! Grid lines of a chart at round steps or machine units.
+//! Grid lines of a chart at round positions.
 
 use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
 
-/// A grid line across the chart, at the start of a position.
+/// A grid line of the chart, which is at the start of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     pub position: f64,
     pub value: f64,
-    /// Number of decimals needed to label the line.
+    /// Number of decimals in the label of the line.
     pub decimals: usize,
 }
 
-/// Grid intervals in degrees, which divide a turn and are easy to read.
+/// Intervals of grid lines in degrees. Each of them divides a turn.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
-/// Maximum number of grid lines, which is more than a chart has room for.
+/// Maximum number of grid lines. No chart has room for more.
 const MOST_TICKS: usize = 400;
 
-/// Returns the smallest of 1, 2, 5, 10, 20, 50 … that is at least `at_least`.
+/// Returns the smallest number of the series 1, 2, 5, 10, 20, 50 … that is not below `at_least`.
 pub fn rounded(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;
@@ -28,7 +28,7 @@ pub fn rounded(at_least: f64) -> f64 {
     nice * power
 }
 
-/// Returns the visible grid lines, at least `apart` steps from each other.
+/// Returns the visible grid lines. Their distance is at least `apart` steps.
 pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_per_unit();
     let unit = round_units(scale.unit(), apart / one);
@@ -45,7 +45,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// Returns the next or previous grid line from a position, in steps. Lines continue beyond the range.
+/// Returns the next grid line after a position, or the previous one before it, in steps. It may be beyond the range.
 pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
@@ -57,7 +57,7 @@ pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -
     }
 }
 
-/// Returns the grid lines around a position, `each` on either side, rounded to whole steps and in ascending order.
+/// Returns the grid lines around a position, with `each` lines on either side. They are whole steps in ascending order.
 pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
     let steps = scale.steps_per_unit() * round_units(scale.unit(), apart / scale.steps_per_unit());
     let zero = f64::from(scale.zero());
@@ -65,7 +65,7 @@ pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) 
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
 }
 
-/// Returns the smallest round number of units that is at least `at_least`.
+/// Returns the smallest round number in a unit that is not below `at_least`.
 fn round_units(unit: Unit, at_least: f64) -> f64 {
     match unit {
         Unit::Steps => rounded(at_least).max(1.0),

@@ -1,5 +1,5 @@
-//! Changes to a cam while an edge is dragged, or while the cam is moved or drawn. The measuring range wraps: a part
-//! dragged over one end reappears at the other.
+//! Changes of a cam while it or one of its edges is dragged. A part that is dragged over one end of the measuring range
+//! reappears at the other end.
 
 use super::of_edge;
 use crate::devices::interbus::profile::Edge;
@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 pub enum DragTarget {
     Edge(CamNumber, Edge),
     Whole(CamNumber),
-    /// An empty lane, in which a new cam can be drawn.
+    /// An empty lane in which a cam can be drawn.
     New(CamNumber),
 }
 
@@ -21,8 +21,8 @@ impl DragTarget {
     }
 }
 
-/// Returns the cam with one edge moved by `by` steps, backwards if negative. A cam always keeps at least one position
-/// and covers at most all of them; edges beyond the range are brought within it.
+/// Returns the cam with one edge moved by `by` steps. The cam keeps at least one position and covers at most all of
+/// them. Edges beyond the range are brought into it.
 pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
@@ -38,7 +38,7 @@ pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
 }
 
-/// Returns the cam moved by `by` steps as a whole. Parts beyond the range stay there.
+/// Returns the cam with both edges moved by `by` steps. A cam with an edge beyond the range is not moved.
 pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {
@@ -49,7 +49,7 @@ pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     with(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
 }
 
-/// Returns the cam drawn between two pointer positions, in either order. The positions may lie beyond the range.
+/// Returns the cam between two positions of the pointer, in either order. The positions may be beyond the range.
 pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (first, last) = (from.min(to), from.max(to));
@@ -59,7 +59,7 @@ pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
 }
 
 fn with(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
-    // Below the range, which has 25 bits.
+    // The position is below the range, which has at most 25 bits.
     let to = Value::of_word(to.rem_euclid(whole) as u32);
     match edge {
         Edge::Start => Cam { start: to, ..cam },

@@ -1,15 +1,15 @@
-//! Snapping of a dragged edge to edges of other cams and to grid lines.
+//! Snapping of a dragged edge to other cams and to grid lines.
 
 use super::{Chart, DragTarget, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// Snapping targets and the distance within which they attract an edge.
+/// Targets to which an edge snaps, and the distance from which it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnapSettings {
-    /// Reach in steps.
+    /// Maximum distance of a target in steps.
     pub reach: f64,
-    /// Minimum distance of the grid lines to snap to, in steps. If `None`, edges do not snap to grid lines.
+    /// Minimum distance between grid lines in steps, or `None` to ignore grid lines.
     pub apart: Option<f64>,
     /// Whether to snap to the edges of other cams.
     pub edges: bool,
@@ -18,20 +18,20 @@ pub struct SnapSettings {
 impl SnapSettings {
     pub const OFF: SnapSettings = SnapSettings { reach: 0.0, apart: None, edges: false };
 
-    /// Creates settings that snap to all targets in a chart with the given number of steps per point: within six
-    /// points, and on a grid of at least ten.
+    /// Creates settings with all targets. An edge snaps within six points, and grid lines are at least ten points
+    /// apart.
     pub const fn on(steps_in_point: f64) -> Self {
         SnapSettings { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
 }
 
-/// Reach in points.
+/// Maximum distance of a target in points.
 const REACH: f64 = 6.0;
-/// Minimum distance between grid lines, in points.
+/// Minimum distance between grid lines in points.
 const GRID: f64 = 10.0;
 
-/// Returns the number of steps to move instead of `by`, so that an edge of the original cam snaps to the nearest
-/// target or, if there is none, to a whole step.
+/// Returns the number of steps by which a cam is moved instead of `by`. If a target is near, an edge of the cam snaps
+/// to it. Otherwise, `by` is rounded to whole steps.
 pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, snap: &SnapSettings) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {
@@ -52,17 +52,17 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, s
     best.map_or(whole, |(_, by)| by)
 }
 
-/// Returns the possible targets of an edge, the strongest first.
+/// Returns the possible targets of an edge. Of equally near targets, the first one is used.
 fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &SnapSettings) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
-    // The same place in the turn that the pointer has reached.
+    // The targets are in the turn that the pointer has reached.
     let turn = (at / range).floor() * range;
     let mut targets = Vec::new();
     if snap.edges {
         let others = chart.lanes.iter().filter(|lane| lane.cam != own && lane.on);
         for cam in others.filter_map(|lane| lane.edges) {
             let (start, stop) = (f64::from(cam.start.get()), f64::from(cam.stop.get()));
-            // On and off together with it, or directly after and before it.
+            // The cam can switch together with the other cam, or directly before or after it.
             let (same, next) = match edge {
                 Edge::Start => (start, stop + 1.0),
                 Edge::Stop => (stop, start - 1.0),

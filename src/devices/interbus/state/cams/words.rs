@@ -1,4 +1,4 @@
-//! Texts for the chart.
+//! Texts of the cam chart.
 
 use super::{Chart, Lane, OutputState};
 use crate::app::Text;
@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, Mark};
 
-/// Returns the label of a cam: its number, followed by its name, if any.
+/// Returns the label of a cam, which is its number and its name, if any.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
@@ -28,7 +28,7 @@ pub fn edge(lane: &Lane, edge: Edge) -> Text {
         .with_text("cam", bare(lane.cam))
 }
 
-/// Formats a position in steps, and also in machine units if the scale has other units.
+/// Formats a position in steps. If the scale has another unit, the position is also given in this unit.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
@@ -39,7 +39,7 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     }
 }
 
-/// Formats a number on the ruler in the given unit.
+/// Formats a number on the ruler.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
@@ -52,7 +52,7 @@ pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
-/// Describes a lane: the position of its cam and whether the cam is active.
+/// Describes the position of a cam and whether it is active.
 pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
@@ -65,7 +65,7 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     beyond.into_iter().chain(clash).collect()
 }
 
-/// Describes an output indicator: whether the output is on, and whether it differs from the encoder's.
+/// Describes whether an output is on and whether the encoder reports another state.
 pub fn lamp(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
@@ -78,7 +78,7 @@ pub fn lamp(lamp: OutputState) -> Text {
     }
 }
 
-/// Returns the messages for the given marks. Cams of one program that are beyond the measuring range share a message.
+/// Returns the messages of the given marks. Cams of one program share a message if they are beyond the measuring range.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
@@ -123,7 +123,7 @@ fn mark(mark: &Mark) -> Text {
     }
 }
 
-/// Explains why an edit was refused and how to remedy it.
+/// Explains why an edit was refused, and gives a remedy.
 pub fn refused(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {

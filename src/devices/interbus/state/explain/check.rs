@@ -1,4 +1,4 @@
-//! Texts for the device check.
+//! Texts of the device check.
 
 use super::{encoder, implausible, refusal, startup_mode_text, word};
 use crate::app::Text;

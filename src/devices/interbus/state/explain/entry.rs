@@ -1,4 +1,4 @@
-//! Messages about refused profiles.
+//! Messages about invalid entries of a profile.
 
 use crate::app::Text;
 use crate::devices::interbus::profile::{EntryError, ItemError};

@@ -32,7 +32,7 @@ pub(super) fn exception_name(exception: Exception) -> Text {
     })
 }
 
-/// Explains the most likely cause of an exception and the remedy.
+/// Returns the most likely cause of an exception and a remedy.
 pub fn exception_text(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",

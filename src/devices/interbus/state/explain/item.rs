@@ -1,4 +1,4 @@
-//! Names of INTERBUS encoder items for use within a sentence.
+//! Names of items as part of a sentence.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -17,7 +17,7 @@ pub fn parameter(parameter: Parameter) -> Text {
     })
 }
 
-/// Formats a parameter value, using its meaning if it has one.
+/// Formats the value of a parameter. A direction is written as a word.
 pub(super) fn number(parameter: Parameter, number: u32) -> Text {
     match Direction::from_code(number) {
         Some(own) if parameter == Parameter::Direction => direction(own),

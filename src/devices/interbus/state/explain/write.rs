@@ -1,5 +1,4 @@
-//! Messages about writes: changes, operations of a plan, planning errors, results, early ends, and the state in which
-//! the encoder was left.
+//! Messages about the plan of a write, its operations, its result, and the state in which it leaves the encoder.
 
 use std::path::Path;
 
@@ -59,7 +58,7 @@ pub fn op(op: &Op) -> OperationTexts {
 
 fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
     let words = |part: Text, old: Text, new: Text| ChangeTexts { part: Some(part), old, new };
-    // A line a cam.
+    // Both edges of a cam are on one line.
     let of_cam = |own: &[CamChange]| match own {
         [start @ CamChange { edge: Edge::Start, .. }, stop] => {
             let edges = |start: Value, stop: Value| plain(format!("{}…{}", start.get(), stop.get()));
@@ -77,7 +76,6 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
     of_cams.chain(mask).chain(shift).collect()
 }
 
-/// Returns the message for a profile of another encoder type.
 pub fn other_type(types: OtherType) -> Text {
     type_mismatch_text("ib_review.other_type", types)
 }
@@ -93,7 +91,7 @@ fn type_mismatch_text(id: &'static str, types: OtherType) -> Text {
     TEXTS.text(id).with_text("profile", profile).with_text("device", device)
 }
 
-/// Returns the reason why a change cannot be planned.
+/// Explains why a change cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
@@ -132,7 +130,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// Returns a warning about the limited EEPROM write cycles if the plan approaches the limit.
+/// Returns a warning about the wear of the EEPROM if the plan comes close to the limit.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let (id, after) = match prepared.wear()? {
         Wear::Known(after) => ("ib_stores.known", after),
@@ -153,12 +151,12 @@ pub(super) fn not_started_text(why: &NotBegun) -> Text {
 }
 
 pub fn written(written: &Written) -> Text {
-    // The values of the default are not known, so none is read back.
+    // The values of the factory settings are unknown, so none of them is verified.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Describes an interrupted write: how far it got, why it stopped, the state of the encoder, and the location of the
+/// Describes an interrupted write with its progress, its cause, the state of the encoder and the location of the
 /// backup.
 pub(super) fn interruption_text(
     interrupted: &Interrupted,

@@ -9,25 +9,25 @@ pub enum ValueId {
     Parameter(Parameter),
     Shift,
     Edge(ProgramNumber, CamNumber, Edge),
-    /// Whether a cam is active: 1 if active, or else 0.
+    /// Whether a cam is active, as 1 or 0.
     On(ProgramNumber, CamNumber),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     pub place: ValueId,
-    /// Present value, or `None` if the profile does not contain one.
+    /// Base value, or `None` if the profile does not contain it.
     pub from: Option<u32>,
-    /// Edited value, or `None` if the value is to be removed from the profile.
+    /// Edited value, or `None` if it is removed from the profile.
     pub to: Option<u32>,
 }
 
-/// Parameters that can be set, in the order of the manual.
+/// Parameters that are settings, in the order of the manual.
 const SET: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
-    /// Iterates over all values: parameters, the window shift, then the cams by program and number.
+    /// Returns all values. The parameters come first, followed by the window shift and the cams of each program.
     pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
@@ -57,26 +57,26 @@ impl EditedValues {
 }
 
 impl Staged {
-    /// Returns the difference of a value, or `None` if the value is unchanged.
+    /// Returns the difference of a value, or `None` if it was not edited.
     pub fn differs(&self, place: ValueId) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
         (from != to).then_some(Differs { place, from, to })
     }
 
-    /// Returns all edited values that differ, except names.
+    /// Returns the differences of all edited values, except names.
     pub fn differences(&self) -> Vec<Differs> {
         ValueId::all().filter_map(|place| self.differs(place)).collect()
     }
 
-    /// Returns whether a cam was edited, apart from its name. An inactive cam that the profile did not contain does not
+    /// Returns whether a cam was edited, apart from its name. An inactive cam that is added to a profile does not
     /// count.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)
     }
 
-    /// Returns whether any part of a program was edited, including a profile's names.
+    /// Returns whether a program was edited. For a profile, this includes its names.
     pub fn is_program_edited(&self, program: ProgramNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         let is_renamed = base.names.program(program) != wanted.names.program(program)

@@ -6,31 +6,31 @@ use super::{BaseSource, EditedValues, Staged, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
-/// An edit in stored form, which only contains the resulting value, with numbers as in the manual.
+/// An edit as it is stored. It contains only the resulting value, with numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
-    /// Steps and turns, which together form one gear.
+    /// Steps and turns, which form a gear.
     Gear(u32, u32),
-    /// 3 clockwise, 4 counterclockwise.
+    /// Direction, 3 clockwise or 4 counterclockwise.
     Direction(u32),
-    /// Steps.
+    /// Preset in steps.
     Preset(u32),
-    /// Steps.
+    /// Zero shift in steps.
     ZeroShift(u32),
-    /// 0 to 25.
+    /// Window shift, 0 to 25.
     Shift(u8),
     Cam(u8, u8, u32, u32),
-    /// Program and number of a cam to remove from the profile.
+    /// Program and number of a cam that is removed from the profile.
     NoCam(u8, u8),
     On(u8, u8, bool),
-    /// Program, cam number, and cam name, which may be empty.
+    /// Program, cam number and name of a cam. The name may be empty.
     Name(u8, u8, String),
-    /// Program number and name, which may be empty.
+    /// Program number and name. The name may be empty.
     ProgramName(u8, String),
 }
 
 impl Staged {
-    /// Returns the edits to save as a draft, including those waiting for their program to be read.
+    /// Returns the edits for a draft. They include those that wait until their program is read.
     pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
@@ -43,8 +43,8 @@ impl Staged {
         kept
     }
 
-    /// Applies the edits of a draft as a single step. Edits of a program that has not been read wait for it, and
-    /// invalid edits are dropped.
+    /// Applies the edits of a draft as a single undo step. Edits of a program that was not read wait for it. Invalid
+    /// edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -60,7 +60,7 @@ impl Staged {
         self.step(wanted);
     }
 
-    /// Returns the programs for which earlier edits are waiting.
+    /// Returns the programs whose edits wait until they are read.
     pub fn pending_programs(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()
@@ -111,8 +111,7 @@ fn collect_program_edits(
 }
 
 impl SavedEdit {
-    /// Applies the stored edit to the edited values, unless it contains an invalid number. Values beyond the measuring
-    /// range are applied unchanged.
+    /// Applies the edit unless one of its numbers is invalid. Values beyond the measuring range are not adjusted.
     fn put(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {
@@ -177,7 +176,7 @@ impl SavedEdit {
         }
     }
 
-    /// Returns whether the edit changes a value that has not been read. Names need not be read.
+    /// Returns whether the edit concerns a value that was not read. Names do not have to be read.
     fn concerns_unread_values(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
         ground == BaseSource::Encoder
             && match self {

@@ -1,4 +1,4 @@
-//! Edits: the effect of each on the edited values, and the reasons for refusing one.
+//! Edits, their effect on the edited values, and the reasons why an edit is refused.
 
 use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
@@ -6,21 +6,21 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
 
-/// An edit of the encoder's values. Each edit is a single undo step, however much it changes.
+/// An edit of the values. Each edit is one undo step, even if it changes several values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
     Steps(u32),
     /// Sets the number of turns after which the position repeats.
     Revolutions(u32),
-    /// Sets steps and turns together, for changes that cannot be made one after the other.
+    /// Sets steps and turns together, since a change of only one of them may not be valid.
     Gear {
         steps: u32,
         revolutions: u32,
     },
     Direction(Direction),
-    /// Sets the preset value in steps without firing the preset.
+    /// Sets the preset in steps. The preset is not fired.
     Preset(u32),
-    /// Sets the zero shift, in steps.
+    /// Sets the zero shift in steps.
     ZeroShift(u32),
     Shift(WindowShift),
     Edge {
@@ -29,62 +29,61 @@ pub enum Edit {
         edge: Edge,
         to: u32,
     },
-    /// Sets both edges of a cam that was entered, moved as a whole, or drawn.
+    /// Sets both edges of a cam.
     Cam {
         program: ProgramNumber,
         cam: CamNumber,
         start: u32,
-        /// Last position of the cam, which is before the start if the cam wraps around the end of the measuring range.
+        /// Last position of the cam. It is before the start if the cam wraps around the end of the measuring range.
         stop: u32,
-        /// Whether to activate the cam if it is not active yet.
+        /// Whether an inactive cam becomes active.
         on: bool,
     },
     Switch {
         program: ProgramNumber,
         cam: CamNumber,
-        /// Active if set.
+        /// Whether the cam is active.
         on: bool,
     },
-    /// Sets the name of a cam; an empty name removes it.
+    /// Sets the name of a cam. An empty name removes it.
     Name {
         program: ProgramNumber,
         cam: CamNumber,
-        /// At most [`LONGEST_NAME`] characters.
+        /// Name with at most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Sets the name of a program; an empty name removes it.
+    /// Sets the name of a program. An empty name removes it.
     ProgramName {
         program: ProgramNumber,
-        /// At most [`LONGEST_NAME`] characters.
+        /// Name with at most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Copies a program to another, including its cam names.
+    /// Copies a program to another one, including the names of its cams.
     Copy {
         from: ProgramNumber,
         to: ProgramNumber,
     },
-    /// Mirrors a program, so that positions count from the other end of the range. Inactive cams are also mirrored,
-    /// unless they are beyond the range.
+    /// Mirrors a program within the measuring range. Inactive cams are also mirrored unless they are beyond the range.
     Mirror(ProgramNumber),
-    /// Shifts a program by a number of steps. Parts that leave the range at one end reappear at the other. Inactive
-    /// cams are also shifted, unless they are beyond the range.
+    /// Shifts a program by a number of steps. Parts beyond one end of the range reappear at the other end. Inactive
+    /// cams are also shifted unless they are beyond the range.
     Rotate {
         program: ProgramNumber,
-        /// Number of steps to shift towards later positions, or towards earlier positions if negative.
+        /// Number of steps. Positive numbers shift to later positions, and negative ones to earlier positions.
         by: i64,
     },
-    /// Sets programs from an imported table.
+    /// Sets the programs of an imported table.
     Table(Vec<Filled>),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// No values of the encoder were read.
+    /// No values have been read.
     #[error("nothing has been read yet")]
     NothingRead,
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
-    /// The window shift, which is read with a program, was not read.
+    /// The window shift has not been read. It is read together with a program.
     #[error("the shift of the window has not been read")]
     ShiftNotRead,
     /// The profile does not contain the cam.
@@ -96,10 +95,10 @@ pub enum EditError {
     Parameter(#[from] OutOfRange),
     #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge { edge: Edge, to: u32, last: u32 },
-    /// An active cam is beyond the measuring range, so its program cannot be mirrored or shifted.
+    /// An active cam is beyond the measuring range. Its program can be neither mirrored nor shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond { program: ProgramNumber, cam: CamNumber, last: u32 },
-    /// A name is too long or is not a single line.
+    /// The name is too long or contains line breaks or other control characters.
     #[error("a name must be a single line of at most {LONGEST_NAME} characters")]
     Name,
 }
@@ -163,7 +162,7 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
         }
         Edit::Rotate { program, by } => {
             let range = i64::from(wanted.range().max(1));
-            // Below the range, which has 25 bits.
+            // The numbers are below the range, which has at most 25 bits.
             let by = by.rem_euclid(range);
             let moved = |edge: Value| Value::of_word(((i64::from(edge.get()) + by) % range) as u32);
             move_cams(&mut after, program, |cam| Cam { start: moved(cam.start), stop: moved(cam.stop) })?;
@@ -197,7 +196,7 @@ fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditErr
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
-/// Returns a program for editing. The first edit of a program missing in the profile adds it.
+/// Returns a program to be edited. If a profile does not contain the program, it is added.
 pub(super) fn program_mut(
     after: &mut EditedValues,
     number: ProgramNumber,
@@ -244,7 +243,7 @@ fn fill(after: &mut EditedValues, filled: &Filled, ground: BaseSource) -> Result
     Ok(())
 }
 
-/// Validates a name and returns it without surrounding blanks.
+/// Checks a name and removes blanks at its ends.
 pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {

@@ -1,11 +1,11 @@
-//! Problems of the edited values with their locations.
+//! Problems of the edited values.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
-/// A finding that the user should check. Edits can cause findings: for example, fewer steps may leave cams beyond the
-/// range.
+/// A problem of the edited values that the user should check. For example, cams may be beyond the range after the
+/// number of steps was reduced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Gear(GearError),
@@ -16,12 +16,11 @@ pub enum Mark {
     Beyond {
         program: ProgramNumber,
         cam: CamNumber,
-        /// The edge concerned, or the start if both are concerned.
+        /// Edge beyond the range. If both are beyond it, this is the start.
         edge: Edge,
         last: u32,
     },
-    /// Two active cams of the same name overlap, although the pulses of a track should not. The encoder itself has no
-    /// such rule.
+    /// Two active cams of the same name overlap, although the pulses of one track should not. The encoder allows this.
     Clash {
         program: ProgramNumber,
         first: CamNumber,
@@ -82,12 +81,12 @@ impl EditedValues {
     }
 }
 
-/// Returns whether two names denote the same track, ignoring case.
+/// Returns whether two names are equal, regardless of case and blanks at their ends.
 pub(super) fn is_same_track(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 
-/// Returns the first position covered by both cams, which is the start of one of them.
+/// Returns the first position at which both cams are on. It is the start of one of them.
 fn first_common(one: Cam, other: Cam) -> Option<u32> {
     let wrapped = one.wraps() && other.wraps();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));

@@ -1,10 +1,10 @@
-//! Merging of edits with new values of the encoder or profile.
+//! Merging of edits with new base values.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
-/// Overlays newly read values on the known values, which are kept wherever nothing was read.
+/// Returns the values just read. Values that were not read are taken from the known ones.
 pub(super) fn over(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
@@ -13,7 +13,7 @@ pub(super) fn over(known: &Image, read: Image) -> Image {
     Image { parameters: read.parameters, shift: read.shift.or(known.shift), programs }
 }
 
-/// Transfers the edits made against `before` to the values of `now`.
+/// Transfers edits from the previous base values to the new ones.
 pub(super) fn rebase(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
     follow(&mut parameters.steps, &was.steps, &is.steps);
@@ -55,7 +55,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     program.mask = program.mask & edited | is.mask & !edited;
 }
 
-/// Returns the new value, unless the old value was edited.
+/// Sets an edited value to the new base value unless the user has changed it.
 fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);

@@ -1,4 +1,4 @@
-//! The program bar: selection of a program, and actions on a whole program.
+//! The program bar, which selects a program and changes it as a whole.
 
 use egui::{RichText, Ui};
 
@@ -50,7 +50,6 @@ pub(super) fn bar_ui(
     });
 }
 
-/// Draws the button that reads a known program again, with its cost.
 fn read_again_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);

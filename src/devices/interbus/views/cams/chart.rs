@@ -1,4 +1,4 @@
-//! Chart of the open program: lanes over the measuring range, or a ring.
+//! Chart of the selected program as lanes or as a ring.
 
 use egui::{RichText, Ui};
 
@@ -15,7 +15,7 @@ use crate::ui::{Theme, icons};
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
-    /// Visible part of the range, or `None` for the whole range.
+    /// Visible part of the measuring range, or `None` if all of it is visible.
     stretch: Option<Stretch>,
     selected: Option<CamNumber>,
 }
@@ -26,7 +26,7 @@ impl Default for CamChartUiState {
     }
 }
 
-/// Maximum side length of the ring.
+/// Maximum side length of the ring in points.
 const RING: f32 = 420.0;
 
 pub(super) fn card_ui(
@@ -55,7 +55,7 @@ pub(super) fn card_ui(
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
     card_with(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
         let label = theme.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
-        // An old reading would look like the present one.
+        // Without polling, the last reading is old and must not be shown as the present one.
         let reading = encoder.record.last().filter(|_| encoder.session.is_polling());
         let sends = reading.filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
         let model = CamChart {
@@ -96,12 +96,11 @@ pub(super) fn card_ui(
         Some(CamEvent::Viewed(stretch)) => {
             view.stretch = Some(stretch).filter(|own| !own.is_whole(chart.range));
         }
-        // The chart shows it by itself.
+        // The chart draws the preview itself.
         Some(CamEvent::Preview(..)) | None => {}
     }
 }
 
-/// Draws whether the received outputs agree with the encoder's cams.
 fn agreement_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {

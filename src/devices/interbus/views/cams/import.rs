@@ -1,4 +1,4 @@
-//! Import of a cam table: its content and the result before it is adopted.
+//! Preview of a cam table before it is added to the edits.
 
 use egui::{Event, RichText, Ui};
 
@@ -10,10 +10,9 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, card, paragraph, primary_button};
 use crate::ui::{Theme, icons};
 
-/// Height of the list of problems and roundings.
 const LIST: f32 = 200.0;
 
-/// Imports a table that is pasted while no text field has the focus.
+/// Imports a pasted table. Text pasted into a text field is ignored.
 pub(super) fn import_pasted_table(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     if ui.ctx().text_edit_focused() || encoder.staged.wanted().is_none() {
         return;
@@ -59,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
                 line_ui(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
             }
         }
-        // Omitting a line would switch its cam off.
+        // A table with problems is not added, since the cam of an omitted line would be switched off.
         let is_whole = table.problems.is_empty();
         if !is_whole {
             paragraph(ui, theme.label(say(theme, "ib_table.mend")));

@@ -1,4 +1,4 @@
-//! Machine units and their zero.
+//! Selection of the machine's unit and its zero.
 
 use egui::Ui;
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, committed_entry, entry, folding_card, paragraph, show_error_below};
 
-/// Entered text that has not taken effect yet.
+/// Typed text that has not been applied yet.
 #[derive(Default)]
 pub(super) struct CamScaleUiState {
     steps: Option<(String, Option<Text>)>,

@@ -1,4 +1,4 @@
-//! The cams of a program as a table: positions, names and switches.
+//! The cams of a program as a table with positions, names and switches.
 
 use std::collections::BTreeMap;
 
@@ -15,13 +15,13 @@ use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus,
 use crate::ui::controls::{card, committed_entry, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
-/// Entered text that has not taken effect yet.
+/// Typed text that has not been applied yet.
 #[derive(Default)]
 pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// Entered text, with the reason if it was refused.
+/// Typed text, with the reason if it was refused.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +34,7 @@ enum Column {
 const CAM: f32 = 48.0;
 const NAME: f32 = 160.0;
 const NUMBER: f32 = 104.0;
-/// Width of an entry's frame.
+/// Width that the frame of an entry adds to its text.
 const MARGIN: f32 = 16.0;
 
 pub(super) fn card_ui(
@@ -112,7 +112,7 @@ fn row_ui(
                 let to = forms::position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },
-                    // The other edge has the same position until it is entered too.
+                    // Until the user enters the other edge, it has the same position.
                     None => Edit::Cam { program, cam, start: to, stop: to, on: false },
                 });
                 Ok(())

@@ -1,5 +1,4 @@
-//! Parts shared by both pictures of a cam program: input, events, and dragging with pointer, keyboard and screen
-//! reader.
+//! Common parts of the lanes and the ring, such as events and dragging with pointer, keyboard and screen reader.
 
 use egui::accesskit::{Action, ActionData, Role};
 use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Ui, Vec2, WidgetInfo};
@@ -15,24 +14,24 @@ use crate::ui::widgets::series;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CamChart<'a> {
     pub(crate) label: &'a str,
-    /// The edited program, also during a drag.
+    /// Edited program. A drag does not change it.
     pub(crate) chart: &'a Chart,
     pub(crate) scale: &'a Scale,
-    /// Encoder position, if known.
+    /// Encoder position in steps, or `None` if unknown.
     pub(crate) position: Option<u32>,
-    /// Outputs reported by the encoder (bit i for cam i), or `None` if not reported.
+    /// Outputs that the encoder reports, with bit i for cam i, or `None` if there are none.
     pub(crate) own: Option<u8>,
     pub(crate) selected: Option<CamNumber>,
     pub(crate) movable: bool,
-    /// Whether edges snap to nearby targets; holding Alt disables snapping.
+    /// Whether edges snap to targets nearby. The Alt key disables snapping.
     pub(crate) snaps: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
-    /// Edges that the cam would have if the drag ended now. Sent in every frame until the drag ends.
+    /// Edges that the cam would have if the drag ended now. The event is sent in every frame of the drag.
     Preview(CamNumber, Cam),
-    /// The user moved the cam to edges that differ from the present edges.
+    /// The cam was moved, and its edges have changed.
     Moved {
         cam: CamNumber,
         to: Cam,
@@ -43,14 +42,14 @@ pub(crate) enum CamEvent {
     Viewed(VisibleRange),
 }
 
-/// Drag in progress, kept from frame to frame.
+/// Drag in progress, which is kept between frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub(super) hold: DragTarget,
-    /// Position under the pointer when the drag started.
+    /// Position under the pointer at the start of the drag.
     pub(super) from: f64,
     pub(super) at: f64,
-    /// Target of the drag, or `None` if it was cancelled.
+    /// Edges of the cam after the drag, or `None` if it was cancelled.
     pub(super) to: Option<Cam>,
 }
 
@@ -69,7 +68,7 @@ impl CamChart<'_> {
             DragTarget::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
             DragTarget::New(number) => {
                 let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
-                // The place where an edge that begins at one step snaps when it is dragged to another place.
+                // An edge that starts at `begin` and is dragged to `to` snaps to this step.
                 let snapped = |edge, begin: i64, to: f64| {
                     let place = Value::of_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
                     let one = Cam { start: place, stop: place };
@@ -82,7 +81,7 @@ impl CamChart<'_> {
         }
     }
 
-    /// Returns the event of a drag: a preview while the pointer is down, and then the result.
+    /// Returns the event of a drag. It is a preview while the pointer is down, and the result after its release.
     pub(super) fn drag_result(
         &self,
         ui: &Ui,
@@ -117,8 +116,8 @@ impl CamChart<'_> {
         Some(self.chart.with(drag.hold.cam(), drag.to?))
     }
 
-    /// Handles the arrow keys, which move an edge or the cam by one step or to the next grid line, and the keys that
-    /// switch a cam on and off.
+    /// Handles the keyboard. The arrow keys move an edge or the cam by one step or to the next grid line, and other
+    /// keys switch the cam on and off.
     pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: DragTarget, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
@@ -159,7 +158,7 @@ impl CamChart<'_> {
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
 
-    /// Describes an edge to screen readers and handles the input they send.
+    /// Describes an edge for screen readers and handles their input.
     pub(super) fn announce_edge(
         &self,
         ui: &Ui,
@@ -199,7 +198,7 @@ impl CamChart<'_> {
         });
         let own = self.chart.lane(cam)?.edges?;
         if let Some(value) = set {
-            // Within the range, which has 25 bits.
+            // The value is within the range, which has at most 25 bits.
             let value = Value::of_word(value.round().clamp(0.0, f64::from(last)) as u32);
             let to = match edge {
                 Edge::Start => Cam { start: value, ..own },
@@ -231,7 +230,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws the label of a drag's target, always within the available area.
+    /// Draws a label with the result of a drag. The label never leaves the painting area.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

@@ -1,17 +1,18 @@
-//! The cams of a program over the measuring range, in one lane each.
+//! The cams of a program over the measuring range, with one lane for each cam.
 //!
-//! * **Size**: the available width; a ruler line, eight lanes, and a line of machine units if these differ from steps.
-//! * **Keyboard**: Tab moves through the parts of a lane: the switch of the cam, the cam as a whole, its start and its
-//!   stop. The left and right arrows move the focused part by one step, with Shift to the next grid line; Delete
-//!   switches the cam off, Space on and off.
-//! * **Pointer**: an edge or a whole cam is dragged; over one end of the range it reappears at the other. In the lane
-//!   of an inactive cam, a new one is drawn. The result is shown during the drag, and Escape cancels it. Ctrl with the
-//!   wheel zooms, the horizontal wheel scrolls.
-//! * **Accessible**: an edge is a slider whose value can be set; a cam is a slider with its location; an indicator has
-//!   the state and source of its output.
-//! * **Painting**: a cam in its colour, hollow if inactive, hatched where it overlaps another pulse of its track; the
-//!   end of the range is hatched in the lane of a cam beyond it; the position of the encoder is a line through all
-//!   lanes.
+//! * **Size**: The widget has the available width. It consists of a ruler line, eight lanes, and a line of machine
+//!   units if these differ from steps.
+//! * **Keyboard**: Tab moves through the switch of a cam, the cam, its start and its stop. The left and right arrow
+//!   keys move the focused part by one step, or with Shift to the next grid line. Delete switches the cam off, and
+//!   Space switches it on and off.
+//! * **Pointer**: An edge or a whole cam can be dragged. A part that is dragged over one end of the range reappears at
+//!   the other end. In the lane of an inactive cam, a new cam is drawn. Escape cancels a drag. The wheel zooms with
+//!   Ctrl, and the horizontal wheel scrolls.
+//! * **Accessible**: An edge is a slider with a value that can be set. A cam is a slider with its location. An
+//!   indicator has the state of its output and the source of this state.
+//! * **Painting**: A cam is drawn in its colour, hollow if it is inactive, and hatched where it overlaps another cam of
+//!   the same name. If a cam is beyond the range, the end of its lane is hatched. A line through all lanes shows the
+//!   position of the encoder.
 
 mod grips;
 mod head;
@@ -37,8 +38,8 @@ struct LanePainter<'a> {
     base: Id,
 }
 
-/// Draws a part of the range and returns the user's action. Each `Ui` can hold one chart; additional charts need their
-/// own id (`push_id`).
+/// Draws the lanes for a part of the range and returns the action of the user. A `Ui` can contain only one chart unless
+/// further charts have a separate id with `push_id`.
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -67,7 +68,7 @@ impl LanePainter<'_> {
         SnapSettings::on(self.place.steps_per_point())
     }
 
-    /// Handles the mouse wheel over the chart, which zooms and scrolls the view.
+    /// Handles the mouse wheel, which zooms and scrolls the view.
     fn look(&self, range: u32) -> Option<CamEvent> {
         let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
         if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {

@@ -1,13 +1,13 @@
-//! The cams of a program around a ring: the measuring range starts at the top and proceeds clockwise.
+//! The cams of a program around a ring. The measuring range starts at the top and proceeds clockwise.
 //!
-//! * **Size**: a square of the given width.
-//! * **Keyboard**: Tab moves from edge to edge; the arrows move an edge by one step, with Shift to the next grid line;
-//!   Delete switches its cam off, Space on and off.
-//! * **Pointer**: an edge or a whole cam is dragged around the ring; Escape cancels the drag.
-//! * **Accessible**: an edge is a slider whose value can be set.
-//! * **Painting**: one circle per cam, the first outermost, with an arc in its colour, thin if the cam is inactive, and
-//!   struck through where it overlaps another pulse of its track; the position of the encoder as a hand; labels in
-//!   steps or machine units around the ring.
+//! * **Size**: The widget is a square with the given width.
+//! * **Keyboard**: Tab moves to the next edge. The arrow keys move an edge by one step, or with Shift to the next grid
+//!   line. Delete switches its cam off, and Space switches it on and off.
+//! * **Pointer**: An edge or a whole cam can be dragged around the ring. Escape cancels the drag.
+//! * **Accessible**: An edge is a slider with a value that can be set.
+//! * **Painting**: There is a circle for each cam, with the first cam on the outermost one. A cam is an arc in its
+//!   colour, thin if it is inactive, and struck through where it overlaps another cam of the same name. A hand shows
+//!   the position of the encoder. Labels around the ring are in steps or machine units.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -24,15 +24,15 @@ use crate::devices::interbus::state::cams::{Chart, DragTarget, Lane, SnapSetting
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
-/// Minimum side length of the square.
+/// Minimum side length in points.
 const LEAST: f32 = 160.0;
 /// Radius of the innermost circle as a fraction of the outer radius.
 const INNER: f32 = 0.34;
-/// Margin around the ring for the position numbers.
+/// Margin for the numbers around the ring.
 const NUMBERS: f32 = 26.0;
-/// Width of an edge's grab area.
+/// Width of the area in which an edge can be grabbed.
 const GRIP: f32 = 12.0;
-/// Maximum count of position numbers around the ring.
+/// Maximum number of position labels around the ring.
 const LINES: f64 = 12.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -43,20 +43,20 @@ struct Dial {
 }
 
 impl Dial {
-    /// Returns a point on a circle. The range begins at the top.
+    /// Returns the point of a position on a circle. The range starts at the top.
     fn at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
     }
 
-    /// Returns the position in the direction of a point on the screen.
+    /// Returns the position in the direction of a screen point.
     fn position(self, place: Pos2) -> f64 {
         let from = place - self.middle;
         let part = f64::from(from.x.atan2(-from.y)) / std::f64::consts::TAU;
         part.rem_euclid(1.0) * self.range
     }
 
-    /// Returns the distance between adjacent circles: the width of a circle plus the gap.
+    /// Returns the distance between two adjacent circles.
     fn pitch(self) -> f32 {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
@@ -65,13 +65,13 @@ impl Dial {
         self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
     }
 
-    /// Returns the cam on whose circle a point lies.
+    /// Returns the cam whose circle contains a point.
     fn cam(self, place: Pos2) -> Option<CamNumber> {
         let from_outside = (self.radius - place.distance(self.middle)) / self.pitch();
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
 
-    /// Returns the signed distance from one position to another along the shorter way around the ring.
+    /// Returns the signed distance from one position to another, along the shorter way around the ring.
     fn turned(self, from: f64, to: f64) -> f64 {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
@@ -91,8 +91,8 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws the ring and returns the user's action. Each `Ui` can hold one ring; additional rings need their own id
-/// (`push_id`).
+/// Draws the ring and returns the action of the user. A `Ui` can contain only one ring unless further rings have a
+/// separate id with `push_id`.
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -122,7 +122,7 @@ impl Ring<'_> {
         SnapSettings::on(self.dial.steps_per_point())
     }
 
-    /// Draws the circles, on which a cam can be grabbed.
+    /// Draws the circles and handles dragging of whole cams.
     fn draw_disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
@@ -190,8 +190,7 @@ impl Ring<'_> {
         Some(self.dial.at(f64::from(at + beyond), self.dial.circle(cam)))
     }
 
-    /// Handles a drag around the ring, following the pointer in every frame along the shorter way from its previous
-    /// position.
+    /// Handles a drag around the ring. In every frame, the position follows the pointer along the shorter way.
     fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
@@ -214,7 +213,7 @@ impl Ring<'_> {
         }
         if let Some(cam) = self.model.selected {
             let wide = Stroke::new(dial.pitch(), Color32::from(theme.palette.accent).gamma_multiply(0.12));
-            // A stroke is outside its circle.
+            // A stroke is drawn outside its circle, so the radius is reduced by half a pitch.
             painter.circle_stroke(dial.middle, dial.circle(cam) - dial.pitch() / 2.0, wide);
         }
         self.numbers();
@@ -242,7 +241,7 @@ impl Ring<'_> {
             let words = theme.words(&words::tick(tick.value, tick.decimals, scale.unit()));
             let galley =
                 painter.layout_no_wrap(words, FontId::monospace(theme.sizes.caption), theme.palette.muted.into());
-            // Outside the circle, on either side.
+            // The label is outside the circle.
             let out = (at(dial.radius) - dial.middle) / dial.radius.max(1.0);
             let middle = at(dial.radius + 5.0) + out * galley.size() / 2.0;
             painter.galley(middle - galley.size() / 2.0, galley, theme.palette.muted.into());
@@ -289,7 +288,7 @@ impl Ring<'_> {
     }
 }
 
-/// Returns where a cam's number is drawn: at the start of the range.
+/// Returns the place of a cam's number, which is at the start of the range.
 fn name_position(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle(cam))
 }

@@ -1,12 +1,14 @@
-//! The 32 bits of the cam output word as arranged by the window shift, and below it the position with the bits that are
-//! copied to the window.
+//! The 32 bits of the cam output word with the present window shift. Below them, the position bits show which of them
+//! the window contains.
 //!
-//! * **Size**: the available width; if 32 cells do not fit, half of them on a second line.
-//! * **Keyboard**: none; Tab skips the widget.
-//! * **Pointer**: shows the meaning of the hovered bit.
-//! * **Accessible**: an image with the given label, whose value lists the groups; each group is a label with its bits.
-//! * **Painting**: one cell per bit with the bit number above it; the cell contains the bit or, without a word, the
-//!   number of the position bit or cam; the position bits are in a separate row, those that are not sent hollow.
+//! * **Size**: The widget has the available width. If 32 cells do not fit, half of them are on a second line.
+//! * **Keyboard**: Tab skips the widget.
+//! * **Pointer**: The meaning of the bit under the pointer is shown.
+//! * **Accessible**: The widget is an image with the given label, and its value lists the groups. Each group is a label
+//!   with its bits.
+//! * **Painting**: Each bit is a cell with the bit number above it. The cell contains the bit or, without a word, the
+//!   number of the position bit or cam. The position bits are in a separate row, and those that are not sent are
+//!   hollow.
 
 use egui::accesskit::Role;
 use egui::{
@@ -24,13 +26,13 @@ use crate::ui::widgets::{BitCell, series};
 pub(crate) struct WordLayout<'a> {
     pub(crate) label: &'a str,
     pub(crate) shift: WindowShift,
-    /// Received cam output word, or `None` to draw only the layout.
+    /// Received cam output word, or `None` to show only the layout.
     pub(crate) word: Option<u32>,
-    /// Measuring range in steps. Position bits above the range are always 0.
+    /// Measuring range in steps. Position bits above it are always 0.
     pub(crate) range: u32,
 }
 
-/// A group of adjacent bits of the same kind.
+/// Adjacent bits of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Group {
     kind: Kind,
@@ -81,7 +83,7 @@ impl WordLayout<'_> {
         CamOutput::bit(bit, self.shift).unwrap_or(CamBit::Zero)
     }
 
-    /// Returns the groups, starting with the highest bit.
+    /// Returns the groups in descending order of their bits.
     fn groups(&self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for bit in (0..BITS).rev() {
@@ -94,14 +96,14 @@ impl WordLayout<'_> {
         groups
     }
 
-    /// Returns the highest and the lowest position bit in the window.
+    /// Returns the highest and the lowest position bit that the window contains.
     fn window(&self) -> Option<(u8, u8)> {
         let mask = self.shift.mask();
         let high = mask.checked_ilog2()?;
         u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
     }
 
-    /// Returns the name of a group, including its bit numbers in the word.
+    /// Returns the name of a group with the numbers of its bits.
     fn name(&self, group: Group) -> Text {
         match group.kind {
             Kind::Invalid => TEXTS.text("cams.word_invalid"),
@@ -114,7 +116,6 @@ impl WordLayout<'_> {
         }
     }
 
-    /// Returns a sentence that describes a bit.
     fn says(&self, bit: u8) -> Text {
         let own = match self.bit(bit) {
             CamBit::Invalid => TEXTS.text("cams.word_invalid"),
@@ -153,7 +154,7 @@ impl CellGrid {
         Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
     }
 
-    /// Returns the number of lines required for the position bits, which are right-justified below the word.
+    /// Returns the number of lines for the position bits.
     const fn position_lines(&self) -> u8 {
         POSITION.div_ceil(self.columns)
     }
@@ -180,7 +181,7 @@ impl CellGrid {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
     }
 
-    /// Returns the cells for bits `high` down to `low` of the word, merged into one rectangle per line.
+    /// Returns the rectangles of the bits from `high` down to `low`, with one rectangle for each line.
     fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {
@@ -225,7 +226,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
 }
 
-/// Describes a group with its location in the word and, if a word was received, its bits.
+/// Describes a group, its location in the word and, if there is a word, its bits.
 fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     let name = theme.words(&layout.name(group));
     let place = if group.high == group.low {
@@ -258,7 +259,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
-/// Draws a bracket below a group, labelled with as much of its name as fits.
+/// Draws a bracket below a group with as much of its name as fits.
 fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.display_colour(theme);
@@ -276,7 +277,7 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid, group
     }
 }
 
-/// Draws the bits of the position: those sent, those left out, and those unused by the range.
+/// Draws the position bits, and marks those that are not sent or not used by the range.
 fn paint_position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &CellGrid) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);

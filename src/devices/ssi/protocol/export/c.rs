@@ -1,4 +1,4 @@
-//! Decoder in C99 that only requires the standard integer types.
+//! Decoder in C99 that requires only the standard integer types.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -86,7 +86,7 @@ impl Dialect for C {
     }
 }
 
-/// Returns a function `ssi_decode` for this layout, and the flags that it may return.
+/// Returns the source of a function `ssi_decode` for this layout, with the flags that the function can return.
 pub fn c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     // The title must not end the comment, begin another or contain a trigraph.
@@ -117,7 +117,7 @@ pub fn c99(layout: &Layout, title: &str) -> String {
     text.replace("fold, digit;", "fold = 0, digit = 0;")
 }
 
-/// Returns the flags that a frame of the given layout may raise, each with its name, value and meaning.
+/// Returns the flags that a frame of the layout can have, each with its name and meaning.
 pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
     let descriptor = layout.descriptor();
     let errors = descriptor.errors.iter().enumerate();

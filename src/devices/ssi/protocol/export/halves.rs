@@ -1,5 +1,7 @@
-//! Decoder for controllers without 64-bit words: a frame is one double word or two, and a position is a 32-bit number.
-//! Available as IEC 61131-3 structured text and as a source file for SIMATIC (SCL for TIA Portal: S7-1200 and S7-1500).
+//! Decoder for controllers without 64-bit words. A frame is one double word or two, and a position is a 32-bit number.
+//!
+//! The decoder is available as IEC 61131-3 structured text and as an SCL source file for TIA Portal (S7-1200 and
+//! S7-1500).
 
 use std::fmt::Write;
 
@@ -17,7 +19,7 @@ pub enum TooWideError {
         /// Width of the code word in bits.
         bits: u8,
     },
-    /// The calculation of turns and steps exceeds 32 bits.
+    /// The calculation of turns and steps of a round axis exceeds 32 bits.
     #[error("the turns of this round axis need numbers of more than 32 bits")]
     RoundAxis,
 }
@@ -34,17 +36,17 @@ const HALF: u8 = 32;
 
 struct SplitWordDialect {
     language: Language,
-    /// A frame needs both.
+    /// Whether a frame needs both halves.
     is_wide: bool,
 }
 
-/// The two halves of a word. A half that is `None` is 0.
+/// The two halves of a word. A half that is always 0 is `None`.
 struct Pair {
     high: Option<String>,
     low: Option<String>,
 }
 
-/// Returns a structured text function block `SSI_DECODE` that uses DWORD in place of LWORD.
+/// Returns the source of a structured text function block `SSI_DECODE`, which uses DWORD instead of LWORD.
 ///
 /// # Errors
 /// [`TooWideError`] if 32 bits do not suffice.
@@ -67,10 +69,10 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
     Ok(text)
 }
 
-/// Returns a source file with a function block `SSI_DECODE`, for *External source files* of TIA Portal.
+/// Returns an SCL source file with a function block `SSI_DECODE`. TIA Portal imports it under *External source files*.
 ///
 /// # Errors
-/// [`TooWideError`]: 32 bits do not suffice.
+/// [`TooWideError`] if 32 bits do not suffice.
 pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = SplitWordDialect::of(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
@@ -101,22 +103,22 @@ impl SplitWordDialect {
         if let Range::RoundAxis { steps, revolutions } = layout.descriptor().range {
             let (above, below) = (u64::from(revolutions.numerator), u64::from(revolutions.denominator));
             let steps = u64::from(steps);
-            // The greatest numbers on the way: position × above, and turns × steps × below + above.
+            // The greatest intermediate values are position × above, and turns × steps × below + above.
             let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
             greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(TooWideError::RoundAxis)?;
         }
         Ok(SplitWordDialect { language, is_wide: layout.clocks() > HALF })
     }
 
-    /// Returns a comment that names the bit in which the first bit of a frame is stored.
+    /// Returns the text of a comment that states which bit holds the first bit of a frame.
     fn first_bit(&self, layout: &Layout) -> String {
         let clocks = layout.clocks();
         let (bit, name) = if self.is_wide { (clocks - 1 - HALF, "frame_high") } else { (clocks - 1, "frame") };
         format!("{clocks} clocks; the first bit received is bit {bit} of {name}.")
     }
 
-    /// Writes the variable declarations of the function block. Auxiliary variables are declared only if a statement
-    /// uses them.
+    /// Writes the variable declarations of the function block. An auxiliary variable is declared only if a statement
+    /// uses it.
     fn write_variables(
         &self,
         text: &mut String,
@@ -173,14 +175,14 @@ impl SplitWordDialect {
     fn half_names(&self, name: &str) -> (Option<String>, String) {
         match name {
             "frame" | "word" | "fold" if self.is_wide => (Some(format!("{name}_high")), format!("{name}_low")),
-            // WORD is a type.
+            // WORD is a type name in structured text.
             "word" => (None, "word_".to_owned()),
             _ => (None, name.to_owned()),
         }
     }
 }
 
-/// Joins two half-word expressions with an operator. If one is `None` (zero), the result is the remaining operand.
+/// Joins two half-word expressions with an operator. An expression that is `None` is zero and is left out.
 fn join_terms(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
     match (a, b) {
         (Some(a), Some(b)) => Some(format!("({a} {operator} {b})")),
@@ -203,7 +205,7 @@ fn masked(a: Option<&String>, b: Option<&String>) -> Option<String> {
 }
 
 impl Pair {
-    /// Compares two words half by half, omitting halves that are zero in both words.
+    /// Returns an expression that compares two words half by half. A half that is zero in both words is left out.
     fn compared(&self, other: &Pair, operator: &str, between: &str, none: &str) -> String {
         let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
         let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());
@@ -293,15 +295,15 @@ impl Dialect for SplitWordDialect {
         format!("{name} := {value};")
     }
 
-    /// Assigns a word. A variable without an upper half never exceeds 32 bits, so bits carried into the upper half by a
-    /// shift are always 0.
+    /// Returns the statements that assign a word. A variable without an upper half has at most 32 bits, so the upper
+    /// half of the value is always 0.
     fn assign_word(&self, name: &'static str, value: &Pair) -> Vec<String> {
         let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
         match self.half_names(name) {
             (None, own) => vec![self.assign(&own, &text(&value.low))],
             (Some(high), low) => {
                 let (upper, lower) = (text(&value.high), text(&value.low));
-                // A half may be made of both that there were.
+                // The new value of a half may depend on both old halves, so the order of the assignments matters.
                 if !uses_name(&upper, &low) {
                     vec![self.assign(&low, &lower), self.assign(&high, &upper)]
                 } else if !uses_name(&lower, &high) {
@@ -320,7 +322,7 @@ impl Dialect for SplitWordDialect {
     fn comment(&self, text: &str) -> String {
         match self.language {
             Language::StructuredText => format!("(* {} *)", to_single_line(text).replace("*)", "* )")),
-            // A source file is read as ASCII by some versions.
+            // Some versions of TIA Portal read a source file as ASCII.
             Language::Scl => format!("// {}", to_single_line(text).replace(|c: char| !c.is_ascii(), "_")),
         }
     }
@@ -334,7 +336,7 @@ impl Dialect for SplitWordDialect {
     }
 }
 
-/// Returns whether a line uses the given variable as a whole identifier rather than as part of a longer name.
+/// Returns whether a line contains the variable `name` as a complete identifier.
 fn uses_name(line: &str, name: &str) -> bool {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     line.split(|c| !is_name(c)).any(|word| word == name)
@@ -344,8 +346,8 @@ fn to_single_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }
 
-/// Prefixes local variables with `#`, as SCL requires. In the generated code, exactly the variables start with a
-/// lowercase letter.
+/// Prefixes local variables with `#`, as SCL requires. In the generated code only variables start with a lowercase
+/// letter.
 fn local_variable(line: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();

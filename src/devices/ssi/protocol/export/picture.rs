@@ -1,4 +1,4 @@
-//! A picture composed of shapes: saved as SVG, and drawn in the window from the same shapes.
+//! A picture made of shapes. The window and the SVG export draw the same shapes.
 
 use std::fmt::{self, Write};
 
@@ -20,7 +20,7 @@ pub struct Picture {
 pub enum PictureLength {
     /// Length in whole grid units.
     Whole(u32),
-    /// Length drawn to scale, which SVG output rounds to hundredths.
+    /// Length to scale. The SVG output rounds it to hundredths.
     Scaled(f64),
 }
 
@@ -67,7 +67,7 @@ pub enum PolylineSegment {
 /// A single line of text, placed by its baseline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureLabel {
-    /// Horizontal position of the label's left end or middle.
+    /// Horizontal position of the label. See [`is_centred`](Self::is_centred).
     pub x: PictureLength,
     /// Baseline.
     pub y: u32,
@@ -75,9 +75,9 @@ pub struct PictureLabel {
     pub size: u32,
     /// Whether the label is bold.
     pub is_bold: bool,
-    /// Text colour; `None` is black.
+    /// Text colour, or `None` for black.
     pub colour: Option<&'static str>,
-    /// Whether `x` is the middle rather than the left end.
+    /// Whether `x` is the middle of the label. Otherwise it is the left end.
     pub is_centred: bool,
     /// Label text.
     pub text: String,

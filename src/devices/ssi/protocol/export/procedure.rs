@@ -1,12 +1,13 @@
-//! The decoder as a list of statements that is the same in every language: the steps of [`Layout::decode`] for one
-//! layout.
+//! The decoder as a list of statements for one layout, which follow the steps of [`Layout::decode`]. The list is the
+//! same in every language.
 
 use crate::devices::ssi::protocol::code::{Code, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// Syntax of a target language. A word holds all or part of a frame's bits; a number is plain text in every language.
+/// Syntax of a target language. A word contains all bits of a frame or a part of them. A number is text that is valid
+/// in every language.
 pub(super) trait Dialect {
     type Word;
     /// Returns the word expression that refers to a variable.
@@ -32,8 +33,10 @@ pub(super) trait Dialect {
     fn both(&self, a: &str, b: &str) -> String;
 }
 
-/// Writes the statements that read `frame` and set the words `word`, `code` and `flags`, the numbers `position`,
-/// `turns` and `steps`, and `valid`. `fold` and `digit` are auxiliary words.
+/// Returns the statements of a decoder for a frame in the variable `frame`.
+///
+/// The statements set the words `word`, `code` and `flags`, the numbers `position`, `turns` and `steps`, and the
+/// condition `valid`. `fold` and `digit` are auxiliary words.
 pub(super) fn statements<D: Dialect>(layout: &Layout, dialect: &D) -> Vec<String> {
     let mut writer = Writer { dialect, lines: Vec::new() };
     writer.frame(layout);
@@ -143,7 +146,7 @@ impl<D: Dialect> Writer<'_, D> {
         }
     }
 
-    /// Writes the Gray conversion of a code that occupies only part of the word.
+    /// Writes the Gray conversion of a code that occupies only a part of the word.
     fn decode_inner_gray(&mut self, layout: &Layout) {
         let d = self.dialect;
         let (bits, behind) = layout.gray;

@@ -1,4 +1,5 @@
-//! Settings of a PLC's SSI module for this frame, in the terms of the module manuals. The encoder is not changed.
+//! Settings for the SSI module of a PLC that reads this frame, in the terms of the module manuals. The encoder is not
+//! changed.
 
 use std::fmt::Write;
 
@@ -10,15 +11,15 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
-/// Locations of the position and the remaining bits, numbered as in interface modules, with bit 0 as the last bit
-/// received.
+/// Locations of the position and of the other bits of a frame. Bits are numbered as in interface modules: bit 0 is the
+/// last one received.
 struct BitLocations {
     frame: u8,
     lowest: u8,
     highest: u8,
-    /// Lowest and highest bit of the turns.
+    /// Lowest and highest bit of the turns, if they have separate bits.
     turns: Option<(u8, u8)>,
-    /// Lowest and highest bit of the steps.
+    /// Lowest and highest bit of the steps, if they have separate bits.
     steps: Option<(u8, u8)>,
     others: Vec<(u8, String)>,
 }
@@ -100,13 +101,13 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
 }
 
 enum SheetLabel {
-    /// Term from the module manual, identical in every language.
+    /// Term from the module manual, which is the same in every language.
     Own(&'static str),
     Said(ExportText),
 }
 
 enum Setting {
-    /// String that is identical in every language.
+    /// Text that is the same in every language.
     Plain(String),
     Said(ExportText),
 }
@@ -162,7 +163,7 @@ fn beckhoff_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel,
         bits @ 1..=32 => ExportText::Setting(2, SettingMeaning::Variable(bits)),
         bits => ExportText::FrameTypeNone { bits },
     };
-    // A parity bit has no information about the encoder.
+    // A parity bit says nothing about the state of the encoder.
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
     let bits = places.lowest_bit() - fails;
@@ -203,7 +204,7 @@ fn delta_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Se
 }
 
 fn synapticon_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel, Setting)> {
-    // Its bits are counted from the first one received.
+    // This module counts bits from the first one received.
     let first = |ends: Option<(u8, u8)>| {
         Setting::Plain(ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string()))
     };

@@ -84,7 +84,7 @@ impl Dialect for StructuredTextDialect {
     }
 }
 
-/// Returns a structured text function block `SSI_DECODE` for the layout.
+/// Returns the source of a structured text function block `SSI_DECODE` for the layout.
 pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");
@@ -111,7 +111,7 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
     text
 }
 
-/// Renames the variable `word` to `word_`, because `WORD` is a type in structured text.
+/// Renames the variable `word` to `word_`, because `WORD` is a type name in structured text.
 fn to_local_names(line: &str) -> String {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut out = String::new();

@@ -1,4 +1,4 @@
-//! Pictures: the frame as a row of cells, and the timing of a burst to scale.
+//! Pictures of a layout: the frame as a row of cells, and the timing of a burst to scale.
 
 use super::picture::{FAINT, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
 use super::text::{ExportText, Say};
@@ -12,7 +12,7 @@ const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
-/// Returns the print colour of a field, which is light enough for black text.
+/// Returns the colour of a field in print. Black text is legible on it.
 fn colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
@@ -36,7 +36,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// Returns the name of a clock's content, like [`Layout::role_name`] but in the language of `say`.
+/// Returns the name of a clock's content in the language of `say`. See also [`Layout::role_name`].
 pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),
@@ -44,7 +44,7 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
     }
 }
 
-/// Draws the frame with one cell per clock, and the bits of `frame`, if given.
+/// Draws the frame with one cell per clock. The cells show the bits of `frame`, if it is given.
 pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<'_>) -> Picture {
     let roles = layout.clock_roles();
     let clocks = u32::from(layout.clocks());
@@ -81,7 +81,7 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
                 _ if begins == index => layout.role_name(*role),
                 _ => format!("{} … {}", layout.role_name(first), layout.role_name(*role)),
             };
-            // Names of single clocks are at two heights, so that neighbours do not overlap.
+            // Names of single clocks alternate between two heights, so neighbours do not overlap.
             let y = if begins == index && index % 2 == 1 { 104 } else { 90 };
             let middle = PictureLength::Whole(u32::midpoint(from, to));
             let path = vec![
@@ -98,7 +98,8 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
     picture
 }
 
-/// Draws a burst and the following pause to scale, with the clock, the data and the transfer times (manual, figure 2).
+/// Draws a burst and the pause after it to scale, with the clock, the data and the transfer times. See figure 2 of the
+/// manual.
 pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str, say: Say<'_>) -> Picture {
     let timing = times.reckon(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());
@@ -106,7 +107,7 @@ pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str
     let x = |seconds: f64| PictureLength::Scaled(f64::from(MARGIN) + seconds * scale);
     let period = timing.period.as_secs_f64();
     let mut picture = Picture::with_title(WIDTH, 170, title);
-    // The clock rests high; the first falling edge latches, each rising edge shifts a bit.
+    // The clock idles high. The first falling edge latches the position, and each rising edge shifts out a bit.
     let mut clock = vec![PolylineSegment::Move(x(0.0), 50)];
     for index in 0..layout.clocks() {
         let at = f64::from(index) * period;

@@ -1,4 +1,4 @@
-//! CSV table of the clocks in a frame with their content.
+//! CSV table of the clocks in a frame, with the content of each clock.
 
 use std::fmt::Write;
 
@@ -8,8 +8,8 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 
 impl Layout {
-    /// Returns the name of a clock's content in the terms of the manual: `MT11`, `ST0`, `P3`, the name of an error bit,
-    /// or `0`.
+    /// Returns the name of a clock's content as in the manual, such as `MT11`, `ST0`, `P3`, `0`, or the name of an
+    /// error bit.
     pub fn role_name(&self, role: Role) -> String {
         match role {
             Role::Zero => "0".to_owned(),
@@ -23,7 +23,7 @@ impl Layout {
     }
 }
 
-/// Returns a table with one row for each clock: its number, its bit and its content.
+/// Returns a CSV table with the number, the bit and the content of each clock.
 pub fn bit_table(layout: &Layout, say: Say<'_>) -> String {
     let mut text = say(&ExportText::TableHeading) + "\n";
     let clocks = layout.clocks();

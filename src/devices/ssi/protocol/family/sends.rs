@@ -1,13 +1,12 @@
-//! Conversion of a frame to the settings with which a family sends it.
+//! Search for the settings with which a family sends a given frame.
 
 use super::{Align, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::descriptor::Descriptor;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Function that resets one setting to its default.
 type Leave = fn(&mut Settings);
 
-/// Functions that each reset one setting, in the order in which they are tried.
+/// Functions that each reset one setting to its default, in the order in which they are tried.
 const LEAVE: [Leave; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,
@@ -25,7 +24,7 @@ const LEAVE: [Leave; 12] = [
 
 impl Family {
     /// Returns the fewest settings with which this family sends exactly this frame, or `None` if it cannot. Direction
-    /// and preset are not part of a frame and keep their factory setting.
+    /// and preset keep their factory setting, because they are not part of a frame.
     pub fn settings_for_frame(&self, frame: &Descriptor) -> Option<Settings> {
         let asked = self.derived_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
@@ -42,7 +41,7 @@ impl Family {
         settings.resolve(self).is_ok_and(|resolved| resolved.layout.descriptor() == frame)
     }
 
-    /// Omits every setting that is not needed to produce the given frame.
+    /// Resets every setting that is not needed to produce the frame.
     fn shortest_settings(&self, settings: Settings, frame: &Descriptor) -> Settings {
         LEAVE.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
@@ -51,7 +50,7 @@ impl Family {
         })
     }
 
-    /// Returns the settings that can be derived from a frame, which are all except the bit alignment.
+    /// Returns the settings that follow directly from a frame. These are all settings except the alignment.
     fn derived_settings(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),
@@ -61,7 +60,7 @@ impl Family {
             ..Settings::default()
         };
         match frame.range {
-            // A singleturn encoder has no turns, not even zero.
+            // A singleturn encoder has no setting for turns, not even 0.
             Range::Bits { multiturn: 0, singleturn } if self.multiturn.is_none() => {
                 Settings { singleturn: Some(singleturn), ..asked }
             }

@@ -1,4 +1,4 @@
-//! A family and its settings as one word: `ahm36,code=gray,st=12`.
+//! Notation of a family with its settings as one word, such as `ahm36,code=gray,st=12`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -42,7 +42,7 @@ impl Settings {
         Ok((key, settings))
     }
 
-    /// Returns the family key and its explicit settings as one word, such as `ahm36,code=gray,st=12`.
+    /// Returns the family key and the settings that are not `None` as one word, such as `ahm36,code=gray,st=12`.
     pub fn emit(&self, key: &str) -> String {
         fn word<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
@@ -91,7 +91,7 @@ impl Settings {
     }
 }
 
-/// Type whose values are written as keywords, each with a preferred one and accepted alternatives.
+/// A type whose values are written as keywords. Each value has a preferred keyword and can have alternatives.
 trait Words: Copy + PartialEq + 'static {
     const ALL: &'static [(&'static str, Self)];
 
@@ -145,7 +145,7 @@ impl Words for ErrorPlace {
         &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
 }
 
-/// Defines the conversion between values and their keywords. Parse errors list the valid keywords.
+/// Implements the conversion between values and their keywords. A parse error lists the valid keywords.
 macro_rules! in_words {
     ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {

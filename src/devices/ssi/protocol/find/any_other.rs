@@ -1,5 +1,5 @@
-//! Encoders of no known family: common widths, and separate bits for those that are always 1, have been active, or are
-//! unexplained.
+//! Candidate layouts for encoders of no known family. They have common widths, and separate bits for clocks that are
+//! always 1, have been active, or are unexplained.
 
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
@@ -11,15 +11,15 @@ use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCovera
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Number of position widths to propose, and of turn/step splits per width.
+/// Number of position widths to propose.
 const WIDTHS: usize = 4;
 const SHARES: usize = 3;
-/// Minimum number of frames per thousand in which a bit must differ to count as active.
+/// Minimum number of frames per thousand in which a bit must deviate to be regarded as an error bit.
 const SPOKE_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
-/// Tries frames that belong to no family and have the given number of clocks.
+/// Tries frames of no family that have the given number of clocks.
 pub(super) fn try_custom_frames(
     take: &mut Take<'_>,
     read: &Read,
@@ -29,13 +29,13 @@ pub(super) fn try_custom_frames(
 ) {
     let reading = &read.reading;
     let moved = reading.width();
-    // Digits are complete; the highest may not have moved in all its bits.
+    // BCD digits have four bits, but the highest digit may not have changed in all of its bits.
     let least = if reading.code == Code::Bcd { moved.next_multiple_of(4) } else { moved };
     let Some(above) = (reading.first - 1).checked_sub(least - moved) else { return };
     let most = if read.closed || reading.code == Code::Bcd { least } else { least + above };
     let mut widths_of: Vec<u8> = (least..=most).collect();
     let rank = |bits: &u8| bit_shares(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
-    // The complete frame up to the lowest bit, the moved bits, and the most usual width in between.
+    // These are the complete frame up to the lowest bit, the bits that changed, and the most usual widths in between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
         .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));
@@ -73,7 +73,8 @@ pub(super) fn try_custom_frames(
     }
 }
 
-/// Returns the alternatives to a parity bit, which are a trailing zero and an error bit covered by the code.
+/// Returns the frames that could be mistaken for one with this parity bit. In one the code covers a zero at its end,
+/// and in the other it covers an error bit.
 fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let none = Descriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
@@ -84,7 +85,7 @@ fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     ]
 }
 
-/// Returns the possible ranges for a reading with the given number of bits.
+/// Returns the possible ranges for a reading with the given number of bits, each with its weight.
 fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {
@@ -107,7 +108,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         .collect()
 }
 
-/// Returns the bits outside the position: bits that are always 1 (which no code may cover), bits that were active, and
+/// Returns the bits outside the position that need a name. These are bits that are always 1, bits that were active, and
 /// unexplained bits.
 fn fixed_bits(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;

@@ -1,15 +1,16 @@
-//! The number after which positions start again, if it is not a power of two, determined from codes that never occur
-//! and from the size of backward jumps.
+//! Search for the number of steps after which positions wrap, if it is not a power of two. It follows from numbers that
+//! never occur and from the size of backward jumps.
 
 use super::motion::{Motion, median};
 use super::reading::{Read, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
 const TRIED: usize = 40;
-/// Tolerance in bits within which a range end fits as well as the best one.
+/// Maximum information in bits above that of the best number of steps for another number to fit as well.
 const AS_WELL_BITS: f64 = 10.0;
 
-/// Returns the candidate codes, each with the most usual and the last possible number of steps.
+/// Returns the possible codes, each with two numbers of steps: the most usual one that fits, and the last one that
+/// fits.
 pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.round();
     if whole == 0 || read.reading.steps.is_some() {
@@ -21,18 +22,18 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
         found.extend(best_step_counts(read, &reading, &least, whole).map(|steps| (code, steps)));
     };
     let extremes = extremes(read);
-    // At least the positions from 0 to the highest that occurred.
+    // The range contains at least the positions from 0 to the highest one that occurred.
     add(read.reading.code, extremes.iter().map(|(_, highest)| highest + 1).collect());
     if read.reading.code == Code::Gray {
-        // As many codes are left out before the positions as after them.
+        // Gray excess leaves out as many words before the positions as after them.
         let unseen = |(lowest, highest): &(u64, u64)| whole - 2 * (*lowest).min(whole - 1 - highest);
         add(Code::GrayExcess, extremes.iter().map(unseen).collect());
     }
     found
 }
 
-/// Returns the lowest and highest number, once for all frames that follow from others and once for nearly all of them,
-/// because a disturbed frame may seem to follow.
+/// Returns two pairs of the lowest and the highest number: for all consistent frames, and for nearly all of them. A
+/// disturbed frame can be consistent by chance.
 fn extremes(read: &Read) -> Vec<(u64, u64)> {
     let good = |frame: &usize| read.motion.is_good(*frame);
     let frames = (0..read.numbers.len()).filter(good);
@@ -43,8 +44,8 @@ fn extremes(read: &Read) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// Returns the numbers of steps with the most even motion: the most usual candidate and the last. `None` if no
-/// candidate beats the full range of the bits.
+/// Returns the numbers of steps that make the motion most even: the most usual one and the last one. Returns `None` if
+/// none is better than the full range of the bits.
 fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
@@ -74,7 +75,7 @@ fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -
         add((*least..=least + 1).collect());
         add(usual(*least..=least.saturating_add(reach)));
     }
-    // From the best to the last that is equally good.
+    // Continues from the best number to the last one that fits as well.
     let mut best = add(Vec::new())?;
     loop {
         let next = add(near(best.1))?;
@@ -96,7 +97,7 @@ fn best_step_counts(read: &Read, reading: &Reading, least: &[u64], whole: u64) -
     Some((first, others.copied().unwrap_or(first)))
 }
 
-/// Returns the number of steps that the most frequent jump size implies.
+/// Returns the number of steps that results from the most frequent size of a jump.
 fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);
@@ -111,7 +112,7 @@ fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     Some(whole.saturating_sub(median(&mut alike).unsigned_abs()))
 }
 
-/// Returns the numbers of steps with which encoders are usually ordered.
+/// Returns the common numbers of steps in a range.
 fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     let mut all: Vec<u64> = Vec::new();
     for step in [1, 2, 5, 25] {
@@ -129,7 +130,7 @@ fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     all
 }
 
-/// Ranks how unusual a number of steps is: 0 for a usual one, up to 5.
+/// Returns how unusual a number of steps is, from 0 for a usual number up to 5.
 pub(super) fn unusual_step_cost(steps: u64) -> u8 {
     if !usual(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;

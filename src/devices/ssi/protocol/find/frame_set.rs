@@ -1,4 +1,4 @@
-//! Recorded frames as bits over time: which clocks change, which do not, and where a word is repeated. Nothing is
+//! Recorded frames as bits over time: which clocks change, which are constant, and where a word is repeated. Nothing is
 //! decoded here.
 
 use std::collections::HashMap;
@@ -6,16 +6,16 @@ use std::collections::HashMap;
 use crate::devices::ssi::protocol::code::low_bits_mask;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
-/// Maximum number of consecutive deviating frames for a bit to count as disturbed or as an error bit.
+/// Maximum number of consecutive frames in which a disturbed bit or an error bit deviates.
 const SHORT: usize = 2;
-/// Percentage of frames in which a bit may deviate from its usual value and still count as constant.
+/// Maximum percentage of frames in which a constant bit deviates from its usual value.
 const RARE_PERCENT: usize = 25;
-/// Percentage of frames in which the second word may differ from the first.
+/// Maximum percentage of frames in which the repetition differs from the first word.
 const REPEAT_PERCENT: usize = 10;
-/// Minimum width in bits for a word to be recognized as repeated.
+/// Minimum width of a repeated word in bits.
 const LEAST_WORD: u8 = 4;
 
-/// Recorded frames with the same number of clocks, in the order received.
+/// Recorded frames with the same number of clocks, in the order in which they were received.
 pub(super) struct FrameSet {
     words: Vec<u64>,
     pub(super) clocks: u8,
@@ -25,7 +25,7 @@ pub(super) struct FrameSet {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bit {
     pub(super) usual: bool,
-    /// Number of frames in which the bit has the opposite value.
+    /// Number of frames in which the bit does not have its usual value.
     pub(super) unusual: usize,
     /// Number of changes between consecutive frames.
     pub(super) changes: usize,
@@ -41,7 +41,7 @@ impl FrameSet {
         FrameSet { words, clocks, bits }
     }
 
-    /// Returns the first words of frames that repeat each word.
+    /// Returns the first words of frames that contain each word twice.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
         FrameSet::new(&words, repeat.word)
@@ -69,7 +69,7 @@ impl FrameSet {
         self.counts().len()
     }
 
-    /// Returns whether nearly all frames share a few values, because the shaft stood still or trembled; disturbed
+    /// Returns whether nearly all frames have one of a few values, because the shaft stood still or jittered. Disturbed
     /// frames are tolerated.
     pub(super) fn is_standing(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
@@ -84,7 +84,7 @@ impl FrameSet {
         counts
     }
 
-    /// Returns the repetition if the frames carry each word twice.
+    /// Returns the repetition, if the frames contain each word twice.
     pub(super) fn repeat(&self) -> Option<Repeat> {
         let moving = |from: u8, to: u8| (from..=to).filter(|clock| self.bit(*clock).moves).count();
         (LEAST_WORD..self.clocks).find_map(|behind| {
@@ -129,13 +129,13 @@ impl Bit {
         Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
     }
 
-    /// Returns the description length, in bits, of a bit that nothing else explains.
+    /// Returns the information in bits of a bit that nothing else explains.
     pub(super) fn cost(&self, frames: usize) -> f64 {
         binary_entropy(self.changes, frames)
     }
 }
 
-/// Returns the description length, in bits, of a selection of `some` items out of `all`.
+/// Returns the information in bits of choosing `some` items out of `all`.
 pub(super) fn binary_entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;

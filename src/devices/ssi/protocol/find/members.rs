@@ -1,4 +1,4 @@
-//! Layouts that read frames in a given way: possible settings of families, and other layouts of common widths.
+//! Candidate layouts for a reading of the frames: possible settings of families, and other layouts of common widths.
 
 use super::any_other::try_custom_frames;
 use super::frame_set::FrameSet;
@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
-/// Weight of a frame that belongs to no family. A changed setting weighs slightly less than 1.
+/// Weight of a frame that belongs to no family, compared to 0.8 for a changed setting of a family.
 pub(super) const ANY_OTHER: f64 = 2.0;
 pub(super) const EXCHANGED: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
@@ -24,10 +24,10 @@ pub(super) struct LayoutCandidate {
     pub(super) trial: Trial,
 }
 
-/// Callback that receives a candidate layout and its weight, and keeps it if it fits.
+/// Callback that tests a candidate layout with its weight, and keeps the layout if it fits.
 pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
-/// Returns the layouts that match the given reading and reproduce the probe's motion, in no particular order.
+/// Returns the layouts that fit the reading and result in the motion of the probe, in no particular order.
 pub(super) fn group_members(
     probe: &LayoutProbe<'_>,
     read: &Read,
@@ -56,7 +56,8 @@ pub(super) fn group_members(
     found
 }
 
-/// Returns the inversions to try. In binary, swapped wires only reverse the direction.
+/// Returns whether to try the frames as received, inverted, or both. In binary, swapped wires only reverse the
+/// direction.
 fn possible_inversions(read: &Read) -> &'static [bool] {
     match (read.reading.code, read.reading.inverted) {
         (Code::Binary, _) if read.reading.steps.is_none() => &[false, true],
@@ -65,19 +66,19 @@ fn possible_inversions(read: &Read) -> &'static [bool] {
     }
 }
 
-/// Returns the parity as sent by the encoder. Swapped wires invert the parity of an odd number of bits.
+/// Returns the parity as the encoder sends it. Swapped wires change the parity of an odd number of bits.
 pub(super) fn detect_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns an even parity bit after Gray code that might equally be a zero covered by the code. Either one looks like
-/// the lowest position bit.
+/// Returns an even parity bit after Gray code, which could also be a zero covered by the code. Both look like the
+/// lowest position bit.
 pub(super) fn crosses_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
     detect_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
-/// Returns whether nearly all steps are even, so that the lowest bit carries no information.
+/// Returns whether nearly all steps are even numbers. The lowest bit then carries no information.
 pub(super) fn has_only_even_steps(read: &Read) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);

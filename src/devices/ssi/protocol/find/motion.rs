@@ -1,21 +1,22 @@
-//! Measures how evenly a shaft turns when frames are read as certain numbers: the information required for each number,
-//! given the previous ones. A misread number jumps and requires its full information.
+//! Measurement of how evenly a shaft turns if frames are read as certain numbers. The measure is the information in
+//! each number that cannot be predicted from the previous ones. A misread number causes a jump, and its information is
+//! not reduced.
 
-/// Number of differences over which each median is taken.
+/// Number of steps over which each median is taken.
 const BLOCK: usize = 16;
-/// Cost in bits of choosing a size group for the differences.
+/// Cost in bits of each group of similar differences that occurs.
 const MODEL_BITS: f64 = 8.0;
 /// Information in bits of a frame without a valid number.
 const NONE_BITS: f64 = 16.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// Total information in bits.
+    /// Information of all steps in bits.
     pub(super) bits: f64,
     pub(super) median: i64,
-    /// Steps since the previous frame, for each frame but the first; `None` if either frame has no valid number.
+    /// Number of steps from each frame to the next, or `None` if either of them has no valid number.
     pub(super) steps: Vec<Option<i64>>,
-    /// Deviation of each step from its neighbours.
+    /// Deviation of each step from the median of the steps around it.
     pub(super) uneven: Vec<i64>,
     pub(super) limit: u64,
     pub(super) jumps: usize,
@@ -24,7 +25,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Analyses numbers that wrap after `round`, or after 64 bits if `round` is 0.
+    /// Analyses numbers that wrap after `round`. A `round` of 0 means 64 bits.
     pub(super) fn of(numbers: &[Option<u64>], round: u64) -> Self {
         let steps: Vec<Option<i64>> = numbers
             .iter()
@@ -57,28 +58,29 @@ impl Motion {
         }
     }
 
-    /// Returns whether the step to the given frame is not a jump. Steps count from 1, for the second frame.
+    /// Returns whether the step with the given index is not a jump. Index 0 is the step from the first frame to the
+    /// second.
     pub(super) fn is_even(&self, index: usize) -> bool {
         let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
         within && self.steps.get(index).is_some_and(Option::is_some)
     }
 
-    /// Returns the number of frames that follow from the previous frame or lead to the next.
+    /// Returns the number of frames that are consistent with the previous or the next frame.
     pub(super) fn explained_frame_count(&self) -> usize {
         let frames = self.steps.len() + 1;
         (0..frames).filter(|index| self.is_good(*index)).count()
     }
 
-    /// Returns whether the frame follows from the previous one or leads to the next.
+    /// Returns whether the frame is consistent with the previous or the next frame.
     pub(super) fn is_good(&self, frame: usize) -> bool {
         frame.checked_sub(1).is_some_and(|before| self.is_even(before)) || self.is_even(frame)
     }
 }
 
-/// Returns the cost in bits of all differences. Each is encoded as its size group, weighted by frequency, and an index
-/// within the group.
+/// Returns the information of all differences in bits. Each difference is encoded as a group of similar sizes and an
+/// index in the group. A frequent group needs fewer bits.
 fn cost(uneven: &[i64]) -> f64 {
-    // Sizes in bits, separately below and above 0.
+    // Groups by the number of bits, separately for differences below and above 0.
     let mut groups = [0_usize; 130];
     let mut within = 0;
     for uneven in uneven {
@@ -95,7 +97,7 @@ fn cost(uneven: &[i64]) -> f64 {
     which + within as f64 + MODEL_BITS * met().count() as f64
 }
 
-/// Returns the shortest equivalent of a step, which may cross the wrap-around.
+/// Returns the step as the shortest distance in either direction, given that positions wrap after `round`.
 pub(super) fn nearest(step: u64, round: u64) -> i64 {
     if round == 0 {
         return step as i64;

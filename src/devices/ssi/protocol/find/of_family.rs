@@ -1,4 +1,4 @@
-//! Settings of a family whose position ends where the reading does.
+//! Candidate layouts of a family. Only settings whose position ends where the reading ends are tried.
 
 use super::frame_set::FrameSet;
 use super::members::{EXCHANGED, PADDED, Take, crosses_zero, sum};
@@ -10,10 +10,10 @@ use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, S
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Weight of a setting that was changed.
+/// Weight of a setting that differs from the factory setting.
 const CHANGED: f64 = 0.8;
 
-/// Tries every frame that the family can send, and tags each with the family's index.
+/// Tries every frame that the family can send. Families that come first in the list are slightly preferred.
 pub(super) fn of_family(
     take: &mut Take<'_>,
     read: &Read,
@@ -112,7 +112,7 @@ fn find_resolutions(
         let ends = [last, last.saturating_sub(1)].into_iter().filter_map(|last| last.checked_sub(before + late));
         all.extend(ends.map(|steps| (*multiturn, steps)));
         if common.shift && last == 25 {
-            // The complete width is used, and the lowest bit removed.
+            // The position has its full width, and the shift removes the lowest bit.
             all.extend([(*multiturn, most), (*multiturn, most - 1)]);
         }
     }

@@ -1,7 +1,7 @@
-//! Prior probability of a layout: encoders are built with a few common widths, and never with 4096 turns of 2 steps.
-//! Weights are 0 for the most common layout; a changed setting costs about 1.
+//! Plausibility of a layout. Encoders are built with a few common widths, and never with 4096 turns of 2 steps. The
+//! weight is 0 for the most common layout, and a changed setting has a weight of about 1.
 
-/// Bits within a revolution.
+/// Common numbers of step bits with their weights.
 const STEPS: [(u8, f64); 16] = [
     (12, 0.0),
     (13, 0.0),
@@ -20,13 +20,13 @@ const STEPS: [(u8, f64); 16] = [
     (22, 1.6),
     (24, 1.6),
 ];
-/// Bits of the revolutions.
+/// Common numbers of turn bits with their weights.
 const TURNS: [(u8, f64); 9] =
     [(0, 0.0), (12, 0.0), (13, 0.6), (16, 0.6), (14, 1.0), (10, 1.4), (8, 1.4), (15, 1.6), (11, 1.6)];
 /// Minimum number of step bits in multiturn encoders.
 const FEW_STEPS: u8 = 8;
 
-/// Returns how unusual a combination of turn bits and step bits is.
+/// Returns the weight of a combination of turn bits and step bits, which is higher if it is less usual.
 pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
@@ -36,7 +36,7 @@ pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }
 
-/// Returns the most usual ways to split bits between turns and steps, the most usual first.
+/// Returns the most usual ways to divide bits into turns and steps, with the most usual one first.
 pub(super) fn bit_shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();

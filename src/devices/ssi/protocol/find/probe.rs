@@ -1,4 +1,4 @@
-//! Trial frames for a layout before it counts: it must yield the same motion as the reading of the frames.
+//! Test of a candidate layout. It must result in the same motion as the reading of the frames.
 
 use super::frame_set::FrameSet;
 use super::motion::nearest;
@@ -7,7 +7,7 @@ use crate::devices::ssi::protocol::descriptor::{Meaning, Repeat};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
 const TRIED: usize = 96;
-/// Percentage of the tried frames that may fail to fit.
+/// Maximum percentage of the tested frames that do not fit.
 const MISFITS_PERCENT: usize = 4;
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,16 +18,17 @@ pub(super) struct Trial {
     pub(super) never_odd: bool,
 }
 
-/// Frames and the steps between them, against which layouts are tried.
+/// Pairs of frames with the steps between them, used to test layouts.
 pub(super) struct LayoutProbe<'a> {
     seen: &'a FrameSet,
     read: &'a Read,
-    /// Indices of frames whose successor follows evenly, each with whether the range wraps between the two.
+    /// Indices of frames that the next frame follows evenly. The flag is set if the position wraps between the two.
     pairs: Vec<(usize, bool)>,
 }
 
 impl<'a> LayoutProbe<'a> {
-    /// Creates a probe. `read` must have been made from `words`, which are the frames of `seen` or their first words.
+    /// Creates a probe. `read` must be a reading of `words`, which are the frames of `seen` or the first words of these
+    /// frames.
     pub(super) fn new(seen: &'a FrameSet, words: &FrameSet, repeat: Option<Repeat>, read: &'a Read) -> Self {
         let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
         let usual = |word: u64| {
@@ -60,7 +61,8 @@ impl<'a> LayoutProbe<'a> {
         self.seen.clocks
     }
 
-    /// Tests whether a layout's steps match those of the reading, forwards or backwards, at full or half scale.
+    /// Tests whether the steps of a layout match those of the reading, forwards or backwards, up to a power of two.
+    /// Returns `None` if they do not.
     pub(super) fn try_layout(&self, layout: &Layout) -> Option<Trial> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);
@@ -101,7 +103,7 @@ impl<'a> LayoutProbe<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     backwards: bool,
-    /// Number of doublings from the reading's steps to the layout's; negative for halvings.
+    /// Power of two by which the layout's steps are larger than those of the reading.
     twice: i8,
 }
 

@@ -1,5 +1,6 @@
-//! Ways to read frames as numbers: the clocks of the position, its code, swapped wires, and the number after which it
-//! starts again. Parts that a reading does not explain require information bit by bit.
+//! Ways to read frames as numbers. A reading defines the clocks of the position, its code, whether the wires are
+//! swapped, and the number of steps after which positions wrap. Bits outside the position add their information to that
+//! of the motion.
 
 use std::ops::RangeInclusive;
 
@@ -9,16 +10,17 @@ use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, PositionCode, gray_to_binary, low_bits_mask};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
-/// Number of frames in the first trial of each reading, taken in runs of consecutive frames.
+/// Number of frames in the first test of each reading. They are taken in runs of consecutive frames.
 const TRIED: usize = 620;
 const RUN: usize = 31;
-/// Number of best readings that are tried with all frames.
+/// Number of the best readings that are tested with all frames.
 const BEST: usize = 8;
-/// Maximum excess over the best reading, in bits, for a reading to be tried with other range ends.
+/// Maximum information in bits above that of the best reading. Only such readings are tested with other numbers of
+/// steps.
 const NEAR_BITS: f64 = 400.0;
-/// Minimum number of changes per thousand frames for a clock to carry the lowest bit of a turning shaft.
+/// Minimum number of changes per thousand frames of a clock that can be the lowest bit of a turning shaft.
 const LAST_PERMILLE: usize = 10;
-/// Minimum percentage of frames with correct parity.
+/// Minimum percentage of frames with correct parity for a bit to be regarded as a parity bit.
 const PARITY_PERCENT: usize = 85;
 const INVERTED_BITS: f64 = 2.0;
 const BCD_BITS: f64 = 6.0;
@@ -30,27 +32,27 @@ const UNEXPLAINED_BITS: f64 = 24.0;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reading {
-    /// Every bit upside down.
+    /// Whether every bit is inverted.
     pub(super) inverted: bool,
     pub(super) code: Code,
-    /// The clock of the highest bit that moved.
+    /// Clock of the highest bit that changed.
     pub(super) first: u8,
-    /// Clock of the lowest bit.
     pub(super) last: u8,
-    /// First and last clock of a gap within the position, if any.
+    /// First and last clock of the constant bits between turns and steps, if any.
     pub(super) gap: Option<(u8, u8)>,
     pub(super) parity: Option<Parity>,
-    /// Least and greatest possible number of steps before positions wrap, or `None` for the full range of the bits.
+    /// Minimum and maximum number of steps before positions wrap, or `None` if the full range of the bits is used.
     pub(super) steps: Option<(u64, u64)>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) reading: Reading,
-    /// Decoded numbers. For Gray excess, they are numbers of the full Gray code.
+    /// Number in each frame, or `None` if the frame has no valid number. For Gray excess, it is the number in the
+    /// complete Gray code.
     pub(super) numbers: Vec<Option<u64>>,
     pub(super) motion: Motion,
-    /// Total information in bits.
+    /// Information of the motion and of all other bits, in bits.
     pub(super) bits: f64,
     /// Clocks whose bits change without an explanation.
     pub(super) unexplained: Vec<u8>,
@@ -71,7 +73,7 @@ impl Reading {
         }
     }
 
-    /// Returns how many numbers the bits can represent.
+    /// Returns the number of values that the bits can represent.
     fn whole(&self) -> u64 {
         match self.code {
             Code::Bcd => 10_u64.saturating_pow(u32::from(self.width().div_ceil(4))),
@@ -90,7 +92,7 @@ impl Reading {
         }
     }
 
-    /// Returns the number in each word, or `None` where the bits are not valid digits.
+    /// Returns the number in each word, or `None` if the word has no valid number.
     pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
         let digits = PositionCode::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
         let all = low_bits_mask(self.last + 1 - self.first);
@@ -116,7 +118,7 @@ impl Reading {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
 
-    /// Returns whether all constant bits outside the position have their usual values in the given frame.
+    /// Returns whether all constant bits outside the position have their usual values in a frame.
     fn has_usual_bits(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
@@ -124,14 +126,14 @@ impl Reading {
         word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
     }
 
-    /// Returns the last run of clocks before the lowest bit that never moved.
+    /// Returns the last run of constant clocks before the lowest bit.
     pub(super) fn constant_run(&self, seen: &FrameSet) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
         Some((from, to))
     }
 
-    /// Returns the information in bits of everything except the motion, and the unexplained clocks.
+    /// Returns the information in bits of everything except the motion, with the list of unexplained clocks.
     fn other_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;
@@ -174,20 +176,20 @@ impl Read {
         let motion = Motion::of(&numbers, reading.round());
         let (bits, unexplained) = reading.other_information(seen);
         let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
-        // Disturbed frames do not count as passing an end, and an end is only where a higher bit does not change, even
-        // briefly.
+        // A disturbed frame does not prove that the end of the range was passed. At a real end, no higher bit changes,
+        // even briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
         let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.has_usual_bits(seen, index));
         read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.wraps_after(index) && usual(index));
         read
     }
 
-    /// Returns the total information in bits, including that of unusual properties.
+    /// Returns the total information in bits without the penalty for unexplained clocks.
     pub(super) fn cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
 
-    /// Returns whether the numbers wrap between the given frame and the next while the motion continues.
+    /// Returns whether the numbers wrap after the given frame while the motion continues.
     pub(super) fn wraps_after(&self, index: usize) -> bool {
         let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
         let step = self.motion.steps.get(index).copied().flatten();
@@ -195,18 +197,17 @@ impl Read {
     }
 }
 
-/// Returns the number of frames in which the parity is correct.
 fn right(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_parity_valid(**word, parity)).count()
 }
 
-/// Returns the readings that yield the most even motion, the best first.
+/// Returns the readings with the most even motion, with the best first.
 pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
     let mut tried: Vec<(f64, Reading)> = Vec::new();
     for reading in possible_readings(seen) {
-        // Runs are not consecutive.
+        // The end of a run and the start of the next one are not consecutive.
         let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
         let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
@@ -232,8 +233,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     all
 }
 
-/// Returns whether a bit before the position changes exactly where the numbers wrap, and is therefore their highest
-/// bit.
+/// Returns whether a bit before the position changes where the numbers wrap. Such a bit is the true highest bit.
 fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     let round = read.reading.round();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
@@ -249,14 +249,15 @@ fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     at_end * 2 >= changes && near * 4 < round
 }
 
-/// Returns every possible reading, from each clock that moved first to each clock that could carry the lowest bit.
+/// Returns all readings that begin at a clock that may be the first of the position and end at a clock that may be its
+/// lowest bit.
 fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;
     let lowest: Vec<u8> =
         seen.bits().filter(|(_, bit)| bit.moves || bit.changes > often).map(|(clock, _)| clock).collect();
     let mut ways = Vec::new();
-    // An error bit before the position may have been active for a while.
+    // The first clock that changed may be an error bit that was active for a while.
     let second = moving.get(1).filter(|_| moving.first().is_some_and(|first| seen.bit(*first).changes <= 16));
     for first in moving.first().into_iter().chain(second) {
         for last in lowest.iter().filter(|last| **last > first + 1) {
@@ -278,7 +279,7 @@ fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     ways
 }
 
-/// Returns the longest run of clocks within the position that did not move.
+/// Returns the longest run of constant clocks within the position.
 fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     let mut longest: Option<(u8, u8)> = None;
     let mut from = None;
@@ -297,7 +298,7 @@ fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     longest
 }
 
-/// Returns runs of consecutive frames, spread over the whole recording.
+/// Returns runs of consecutive frames from all parts of the recording.
 fn sample(words: &[u64]) -> Vec<u64> {
     if words.len() <= TRIED {
         return words.to_vec();

@@ -1,4 +1,4 @@
-//! Verdict on the classes: the confidence, the quality of each class, and the motion that would decide.
+//! Assessment of the classes: whether the result is certain, how good each class is, and which motion would decide.
 
 use super::frame_set::FrameSet;
 use super::members::{LayoutCandidate, has_only_even_steps};
@@ -7,13 +7,13 @@ use super::reading::Read;
 use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
-/// Minimum lead of the first class over the next, in bits.
+/// Minimum difference between the first two classes in bits.
 const LEAD_BITS: f64 = 100.0;
-/// Maximum share of the numbers' bits that an even motion may need.
+/// Maximum information of an even motion as a fraction of the bits of its numbers.
 const EVEN: f64 = 0.7;
-/// Maximum share of the numbers' bits that an even motion may need for a certain result.
+/// Maximum information of an even motion as a fraction of the bits of its numbers, for a certain result.
 const SURE_EVEN: f64 = 0.35;
-/// Percentage of frames that may jump or fail to fit.
+/// Maximum percentage of frames that jump or have no valid number.
 const DISTURBED_PERCENT: usize = 15;
 /// Minimum number of frames for a certain result.
 const SURE_FRAMES: usize = 200;
@@ -33,23 +33,24 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
     let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= SURE_DIFFERENT;
-    // Regardless of how improbable the others are.
+    // The readings are compared here without the penalties for unusual layouts.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven_properties(words, first).is_empty();
     (!proven).then_some(Uncertainty::Open)
 }
 
-/// Returns whether many jumps are of equal size, which indicates a wrong code rather than disturbances.
+/// Returns whether many jumps have the same size. This indicates a wrong code rather than disturbances.
 fn has_uniform_jumps(read: &Read) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
     sizes.sort_unstable();
-    // A disturbed bit causes two jumps of the same size.
+    // A single disturbed bit already causes two jumps of the same size.
     let alike = sizes.chunk_by(|one, other| one.abs_diff(*other) <= read.motion.limit / 4).map(<[u64]>::len).max();
     alike.is_some_and(|alike| alike > 4 && alike * 4 > sizes.len())
 }
 
-/// Returns whether the motion needs less than the given share of the information in its individual numbers.
+/// Returns whether the motion has less information than the given fraction of the bits of its numbers, and few frames
+/// are disturbed.
 fn is_even(read: &Read, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
@@ -61,8 +62,8 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
     let reading = &read.reading;
     let mut open = Vec::new();
     let constant_run = reading.constant_run(words);
-    // After the highest bit a constant one may be anything; before it, once the end was passed, it does not belong to the
-    // position.
+    // A constant bit within the position can have any meaning. If the end of the range was passed, a constant bit
+    // before the position does not belong to it.
     match constant_run.filter(|(from, _)| !read.closed || *from > reading.first) {
         Some((from, to)) => open.push(Open::TurnFarther { from, to }),
         None if !read.closed => open.push(Open::PassAnEnd),
@@ -90,7 +91,7 @@ fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
     open
 }
 
-/// Returns the least and greatest possible number of steps, which differ if the first or last position never occurred.
+/// Returns the minimum and maximum number of steps. They differ if the first or the last position never occurred.
 fn steps(read: &Read) -> Option<(u64, u64)> {
     let allowed = read.reading.allowed();
     let (first, last) = match read.reading.steps {
@@ -104,11 +105,11 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
     let (lowest, highest) = seen.fold((any, any), |(low, high), number| (low.min(number), high.max(number)));
     let unseen = (lowest - first).max(last.saturating_sub(highest));
     let (one, other) = read.reading.steps.unwrap_or((last + 1, last + 1));
-    // Gray excess leaves out the same number on both sides.
+    // Gray excess leaves out the same number of words on both sides.
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Returns whether step sizes vary enough to reveal a missing lower bit.
+/// Returns whether the step sizes vary enough to show that a lower bit is missing.
 pub(super) fn has_varied_steps(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
@@ -154,7 +155,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     }
 }
 
-/// Returns the motions that would distinguish or confirm the members.
+/// Returns the motions of the shaft that would distinguish or confirm the members.
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;

@@ -1,12 +1,14 @@
-//! Resizing a frame for other positions or another code: it grows and shrinks as a user would redraw it.
+//! Change of a frame for other positions or another code. The frame becomes longer or shorter, as a user would redraw
+//! it.
 
 use crate::devices::ssi::protocol::{Code, Descriptor, LayoutError, PositionCode, Range};
 
-/// Returns the frame with other positions in the given code. Zeros after the position absorb the change, if present;
-/// otherwise the parts after the position move, and the frame becomes longer or shorter.
+/// Returns the frame with other positions or another code. Zeros after the position absorb the change if there are any.
+/// Otherwise the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors
-/// The positions or code words are impossible. The caller must check whether the frame as a whole is possible.
+/// Returns an error if the positions or code words are impossible. Whether the complete frame is possible must be
+/// checked by the caller.
 pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> Result<Descriptor, LayoutError> {
     let bits_before = bits(&before.range, before.code)?;
     let bits_now = bits(&range, code)?;
@@ -35,7 +37,7 @@ pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> R
         parity.clock = moved(parity.clock);
     }
     if let Some(repeat) = &mut now.repeat {
-        // Both words become longer or shorter.
+        // The word and its repetition become longer or shorter.
         repeat.word = moved(repeat.word);
         now.clocks = moved(now.clocks);
     }

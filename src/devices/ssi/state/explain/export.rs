@@ -1,4 +1,4 @@
-//! Texts of the exports in both languages. The English ones are those that the command line prints.
+//! Texts of the exports in both languages. The English texts are the same as on the command line.
 
 use super::code;
 use crate::app::Text;

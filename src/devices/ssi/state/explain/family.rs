@@ -1,4 +1,4 @@
-//! Texts from the family files, and messages about files that cannot be used.
+//! Texts from family files, and messages about family files that cannot be used.
 
 use super::refused::settings_reason;
 use crate::app::Text;
@@ -7,12 +7,12 @@ use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};
 use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
 
-/// Returns the translated note or source reference of a family.
+/// Returns a note or the source of a family in both languages.
 pub fn note(family: &Family, words: &str) -> Text {
     Text::new("plain.words").with_name("words", words, family.german(words))
 }
 
-/// Returns the message for a user-defined family that cannot be read or used.
+/// Returns the message about the file of a family that cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<FamilyError>() {

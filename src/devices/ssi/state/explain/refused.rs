@@ -1,4 +1,4 @@
-//! Messages about impossible layouts in both languages, as reported by the frame, its family or a format string.
+//! Messages about impossible layouts in both languages, for errors of a frame, a family or a format string.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -18,7 +18,7 @@ pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
 
-/// Returns why settings are not possible, as a part of a sentence.
+/// Returns the reason why settings are impossible, as a part of a sentence.
 pub(super) fn settings_reason(error: &SettingsError) -> Text {
     match error {
         SettingsError::None { family, field } => {
@@ -52,8 +52,7 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
     }
 }
 
-/// Returns the message for a LinuxCNC format string that is not a frame, or for a frame that no format string can
-/// express.
+/// Returns the message for an invalid LinuxCNC format string, or for a frame that has no format string.
 pub fn format(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {
@@ -92,7 +91,7 @@ pub fn frame_text(error: &FrameTextError) -> Text {
     }
 }
 
-/// Returns why a recording of clock and data has no frames.
+/// Returns the reason why a recording of clock and data contains no frames.
 pub fn bursts(error: BurstError) -> Text {
     match error {
         BurstError::NoClock => TEXTS.text("ssi_capture.no_clock"),
@@ -133,7 +132,7 @@ fn field_name(field: SettingName) -> Text {
     })
 }
 
-/// Returns why a frame is not possible, as a part of a sentence.
+/// Returns the reason why a frame is impossible, as a part of a sentence.
 pub(super) fn layout_reason(error: &LayoutError) -> Text {
     match error {
         LayoutError::Clocks(clocks) => TEXTS.text("ssi_reason.clocks").with("clocks", clocks),

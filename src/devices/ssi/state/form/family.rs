@@ -1,4 +1,4 @@
-//! Form rows of a family: the settings of its encoders.
+//! Form rows for a family, which contain the settings of its encoders.
 
 use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
@@ -30,7 +30,7 @@ pub(super) fn groups(designer: &LayoutDesigner, family: &Family, settings: &Sett
     vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
 }
 
-/// Returns the family settings after an entry, or `None` if the field does not apply.
+/// Returns the settings of a family after an entry, or `None` if the field does not belong to them.
 pub(super) fn entered(
     designer: &LayoutDesigner,
     family: &Family,
@@ -48,7 +48,7 @@ pub(super) fn entered(
                 steps: None,
                 turns: None,
                 revolutions: None,
-                // A setting for bits may not suit steps.
+                // A setting for a range of bits may not be possible for a range of steps.
                 align: None,
                 clocks: None,
                 ..next
@@ -89,13 +89,13 @@ pub(super) fn entered(
         (Field::Shift, FieldInput::Switch(is_on)) => next.shift = *is_on,
         (Field::Errors, FieldInput::Choice(place)) => {
             next.errors = Some(*places(designer, family).get(*place)?);
-            // With them the frame has its own length again.
+            // The length of the frame depends on the error bits again.
             next.clocks = None;
         }
         (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
         _ => return None,
     }
-    // A number of clocks that was not requested follows the resolution.
+    // The number of clocks follows the resolution, unless the user has set it.
     if matches!(field, Field::Multiturn | Field::Singleturn | Field::Bits | Field::Steps | Field::Turns)
         && settings.clocks.is_none()
     {

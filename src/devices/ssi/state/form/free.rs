@@ -1,4 +1,4 @@
-//! Form rows of a frame without a family, or of one that its family cannot send.
+//! Form rows for a frame that belongs to no family, or that its family cannot send.
 
 use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
@@ -66,7 +66,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
     }
 }
 
-/// Applies an entry to a frame without a family, or returns `None` if the field does not apply.
+/// Returns the change of a frame of no family after an entry, or `None` if the field does not belong to it.
 pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInput) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = apply_range_input(&before.range, field, input) {
@@ -79,7 +79,7 @@ pub(super) fn entered(designer: &LayoutDesigner, field: Field, input: &FieldInpu
     match (field, input) {
         (Field::Over, FieldInput::Choice(over)) => next.coded = *OVER.get(*over)?,
         (Field::Clocks, FieldInput::Number(clocks)) => next.clocks = byte(*clocks)?,
-        // The parts after the position move with it.
+        // Parts after the position move with it.
         (Field::Lead, FieldInput::Number(lead)) => {
             return Some(Edit::Frame(Box::new(with_padding(before, byte(*lead)?, before.between)?)));
         }
@@ -151,7 +151,8 @@ fn apply_range_input(range: &Range, field: Field, input: &FieldInput) -> Option<
     })
 }
 
-/// Returns the frame with the given numbers of zeros before and within the position. The parts behind them shift along.
+/// Returns the frame with the given numbers of zeros before and within the position. The parts after the position move
+/// with it.
 fn with_padding(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
@@ -170,12 +171,12 @@ fn with_padding(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor
     Some(next)
 }
 
-/// Returns the frame with another parity; a new parity bit is an additional clock at the end.
+/// Returns the frame with another parity. A new parity bit becomes an additional clock at the end.
 fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
     match (choice, next.parity) {
         (0, Some(parity)) => {
             next.parity = None;
-            // The clock used only by it is removed as well.
+            // The clock of the parity bit is removed with it.
             if next.repeat.is_none() && parity.clock == next.clocks {
                 next.clocks -= 1;
             }
@@ -198,7 +199,7 @@ fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
 }
 
 impl LayoutDesigner {
-    /// Returns the frame with another error bit appended, or `None` if the maximum has been reached.
+    /// Returns the frame with an additional error bit, or `None` if the frame already has the maximum number.
     pub fn with_error_bit(&self) -> Option<Descriptor> {
         let mut next = self.design().profile.descriptor.clone();
         if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
@@ -217,12 +218,12 @@ impl LayoutDesigner {
         Some(next)
     }
 
-    /// Returns the frame with an error bit removed; its clock remains as a zero.
+    /// Returns the frame without an error bit. Its clock becomes a zero, unless it is the last one.
     pub fn without_error_bit(&self, index: usize) -> Descriptor {
         let mut next = self.design().profile.descriptor.clone();
         if index < next.errors.len() {
             let removed = next.errors.remove(index);
-            // The last clock is removed with the only bit that used it.
+            // The last clock is removed with the only bit on it.
             if next.repeat.is_none() && next.parity.is_none() && removed.clock == next.clocks {
                 next.clocks -= 1;
             }

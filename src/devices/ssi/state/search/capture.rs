@@ -1,12 +1,14 @@
-//! Import of logic analyser exports as levels of clock and data. Saleae Logic writes a row for each change below a
-//! header `Time [s],Channel 0,Channel 1`; sigrok (PulseView) begins with lines starting with `;`, one of which states
-//! the sample rate, and writes a row for each sample, with or without a time.
+//! Import of logic analyser exports as levels of clock and data.
+//!
+//! Saleae Logic writes a header `Time [s],Channel 0,Channel 1` and a row for each change. sigrok (PulseView) begins
+//! with lines that start with `;`, one of which states the sample rate. It then writes a row for each sample, with or
+//! without a time.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::LineLevels;
 use crate::devices::ssi::state::TEXTS;
 
-/// Numbered rows of a file and the heading above them.
+/// Rows of a file with their line numbers, and the heading above them.
 struct Table<'t> {
     heading: Vec<&'t str>,
     delimiter: char,
@@ -14,23 +16,23 @@ struct Table<'t> {
     rows: Vec<(usize, &'t str)>,
 }
 
-/// The meaning of the first column.
+/// The source of the times in a file.
 #[derive(Clone, Copy)]
 enum Times {
-    /// A time column, with its unit in seconds.
+    /// A time column. Contains its unit in seconds.
     Column(f64),
-    /// No time column; one row per sample at the given interval in seconds.
+    /// No time column: one row per sample, at this interval in seconds.
     Samples(f64),
 }
 
-/// Substrings that identify the clock and data channels by name.
+/// Parts of a channel name that identify the clock channel.
 const CLOCK: [&str; 4] = ["clk", "clock", "takt", "sck"];
 const DATA: [&str; 2] = ["dat", "miso"];
 
-/// Parses the levels of both lines, or returns `None` if the text is not a logic analyser export.
+/// Parses the levels of both lines. Returns `None` if the text is not a logic analyser export.
 ///
 /// # Errors
-/// The export is unusable. The message names the line, the reason and a remedy.
+/// Returns a message with the line, the reason and a remedy if the export is unusable.
 pub(super) fn levels(text: &str) -> Option<Result<Vec<LineLevels>, Text>> {
     let table = Table::of(text)?;
     Some(table.times().and_then(|times| table.levels(times)))
@@ -60,7 +62,7 @@ impl<'t> Table<'t> {
         let heading = cells(first);
         let has_time = heading.first().is_some_and(|own| time_unit(own, rate_hz).is_some() || is_time(own));
         let is_saleae = heading.first().is_some_and(|own| own.to_ascii_lowercase().starts_with("time ["));
-        // Columns of 0 and 1 alone are levels; other tables have a time, too.
+        // A table that has only columns of 0 and 1 contains levels. Other tables also have a time column.
         let are_levels = rows.get(1).is_some_and(|(_, row)| {
             let mut levels = row.split(delimiter).map(cell).skip(1).peekable();
             levels.peek().is_some() && levels.all(|own| matches!(own, "0" | "1" | "X"))
@@ -68,7 +70,7 @@ impl<'t> Table<'t> {
         if !(has_comment || is_saleae || has_time && are_levels) {
             return None;
         }
-        // Without names the first row has levels already.
+        // If there are no names, the first row already contains levels.
         let is_named = !heading.iter().all(|own| own.parse::<f64>().is_ok());
         let heading = if is_named { heading } else { vec![""; heading.len()] };
         let rows = if is_named { rows.get(1..).unwrap_or_default().to_vec() } else { rows };
@@ -121,7 +123,7 @@ impl<'t> Table<'t> {
                 .map(|text| match *text {
                     "0" => Ok(Some(false)),
                     "1" => Ok(Some(true)),
-                    // Nothing was recorded there.
+                    // No level was recorded at this time.
                     "X" | "x" => Ok(None),
                     other => Err(at("ssi_capture.level").with("text", other)),
                 })
@@ -138,8 +140,8 @@ impl<'t> Table<'t> {
         Ok(levels)
     }
 
-    /// Returns the clock and data channels, identified by name. Failing that, of the two channels that change, the
-    /// clock is the one that changes more often.
+    /// Returns the clock channel and the data channel, identified by name. If the names do not help, the clock is the
+    /// channel that changes more often.
     fn lines(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
         let names: Vec<String> = self.heading.iter().skip(skipped).map(|name| name.to_lowercase()).collect();
         let named = |words: &[&str]| names.iter().position(|name| words.iter().any(|word| name.contains(word)));
@@ -155,7 +157,7 @@ impl<'t> Table<'t> {
         let counts: Vec<usize> = (0..names.len()).map(changes).collect();
         let mut active: Vec<usize> =
             (0..names.len()).filter(|own| counts.get(*own).is_some_and(|own| *own > 0)).collect();
-        // A data line that never changes is one, too, where there is no other.
+        // If there are only two channels, the data line may be one that never changes.
         if active.len() == 1 && names.len() == 2 {
             active.extend((0..2).filter(|own| counts.get(*own) == Some(&0)));
         }
@@ -177,8 +179,8 @@ fn is_time(name: &str) -> bool {
     name.to_ascii_lowercase().starts_with("time")
 }
 
-/// Returns the unit of a time column in seconds, derived from its name: `Time [s]`, sigrok's `nanoseconds`, or a plain
-/// `Time` whose unit depends on the sample rate.
+/// Returns the unit of a time column in seconds, or `None` if the column is not a time. The name is `Time [s]`,
+/// sigrok's `nanoseconds`, or `Time`, whose unit depends on the sample rate.
 fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
     const UNITS: [(&str, &str, f64); 5] = [
         ("s", "seconds", 1.0),
@@ -194,7 +196,7 @@ fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
     match inside {
         Some(own) => UNITS.iter().find(|(short, ..)| *short == own).map(|(.., unit)| *unit),
         None if name == "time" => {
-            // The largest of these units in which a sample takes one or more.
+            // The unit is the largest one in which the interval between samples is at least 1.
             let rate = rate_hz?;
             Some(UNITS.iter().map(|(.., unit)| *unit).find(|unit| 1.0 / rate >= *unit).unwrap_or(1e-12))
         }

@@ -1,12 +1,13 @@
-//! Moving parts of a frame. The result is always a possible frame: of the clocks between the requested and the present
-//! one, the first possible one is used.
+//! Moving of parts of a frame. The result is always a possible frame. If the requested clock is not possible, the
+//! nearest possible one towards the present clock is used.
 
 use super::{Handle, Parts, has_words};
 use crate::devices::ssi::protocol::{Descriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
 
-/// Returns the frame after moving a part to a clock, or as close to it as possible. Parts beyond its neighbours stay,
-/// except that error and parity bits directly after the position move with its end if `following` is set. A bit moved
-/// onto another swaps places with that bit.
+/// Returns the frame after a part was moved to a clock, or as close to it as possible.
+///
+/// Other parts stay in place. However, error and parity bits directly after the position move with its end if
+/// `following` is set. A bit that is moved onto another one swaps places with it.
 #[must_use]
 pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
     let Some(at) = clock(layout, handle) else { return layout.clone() };
@@ -42,7 +43,7 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
     handles
 }
 
-/// Returns the clock of a part, or `None` if the frame lacks that part.
+/// Returns the clock of a part, or `None` if the frame does not have the part.
 pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     let descriptor = layout.descriptor();
     let begins = descriptor.lead + u8::from(descriptor.shift_right);
@@ -70,7 +71,7 @@ pub(super) enum Single {
     Parity,
 }
 
-/// Returns the error and parity bits that directly follow the position, up to the first zero.
+/// Returns the error and parity bits that directly follow the position.
 pub(super) fn adjacent_bits(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
@@ -87,20 +88,20 @@ fn single_bit_at(descriptor: &Descriptor, clock: u8) -> Option<Single> {
     error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
 }
 
-/// Returns the last clock of the position. Bits shifted out of the position area have no clock.
+/// Returns the last clock of the position. Bits that are shifted out of the area do not have a clock.
 pub(super) fn end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
     (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)
 }
 
-/// Returns whether the end of the area affects the frame.
+/// Returns whether the frame depends on the end of the area.
 const fn is_area_relevant(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
-/// Returns the frame with a part moved from one clock to another, which may be invalid, or `None` if it cannot be
-/// expressed.
+/// Returns the frame with a part moved from one clock to another. The frame may be impossible. Returns `None` if no
+/// descriptor can express it.
 fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();
@@ -148,14 +149,14 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Parity => put(&mut new, Single::Parity, at, to),
     }
     if !is_area_relevant(&new) {
-        // It has no content: it must only fit and exist.
+        // The area has no effect on the frame, but it must have room for the position.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
     }
     Some(new)
 }
 
-/// Returns the width of a code word; moving parts does not change the code.
+/// Returns the width of the code word. The code does not change when parts are moved.
 fn bits(new: &Descriptor, old: &Layout) -> u8 {
     match Parts::of(old) {
         Parts::Whole(bits) => bits,
@@ -163,7 +164,7 @@ fn bits(new: &Descriptor, old: &Layout) -> u8 {
     }
 }
 
-/// Moves the parts that follow the end of the position.
+/// Moves the parts after the position together with its end.
 fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
     let chain = adjacent_bits(old);
     if !following || chain.is_empty() {
@@ -179,7 +180,7 @@ fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Optio
     Some(())
 }
 
-/// Moves a bit to another clock, swapping it with any bit already at that clock.
+/// Moves a bit to another clock. If there is already a bit at that clock, the bits swap places.
 fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
     let other = single_bit_at(descriptor, to);
     set(descriptor, single, to);
@@ -210,7 +211,7 @@ fn plus(value: u8, by: i16) -> Option<u8> {
     u8::try_from(i16::from(value) + by).ok()
 }
 
-/// Returns the range with the numbers of turn and step bits changed; at least one bit of each remains.
+/// Returns the range with other numbers of turn bits and step bits, or `None` if either becomes 0.
 fn with_resized_range(range: Range, turns: i16, steps: i16) -> Option<Range> {
     let Range::Bits { multiturn, singleturn } = range else { return None };
     let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
@@ -218,7 +219,8 @@ fn with_resized_range(range: Range, turns: i16, steps: i16) -> Option<Range> {
     Some(Range::Bits { multiturn, singleturn })
 }
 
-/// Returns the range with its number of bits changed, if it has bits of only one kind; at least one bit remains.
+/// Returns the range with another number of bits, or `None` if the number becomes 0 or the range is not defined by
+/// bits.
 fn resize_range_evenly(range: Range, by: i16) -> Option<Range> {
     let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
     match range {
@@ -229,7 +231,7 @@ fn resize_range_evenly(range: Range, by: i16) -> Option<Range> {
     }
 }
 
-/// Returns the pattern extended by trailing clocks or shortened by trailing zeros.
+/// Returns the pattern for a longer or shorter frame. Zeros are added or removed at its end.
 fn with_longer_pattern(pattern: Pattern, by: i16) -> Option<Pattern> {
     let Word::Bits(word) = pattern.word else { return Some(pattern) };
     let count = u32::from(by.unsigned_abs());

@@ -1,11 +1,11 @@
-//! Descriptions of the cells, fields and handles of a frame.
+//! Texts about the cells, fields and handles of a frame.
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{GrayCoverage, Meaning, Role};
 use crate::devices::ssi::state::TEXTS;
 
-/// Returns the content of a clock as a sentence that names the clock.
+/// Returns a sentence about the content of a clock.
 pub fn cell(strip: &Strip, clock: u8) -> Text {
     let index = usize::from(clock).checked_sub(1);
     let cell = index.and_then(|index| strip.cells().get(index));
@@ -45,12 +45,12 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
     }
 }
 
-/// Returns the label shown directly below a field, where its zeros are visible.
+/// Returns the label below a field. The label of zeros is only their number.
 pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
-/// Returns a short label with the width in bits, for narrow fields.
+/// Returns a short label for a narrow field, with the width in bits.
 pub fn short(strip: &Strip, field: &Field) -> Text {
     let id = match field.is_zeros() {
         true => "ssi.strip_short_zeros",
@@ -60,7 +60,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
     TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
 }
 
-/// Returns the short name of a field, as also used in exports.
+/// Returns the short name of a field, which exports use as well.
 pub fn bare(strip: &Strip, field: &Field) -> String {
     match field.kind {
         _ if field.is_zeros() => "0".to_owned(),

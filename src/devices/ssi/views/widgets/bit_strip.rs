@@ -1,4 +1,4 @@
-//! An SSI frame as a row of cells, one per clock, with movable boundaries and single bits.
+//! An SSI frame as a row of cells, one for each clock, with movable boundaries and single bits.
 //!
 //! * **Size**: the available width; cells shrink to a minimum width, then the strip wraps into as few lines of whole
 //!   bytes as possible.
@@ -35,44 +35,44 @@ use rows::Rows;
 pub(crate) struct BitStrip<'a> {
     pub(crate) label: &'a str,
     pub(crate) strip: &'a Strip,
-    /// Bits to display, right-justified, if known.
+    /// Right-justified bits to display, if known.
     pub(crate) frame: Option<u64>,
     pub(crate) selected: Option<u8>,
     /// Whether bits can be inverted.
     pub(crate) toggles: bool,
     /// Whether boundaries and single bits can be moved.
     pub(crate) movable: bool,
-    /// Whether error and parity bits directly after the position move with its end.
+    /// Whether error and parity bits after the position move with its end.
     pub(crate) following: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
-    /// The part would move to the given clock. Sent in every frame of a drag.
+    /// A part is dragged to this clock. Sent in every UI frame of a drag.
     Preview(Handle, u8),
-    /// The part was moved to a different, reachable clock.
+    /// A part was moved to this clock, which differs from the old one.
     Moved(Handle, u8),
     Selected(u8),
-    /// The bit at the given clock is to be inverted.
+    /// The bit at this clock is to be inverted.
     Toggled(u8),
 }
 
-/// Drag in progress, kept between frames.
+/// A drag in progress, which is kept between UI frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Drag {
     handle: Handle,
     /// Clock at which the drag started.
     from: Option<u8>,
-    /// Target clock, or `None` if the drag was cancelled.
+    /// Clock to which the part is dragged, or `None` if the drag was cancelled.
     to: Option<u8>,
 }
 
-/// Draws the strip and returns the user's action. A second strip in one `Ui` needs its own id (`push_id`).
+/// Draws the strip and returns the action of the user. If a `Ui` contains two strips, each needs an id (`push_id`).
 pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
-    // The frame is drawn as it would become; the handles stay at their present places.
+    // The cells show the frame after the drag, while the handles stay at their present places.
     let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cells_of(frame)).unwrap_or_default();
@@ -143,7 +143,7 @@ impl StripContext<'_> {
         selected.filter(|_| turns && model.toggles).map(StripEvent::Toggled)
     }
 
-    /// Returns the accessible label of a cell, including its bit.
+    /// Returns the accessible label of a cell with its bit.
     fn says(&self, clock: u8) -> String {
         let words = self.theme.words(&strip::cell(self.shown, clock));
         match self.cell_state_at(clock) {
@@ -156,7 +156,7 @@ impl StripContext<'_> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
-    /// Returns the number of the bit at a clock, where 0 is the lowest.
+    /// Returns the number of the bit at a clock. The lowest bit has the number 0.
     fn number(&self, clock: u8) -> Option<u8> {
         let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
         match cell.role {
@@ -175,7 +175,7 @@ impl StripContext<'_> {
                 let rect = Rect::from_min_max(egui::pos2(cell.left(), self.rows.number(clock).y - 7.0), cell.max);
                 let response = ui.interact(rect, self.base.with("cell").with(clock), Sense::CLICK);
                 if response.clicked() {
-                    // The arrow keys continue from here.
+                    // The arrow keys then move the selection from this cell.
                     ui.memory_mut(|memory| memory.request_focus(self.base.with("cells")));
                     let is_bit = response.interact_pointer_pos().is_some_and(|pos| cell.contains(pos));
                     let turns = is_bit && model.toggles && model.frame.is_some();
@@ -217,7 +217,7 @@ fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Me
     own.min_by_key(|meaning| *meaning == Meaning::Warning)
 }
 
-/// Keeps the horizontal arrow keys from moving the focus away from the given widget.
+/// Reserves the left and right arrow keys for a widget, so they do not move the focus.
 fn reserve_arrow_keys(ui: &Ui, id: Id) {
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));

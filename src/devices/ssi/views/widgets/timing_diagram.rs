@@ -31,7 +31,7 @@ use place::{Bar, LabelExtent, LabelPlacement};
 pub(crate) struct TimingDiagram<'a> {
     pub(crate) label: &'a str,
     pub(crate) diagram: &'a Diagram,
-    /// Bits to display, right-justified, if known.
+    /// Right-justified bits to display, if known.
     pub(crate) frame: Option<u64>,
 }
 
@@ -147,7 +147,7 @@ impl Picture<'_> {
         self.theme.palette.muted.into()
     }
 
-    /// Draws the labels of moments and breaks, and a vertical line through all rows for each moment.
+    /// Draws the labels of moments and breaks, and a vertical line through all rows at each moment.
     fn draw_guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[LabelPlacement]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
@@ -163,7 +163,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The clock rests high.
+    /// Draws the clock line, which idles high.
     fn clock(&self, from: f32) {
         let row = self.rows.clock;
         let mut points = vec![pos2(from, row.min)];
@@ -178,8 +178,8 @@ impl Picture<'_> {
         self.painter.add(Shape::line(points, Stroke::new(1.5, self.theme.palette.text)));
     }
 
-    /// Draws the data line, which is high, carries the bits, stays low for tm, returns high, and carries the first bits
-    /// of the next burst.
+    /// Draws the data line. It is high, carries the bits, stays low for tm, returns high, and carries the first bits of
+    /// the next burst.
     fn data(&self, from: f32) {
         let diagram = self.model.diagram;
         let (row, stroke) = (self.rows.data, Stroke::new(1.5, self.theme.palette.text));
@@ -207,7 +207,6 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws a bit as a bus segment with slanted ends.
     fn bit(&self, (from, to): (f32, f32), ink: Color32, bit: Option<bool>) {
         let row = self.rows.data;
         let strength = if bit == Some(true) { 0.45 } else { 0.16 };
@@ -271,7 +270,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws each time as a bar with end marks, dashed between its earliest and latest end.
+    /// Draws each time as a bar with end marks. The bar is dashed between its minimum and its maximum end.
     fn bars(&self, words: &[Arc<Galley>], put: &[LabelPlacement]) {
         let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {

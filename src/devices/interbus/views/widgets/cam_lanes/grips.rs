@@ -1,4 +1,4 @@
-//! Handles in the lanes: edges, cams, and the space for new ones.
+//! Handles in the lanes for edges, cams and new cams.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
@@ -11,8 +11,8 @@ use crate::devices::interbus::state::cams::{DragTarget, Lane, Stretch, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl LanePainter<'_> {
-    /// Draws all handles and returns the user's action. Handles stay grabbable at the positions they had before the
-    /// drag.
+    /// Draws all handles and returns the action of the user. During a drag, the handles stay at their original
+    /// positions.
     pub(super) fn draw_handles(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
@@ -44,7 +44,7 @@ impl LanePainter<'_> {
         event.or(clicked)
     }
 
-    /// Handles dragging of a whole cam. The cam's widest section has the keyboard focus.
+    /// Handles a whole cam. If it has two sections, the wider one has the keyboard focus.
     fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let stretches = lane.stretches(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
@@ -124,8 +124,8 @@ impl LanePainter<'_> {
         event
     }
 
-    /// Returns an edge's grab area and drawing position. An invisible edge is placed at the end of its lane, for
-    /// keyboard use only.
+    /// Returns the area in which an edge can be grabbed, and its horizontal place. For an edge outside the view, the
+    /// area is at the end of the lane and only the keyboard uses it.
     fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
         let at = self.model.chart.edge(lane.cam, edge)?.min(chart.range);
@@ -165,12 +165,11 @@ impl LanePainter<'_> {
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }
 
-    /// Returns the minimum distance between grid lines, in steps.
     fn apart(&self) -> f64 {
         self.snap().apart.unwrap_or(1.0)
     }
 
-    /// Handles the pointer, and returns the drag preview or its result.
+    /// Handles a drag with the pointer and returns its preview or result.
     fn apply_drag(&self, response: &Response, hold: DragTarget, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;

@@ -9,9 +9,9 @@ use crate::devices::interbus::state::cams::{DragTarget, Lane, Tick, ticks, words
 use crate::devices::interbus::views::widgets::cam_chart::{Drag, display_colour};
 use crate::ui::widgets::{draw_hatching, focus_ring};
 
-/// Minimum distance between ruler numbers, in points.
+/// Minimum distance between two numbers of a ruler in points.
 const APART: f64 = 64.0;
-/// Width of the hatching at the end of the range.
+/// Width of the hatching at the end of a lane.
 const BEYOND: f32 = 14.0;
 /// Minimum width of a hollow bar.
 const NARROW: f32 = 6.0;
@@ -23,7 +23,6 @@ pub(super) struct Grip {
 }
 
 impl LanePainter<'_> {
-    /// Draws everything except the handles.
     pub(super) fn paint(&self, drag: Option<Drag>) {
         let (theme, place) = (self.theme, self.place);
         let painter = self.ui.painter();
@@ -46,7 +45,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws grid lines and numbers: steps above, machine units below.
+    /// Draws the grid lines and their numbers, with steps above the lanes and machine units below.
     fn draw_rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = APART * place.steps_per_point();
@@ -118,7 +117,6 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws arrows on a cam that wraps around the end of the range.
     fn draw_wrapped_part(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;
@@ -134,7 +132,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws the encoder position as a line through all lanes, with a marker in the ruler.
+    /// Draws the encoder position as a line through all lanes.
     fn position(&self) {
         let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
         let place = self.place;
@@ -165,7 +163,7 @@ impl LanePainter<'_> {
         self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
-    /// Draws the handle of an edge that is hovered over, focused or part of the selected cam.
+    /// Draws the handle of an edge.
     pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
         let lit = state.active || state.focused;
         let is_selected = self.model.selected == Some(cam) && self.model.movable;
@@ -188,7 +186,6 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws the ring around a cam that has the keyboard focus.
     pub(super) fn paint_focus(&self, cam: CamNumber) {
         let Some(lane) = self.shown.lane(cam) else { return };
         let painter = self.ui.painter();

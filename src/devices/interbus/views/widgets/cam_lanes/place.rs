@@ -7,22 +7,22 @@ use crate::devices::interbus::state::cams::{Stretch, VisibleRange};
 
 const RULER: f32 = 20.0;
 const LANE: f32 = 28.0;
-/// Maximum width of the lane headers.
+/// Maximum width of the heads in points.
 const HEAD: f32 = 208.0;
 const HEAD_PART: f32 = 0.34;
-/// Space to the right of the lanes, for half of a ruler number.
+/// Space to the right of the lanes for half of a ruler number.
 const BEHIND: f32 = 16.0;
-/// Width of an edge's grab area.
+/// Width of the area in which an edge can be grabbed.
 const GRIP: f32 = 9.0;
 
-/// Chart area with the lane headers on the left and the visible part of the range on the right.
+/// Areas of the chart. The heads are on the left, and the visible part of the range is on the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
     pub(super) head: Rect,
     pub(super) plot: Rect,
-    /// The ruler of steps.
+    /// Ruler in steps.
     pub(super) ruler: Rect,
-    /// Ruler in machine units; empty if the machine has none.
+    /// Ruler in machine units. It is empty if the unit is the step.
     pub(super) units: Rect,
     pub(super) view: VisibleRange,
 }
@@ -57,7 +57,7 @@ impl PlotArea {
         self.plot.left() + part as f32 * self.plot.width()
     }
 
-    /// Returns the position at `x`, which may lie outside the lanes.
+    /// Returns the position at `x`. It may be outside the lanes.
     pub(super) fn position(&self, x: f32) -> f64 {
         self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
     }
@@ -72,19 +72,19 @@ impl PlotArea {
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
     }
 
-    /// Returns the visible rectangle of a cam section in its lane, with a minimum width.
+    /// Returns the rectangle of a cam section in its lane, or `None` if it is not visible. It has a minimum width.
     pub(super) fn bar(&self, cam: CamNumber, stretch: Stretch) -> Option<Rect> {
         let (left, right) = (self.x(f64::from(stretch.first)), self.x(f64::from(stretch.last) + 1.0));
         if right < self.plot.left() || left > self.plot.right() {
             return None;
         }
         let bar = Rect::from_x_y_ranges(left..=right.max(left + 2.0), self.lane(cam).y_range());
-        // Far beyond the lanes nothing is drawn.
+        // The rectangle is limited to the lanes, since nothing is drawn far beyond them.
         Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP, 0.0))))
     }
 
-    /// Returns an edge's grab area, which lies inside its cam if the cam is wide enough, so that two adjoining edges
-    /// can be distinguished.
+    /// Returns the area in which an edge can be grabbed. If the cam is wide enough, most of the area is inside it,
+    /// which separates adjoining edges.
     pub(super) fn grip(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
         let inside = (width / 2.0).clamp(1.0, GRIP - 2.0);
         let (left, right) = if is_start { (x - GRIP + inside, x + inside) } else { (x - inside, x + GRIP - inside) };

@@ -1,4 +1,4 @@
-//! Handles of a bit strip for pointer and keyboard.
+//! Handles of a bit strip: input by pointer and keyboard.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
@@ -7,15 +7,15 @@ use super::rows::Rows;
 use super::{Drag, StripContext, StripEvent, paint, reserve_arrow_keys};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
-/// Offset of a handle's grab area from its edge.
+/// Distance in points of a handle's sensitive area from its edge.
 const BESIDE: f32 = 7.0;
 const WIDTH: f32 = 14.0;
-/// Space after the last clock.
+/// Width in points of the last handle's sensitive area after the last clock.
 const ROOM: f32 = 9.5;
-/// Offset of a handle's visible tab from its edge.
+/// Distance in points of a handle's visible tab from its edge.
 const TAB: f32 = 3.0;
 const SECOND_TAB: f32 = 8.0;
-/// Fraction at each end of a field that does not drag the field as a whole.
+/// Fraction of a field at each of its ends that does not drag the whole field.
 const ENDS: f32 = 0.25;
 
 pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
@@ -58,7 +58,7 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
     event
 }
 
-/// Returns a handle's id, which stays stable while zeros between turns and steps come and go.
+/// Returns the id of a handle. It stays the same if zeros appear or disappear between turns and steps.
 fn id(base: Id, handle: Handle) -> Id {
     let handle = if handle == Handle::TurnsEnd { Handle::Split } else { handle };
     base.with("handle").with(handle)
@@ -78,7 +78,7 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         let (first, last) = strip.position()?;
         let runs = rows.runs(first, last);
         let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
-        // Its ends belong to the boundaries there: it moves only by its middle.
+        // The ends of the field belong to its boundaries, so only its middle moves the position.
         let lane = Rows::lane(widest);
         let ends = (lane.width() * ENDS).max(WIDTH).min(lane.width() / 3.0);
         return Some(lane.shrink2(Vec2::new(ends, 0.0)));
@@ -86,11 +86,11 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let edge = edge(rows, strip, handle)?;
     let x = edge.center().x + side(handle) * if is_second_tab(strip, handle) { WIDTH } else { BESIDE };
     let (top, bottom) = match handle {
-        // Other boundaries may be on the same edge.
+        // Another boundary can be at the same edge.
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
         _ => (edge.top(), edge.bottom()),
     };
-    // The last one ends with the strip.
+    // The last handle ends with the strip.
     let right = if handle == Handle::FrameEnd { edge.center().x + ROOM } else { x + WIDTH / 2.0 };
     Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=right, top..=bottom))
 }
@@ -98,23 +98,23 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
     let clocks = strip.layout().clocks();
-    // Bits shifted out of the area are after the last clock.
+    // A boundary after bits that are shifted out would lie after the last clock.
     let clock = strip.clock(handle)?.min(clocks);
     Some(rows.edge(clock, begins, clocks))
 }
 
-/// Returns the offset of a boundary's tab from its edge.
+/// Returns the horizontal distance of a boundary's tab from its edge. Negative values are to the left.
 pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
     side(handle) * if is_second_tab(strip, handle) { SECOND_TAB } else { TAB }
 }
 
-/// Returns whether a handle's tab is set off as the second one at an edge. The boundary between turns and steps lies on
-/// the edge, and the handle for zeros beside it.
+/// Returns whether the tab of a handle is the second one at its edge. The boundary between turns and steps is closer to
+/// the edge than the handle for zeros between them.
 fn is_second_tab(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }
 
-/// Returns which side of its edge a boundary's field is on: -1 before, 1 after, 0 for both.
+/// Returns the side of the edge on which the field of a boundary lies: -1 before, 1 after, 0 on both sides.
 const fn side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
@@ -123,7 +123,7 @@ const fn side(handle: Handle) -> f32 {
     }
 }
 
-/// Handles pointer input: drags the handle to a target and reports its release.
+/// Handles a drag of a handle with the pointer, and its end.
 fn apply_drag(
     view: &StripContext<'_>,
     response: &Response,
@@ -165,7 +165,7 @@ fn apply_drag(
     to.map(|to| StripEvent::Preview(handle, to))
 }
 
-/// Handles keyboard input by moving the handle by one clock, or as far as possible.
+/// Handles the keys that move a handle by one clock or as far as possible.
 fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;

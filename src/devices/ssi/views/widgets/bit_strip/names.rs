@@ -1,5 +1,5 @@
-//! Field names below their brackets: centred if they fit, otherwise next to a line that leads to them, on as many lines
-//! as needed to separate them.
+//! Names of the fields below their brackets. A name is centred if it fits. Otherwise it is placed next to a leader
+//! line, on as many rows as needed.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -14,38 +14,38 @@ use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
 use crate::ui::{Theme, controls};
 
 pub(super) struct NameTag {
-    /// Index of the named field in the strip.
+    /// Index of the field in the strip.
     pub(super) field: usize,
     line: usize,
     level: usize,
-    /// Left edge, relative to the first cell of the line.
+    /// Left edge relative to the first cell of the line.
     left: f32,
-    /// Start of the leader line to the name, relative to the first cell of the line; `None` without a leader line.
+    /// Position of the leader line relative to the first cell of the line, or `None` without a leader line.
     leader: Option<f32>,
     galley: Arc<Galley>,
 }
 
 const APART: f32 = 6.0;
-/// Maximum width of a name. Longer names are truncated, and shown in full in the tooltip.
+/// Maximum width of a name. A longer name is truncated, and the tooltip shows it in full.
 const WIDEST: f32 = 160.0;
-/// Maximum number of rows of names before the last, which is the number of error bits in a frame.
+/// Maximum number of rows of names above the last one. It is the maximum number of error bits in a frame.
 const LEVELS: usize = 8;
 
-/// Name wider than its field.
+/// A name that is wider than its field.
 struct OverflowingName {
     index: usize,
     line: usize,
     x: f32,
-    /// Whether the names of both neighbours fit their fields.
+    /// Whether the names of both neighbours fit into their fields.
     alone: bool,
-    /// Whether the name starts at its leader line instead of ending there.
+    /// Whether the name starts at its leader line. Otherwise it ends there.
     begins: bool,
     room: f32,
     galley: Arc<Galley>,
 }
 
 impl OverflowingName {
-    /// Moves the name to a free spot beside the names already placed.
+    /// Places the name in a free space beside the names that are already placed.
     fn placed(self, tags: &[NameTag]) -> NameTag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
@@ -59,7 +59,7 @@ impl OverflowingName {
                 self.x + APART / 2.0 - width
             };
             let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
-            // If names cannot avoid the lines, they at least avoid each other.
+            // If a name cannot avoid leader lines, it avoids at least the other names.
             let apart = || (0..).find(|level| self.has_no_overlap(tags, left, *level));
             (left, free.or_else(apart).unwrap_or(LEVELS))
         };
@@ -67,15 +67,15 @@ impl OverflowingName {
         NameTag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
     }
 
-    /// Returns whether the name would overlap no other name at the given offset and level.
+    /// Returns whether the name does not overlap another name at this offset and level.
     fn has_no_overlap(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
         own.map(NameTag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
     }
 
-    /// Returns whether the name would overlap no other name, cross no leader line of a lower name, and have a clear
-    /// path for its own leader line.
+    /// Returns whether the name does not overlap another name, does not cross the leader line of a lower name, and has
+    /// a clear path for its own leader line.
     fn is_free(&self, tags: &[NameTag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
@@ -111,8 +111,8 @@ impl NameTag {
     }
 }
 
-/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has no position
-/// yet, because the line heights depend on the result.
+/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` is not placed yet,
+/// because the height of a line depends on the result.
 pub(super) fn name_tags(
     ui: &Ui,
     theme: &Theme,
@@ -153,8 +153,8 @@ pub(super) fn name_tags(
         OverflowingName { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
     let mut narrow: Vec<OverflowingName> = narrow.collect();
-    // Of several adjacent ones, each ends at its own line, so that the next one's passes it; at the start, where there is
-    // no space for that, each begins at its own, the last of them highest.
+    // Each of several adjacent names ends at its own leader line, which leaves space for the line of the next name. At
+    // the left end there is no space for this. There each name begins at its own line, and the last one is the highest.
     for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
         let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
         for own in group {
@@ -173,7 +173,7 @@ pub(super) fn name_tags(
     (tags, levels)
 }
 
-/// Returns how severely a meaning affects the position.
+/// Returns the verdict for the effect of a bit on the position.
 pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     match meaning {
         Meaning::Invalid => Verdict::Fault,

@@ -11,7 +11,7 @@ use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
 use crate::ui::widgets::{BitCell, focus_ring, series};
 use crate::ui::{Theme, controls};
 
-/// Returns the colour of a field; zeros are muted.
+/// Returns the colour of a field. Zeros have a muted colour.
 pub(crate) fn display_colour(theme: &Theme, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => theme.palette.muted.into(),
@@ -70,7 +70,7 @@ impl StripContext<'_> {
         painter.text(self.rows.number(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
     }
 
-    /// Draws the bracket below a field's cells, thick if the field can be moved as a whole.
+    /// Draws the bracket below the cells of a field. It is thick if the field can be moved as a whole.
     fn bracket(&self, field: &Field, lane: Rect) {
         let ink = display_colour(self.theme, field.kind);
         let is_moved = self.model.movable

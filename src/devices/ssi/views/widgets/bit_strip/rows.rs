@@ -1,4 +1,4 @@
-//! Layout of the cells in a bit strip: on one line if there is room, otherwise on lines of whole bytes.
+//! Arrangement of the cells in a bit strip: on one line if there is room, otherwise on lines of whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -10,18 +10,18 @@ const NUMBERS: f32 = 15.0;
 const CELL: f32 = 26.0;
 const LANE: f32 = 16.0;
 pub(super) const NAME: f32 = 15.0;
-/// Space at either side of the cells for the first and last handle.
+/// Space on either side of the cells for the first and the last handle.
 const MARGIN: f32 = 10.0;
 const GAP: f32 = 10.0;
 
-/// Cells from left to right and from line to line.
+/// Cells on one or more lines.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     origin: Pos2,
-    /// Cell width, including the gap after the cell.
+    /// Width of a cell with the gap after it.
     pub(super) cell: f32,
     columns: u8,
-    /// Top of each line, followed by the bottom of the last.
+    /// Top edge of each line, and the bottom edge of the last line.
     tops: Vec<f32>,
 }
 
@@ -31,7 +31,7 @@ impl Rows {
         let count = f32::from(clocks.max(1));
         if count * LEAST <= room {
             let cell = (room / count).floor().min(MOST);
-            // More clocks need space while the end of the frame is dragged.
+            // The line has room for more clocks, which appear while the end of the frame is dragged.
             let columns = (room / cell).floor().min(64.0) as u8;
             return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
         }
@@ -50,7 +50,7 @@ impl Rows {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
 
-    /// Places the rows at the given top left corner, with `names[line]` rows of labels below each line.
+    /// Places the rows at a top left corner. Below each line there is space for `names[line]` rows of names.
     pub(super) fn at(mut self, origin: Pos2, names: &[usize]) -> Self {
         self.origin = origin + Vec2::new(MARGIN, 0.0);
         let mut top = 0.0;
@@ -89,7 +89,7 @@ impl Rows {
         pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
     }
 
-    /// Returns the rectangles that cover a range of clocks, one per line.
+    /// Returns the rectangles that cover a range of clocks, one for each line.
     pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
@@ -106,8 +106,8 @@ impl Rows {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
     }
 
-    /// Returns the edge after a clock. If a part begins at that edge, it is drawn at the next clock's cell, which may
-    /// be on the next line.
+    /// Returns the edge after a clock. If a part begins there, the edge is at the cell of the next clock, which may be
+    /// on the next line.
     pub(super) fn edge(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
         let cell = self.cell(if begins { clock + 1 } else { clock });
@@ -121,7 +121,7 @@ impl Rows {
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8)
     }
 
-    /// Returns the clock under the pointer, or the nearest one in its line.
+    /// Returns the clock under the pointer, or the nearest one in the same line.
     pub(super) fn clock(&self, pos: Pos2, clocks: u8) -> u8 {
         let column = ((pos.x - self.origin.x) / self.cell).floor().clamp(0.0, f32::from(self.columns) - 1.0);
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8 + 1)

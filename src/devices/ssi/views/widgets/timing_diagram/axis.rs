@@ -1,4 +1,4 @@
-//! Conversion of times to coordinates: to scale within each section of the axis, with a gap at each break.
+//! Conversion between times and coordinates. Each section of the axis is to scale, and there is a gap at each break.
 
 use egui::Rangef;
 
@@ -10,7 +10,7 @@ pub(super) const BREAK: f32 = 24.0;
 pub(super) struct Axis {
     pieces: Vec<Piece>,
     left: f32,
-    /// Points per second.
+    /// Scale in points per second.
     scale: f64,
 }
 
@@ -22,8 +22,8 @@ impl Axis {
         Axis { pieces: pieces.to_vec(), left: room.min, scale }
     }
 
-    /// Returns the x coordinate of a time. Omitted times map to the middle of their break; times out of range, to the
-    /// nearest end.
+    /// Returns the x coordinate of a time. A time that is left out has the middle of its break, and a time outside the
+    /// axis has the nearest end.
     pub(super) fn x(&self, at: f64) -> f32 {
         let mut left = self.left;
         for (number, piece) in self.pieces.iter().enumerate() {
@@ -55,7 +55,7 @@ impl Axis {
         None
     }
 
-    /// Returns the x ranges of the breaks, from left to right.
+    /// Returns the x ranges of the breaks from left to right.
     pub(super) fn breaks(&self) -> Vec<Rangef> {
         let ends = self.pieces.iter().map(|piece| self.x(piece.to));
         let ends: Vec<f32> = ends.collect();

@@ -1,4 +1,5 @@
-//! Placement of labels without overlaps: labels of moments above their lines, labels of times next to theirs.
+//! Placement of labels without overlaps. The labels of moments are above their lines, and those of times are next to
+//! their bars.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LabelExtent {
@@ -15,8 +16,8 @@ pub(super) struct LabelPlacement {
 /// Minimum distance between labels, and between a label and a line.
 const APART: f32 = 6.0;
 
-/// Places the labels of moments on as few lines as possible, so that no label overlaps another or crosses the line of a
-/// higher one. Labels that cannot be separated get lines of their own.
+/// Places the labels of moments on as few rows as possible. No label overlaps another one or crosses the line of a
+/// higher label. If this is impossible, each label has a row.
 pub(super) fn flags(flags: &[LabelExtent], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     for levels in 1..=flags.len() {
         let mut put = Vec::new();
@@ -28,7 +29,7 @@ pub(super) fn flags(flags: &[LabelExtent], (from, to): (f32, f32)) -> Vec<LabelP
     flags.iter().enumerate().map(|(level, flag)| LabelPlacement { level, left: left(flag) }).collect()
 }
 
-/// Places the remaining labels and returns whether all of them fit.
+/// Places the remaining labels, and returns whether all of them fit.
 fn fill(flags: &[LabelExtent], (from, to): (f32, f32), levels: usize, put: &mut Vec<LabelPlacement>) -> bool {
     let Some(flag) = flags.get(put.len()) else { return true };
     let right = flag.x + APART;
@@ -69,7 +70,7 @@ pub(super) struct Bar {
     pub(super) width: f32,
 }
 
-/// Places times on lanes. Each label starts within its bar if it fits, otherwise beside it.
+/// Places the bars of times on lanes. A label starts within its bar if it fits, otherwise beside it.
 pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<LabelPlacement> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
