@@ -133,7 +133,7 @@ fn layouts_of_recorded_frames_are_found() {
     let hex = |(frame, _): &(String, Option<u64>)| format!("0x{:X},17\n", u64::from_str_radix(frame, 2).unwrap());
     let hex = bench.write("hex.csv", rows.iter().map(hex).collect::<String>());
     let found = bench.run(&["ssi", "find", &hex, "--clocks", "9"]);
-    assert!(found.out.contains("steps=360") && found.out.contains("explains every bit"), "{found:?}");
+    assert!(found.out.contains("steps=360") && found.out.contains("accounts for every bit"), "{found:?}");
     let guessed = bench.run(&["ssi", "find", &hex]);
     assert!(guessed.err.contains("9 was assumed"), "{guessed:?}");
     // Recordings without information.

@@ -65,7 +65,10 @@ fn golden_words_and_process_data_are_explained() {
             &["A6 20 00 00 02 00 00 00", "--direction", "in"],
             &["parameter 166 (maximum speed of drive 1) is no value (4 bytes where its type has 2: 0x2)"],
         ),
-        (&["10 03 20 65 24 01 30 BA 0A"], &["parameter 186", "a value of 1 bytes instead of 2: 0A"]),
+        (
+            &["10 03 20 65 24 01 30 BA 0A"],
+            &["parameter 186", "the value has the wrong length (bytes received: 1, expected: 2): 0A"],
+        ),
     ];
     for (arguments, words) in cases {
         let ran = bench.run(&[&["decode", "hiperdrive"], arguments].concat());
@@ -176,9 +179,9 @@ fn illegal_and_invalid_words_are_refused() {
         (&["hiperdrive", "01 02 03"], &["8, 16, 32, 40, 64 or 72 bytes, not 3", "0439"]),
         (&["hiperdrive", "01"], &["not 1)"]),
         (&["ethernet-ip", "01 02 03"], &["no frame, no cyclic packet and no CIP message"]),
-        // A byte of the message is missing; a list of items is cut off.
+        // A byte of the message is missing; a list of items is incomplete.
         (&["ethernet-ip", &format!("65 00 04 00 {} 01 00 00", "00 ".repeat(20))], &["cut off", "27 bytes"]),
-        (&["ethernet-ip", &format!("63 00 04 00 {} 01 00 0C 00", "00 ".repeat(20))], &["list of items is cut off"]),
+        (&["ethernet-ip", &format!("63 00 04 00 {} 01 00 0C 00", "00 ".repeat(20))], &["list of items is incomplete"]),
     ];
     for (arguments, words) in failing {
         bench.run(&[&["decode"], arguments].concat()).fails(1, words);

@@ -163,7 +163,7 @@ fn an_invalid_or_foreign_profile_is_refused() {
     let file = with("(program: 9, mask: 1)");
     bench
         .run(&["verify", &file, "--link", "sim:"])
-        .fails(1, &["programs[0].program", "program 9 is not within 1 to 8"]);
+        .fails(1, &["programs[0].program", "program 9 is outside the range 1 to 8"]);
     let file = with("(program: 1, mask: 1, cams: [(cam: 0, start: 3600, stop: 1)])");
     bench
         .run(&["restore", &file, "--link", "sim:?steps=3600&revolutions=1", "--yes"])

@@ -145,7 +145,7 @@ fn a_complete_run_stores_the_offset_in_the_encoder() {
     let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
     report.iter().for_each(texts::check);
     let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal_text).collect();
-    assert!(english.iter().any(|line| line == "Limits: 2.50 A for 30.0 s"), "{english:?}");
+    assert!(english.iter().any(|line| line == "Current limit: 2.50 A, time limit: 30.0 s"), "{english:?}");
     assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
 }
 

@@ -117,7 +117,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert_eq!(unit(&desk).session.cycles, Some(0));
     let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
-        told.contains("5 of 5 parameters have their previous values") && words::differences(&seen(&desk)).is_none(),
+        told.contains("have their previous value again: 5 of 5") && words::differences(&seen(&desk)).is_none(),
         "{told}"
     );
     let report = unit(&desk).axis_report(Language::English).unwrap();
@@ -340,7 +340,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
         "drive 3 (",
         "10. Power-cycle check: done",
         "The drive has restarted",
-        "All values that can be saved are saved",
+        "All values that the device can save have been saved",
     ] {
         assert!(has(part), "{part}: {report}");
     }

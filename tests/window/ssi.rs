@@ -186,7 +186,7 @@ fn exports_are_in_the_language_of_the_window() {
     for line in [
         "SSI-Einstellungen: ahm36,code=gray",
         "Telegrammlänge                  27 Bits",
-        "Monoflopzeit (tm)               15 bis 25 µs; die Pause muss länger sein",
+        "Monoflopzeit (tm)               15 bis 25 µs (die Pause muss länger sein)",
         "  Codeart                         Gray",
         "  Bitnummer LSB der Position      1",
         "  :06 SSI coding                  1 (Gray)",

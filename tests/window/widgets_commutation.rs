@@ -64,10 +64,10 @@ fn the_page_works_by_clicks_and_keys() {
     screen.check_language();
     assert!(!screen.is_enabled("commutation.store") && screen.shows("Create a new data field under Memory"));
     screen.fill("commutation.address", "0");
-    assert!(screen.shows("would overwrite \"EMD71K-4 3000rpm\""), "before anything is put there");
+    assert!(screen.shows("would overwrite their content, \"EMD71K-4 3000rpm\""), "before anything is put there");
     screen.click("commutation.store");
     assert!(screen.encoder().staged.is_edited(0, 0));
-    assert!(screen.shows("would overwrite \"EMD71K-4 3000rpm\""), "and until it is written");
+    assert!(screen.shows("would overwrite their content, \"EMD71K-4 3000rpm\""), "and until it is written");
     screen.click("commutation.review");
     assert!(screen.encoder().session.review.is_some(), "the usual review writes it");
     screen.act(Action::SetLanguage(Language::German));

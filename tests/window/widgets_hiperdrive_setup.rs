@@ -111,7 +111,7 @@ fn axis_setup_names_missing_steps_in_the_language() {
     let mut screen = page("sim:?requested=0", "page.axis");
     screen.check_language();
     screen.click("hd_axis.begin");
-    assert!(!screen.is_enabled("hd_axis.next") && screen.shows("Request the drive first."));
+    assert!(!screen.is_enabled("hd_axis.next") && screen.shows("Request the drive first (parameter 152 = 1)."));
     assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), AxisStep::Request);
     for language in [Language::German, Language::English] {
         screen.act(Action::SetLanguage(language));

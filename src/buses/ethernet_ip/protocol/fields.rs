@@ -32,13 +32,13 @@ pub enum Structure {
     ForwardCloseReply,
     #[error("the list of items")]
     Items,
-    #[error("the null address")]
+    #[error("the null address item")]
     NullAddress,
-    #[error("the connected address")]
+    #[error("the connected address item")]
     ConnectedAddress,
-    #[error("the sequenced address")]
+    #[error("the sequenced address item")]
     SequencedAddress,
-    #[error("the socket address")]
+    #[error("the socket address item")]
     SocketAddress,
     #[error("the encapsulation frame")]
     Encapsulation,
@@ -58,7 +58,7 @@ pub enum PacketField {
     Length,
     #[error("list of items")]
     Items,
-    #[error("the byte before a wide number")]
+    #[error("pad byte before a 16-bit number")]
     WidePrefix,
     #[error("connection time-out multiplier")]
     TimeoutMultiplier,
@@ -68,7 +68,7 @@ pub enum PacketField {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
     /// The bytes end prematurely.
-    #[error("{what} is cut off after {got} bytes")]
+    #[error("{what} is incomplete (bytes received: {got})")]
     Short {
         /// The structure being parsed.
         what: Structure,
@@ -76,7 +76,7 @@ pub enum PacketError {
         got: usize,
     },
     /// Extra bytes remain after the structure.
-    #[error("{what} has {left} extra bytes")]
+    #[error("{what} is too long (extra bytes: {left})")]
     Long {
         /// The structure being parsed.
         what: Structure,
@@ -84,7 +84,7 @@ pub enum PacketError {
         left: usize,
     },
     /// The value of a field is invalid.
-    #[error("{what}: {field} cannot be 0x{got:X}")]
+    #[error("{what} contains an invalid value ({field}: 0x{got:X})")]
     Value {
         /// The structure being parsed.
         what: Structure,

@@ -1,4 +1,4 @@
-//! Errors of an encoder, with the facts that a message requires.
+//! Errors of an encoder, with the details for their messages.
 
 use std::fmt;
 
@@ -47,7 +47,7 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// Whether the adapter could supply the encoder but was not told to do so.
+        /// Whether the adapter can supply the encoder, but was not asked to.
         supply_off: bool,
     },
     #[error("the data line stays low (attempts: {tries})")]
@@ -78,7 +78,7 @@ pub enum Error {
         /// Actual value of the register, if the connection reveals it.
         reads: Option<u8>,
     },
-    /// It is unknown whether a value was accepted, because reading the register back is not possible or shows nothing.
+    /// It is unknown whether the value was accepted. The register cannot be read back, or its value proves nothing.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -88,13 +88,13 @@ pub enum Error {
     },
     #[error("cancelled")]
     Cancelled,
-    /// With neither byte order of the register number does the encoder send a reply that the manual defines.
+    /// The byte order of register numbers is unknown. The reply of the encoder is not defined for either order.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown { answer: u8 },
     /// The position has more bits than the encoder's known frame.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
-        /// As received.
+        /// Position word as received.
         word: u64,
         multiturn: u8,
         singleturn: u8,
@@ -102,15 +102,14 @@ pub enum Error {
     /// The registers extend beyond the last address.
     #[error("{count} registers from {start} on are more than there can be")]
     OutOfRange { start: RegisterAddress, count: usize },
-    /// There is no description for this encoder, and no general one either.
+    /// No description applies to this encoder, and there is no general description.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
     #[error("the encoder was not identified")]
     NotIdentified,
     #[error("the shaft moves")]
     Moving {
-        /// Speed in revolutions per minute, positive clockwise, or `None` if the encoder counts too few turns to
-        /// determine it.
+        /// Speed in revolutions per minute, positive clockwise. `None` if the encoder counts too few turns.
         rpm: Option<f64>,
     },
     /// The encoder is in a device mode in which its registers may show values that were never saved.
@@ -123,7 +122,7 @@ pub enum Error {
     /// The adapter reports a frame status that the bridge protocol does not define.
     #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
     FrameStatus {
-        /// The status byte.
+        /// Status byte from the adapter.
         status: u8,
     },
     #[error(transparent)]
@@ -143,7 +142,7 @@ impl Error {
     }
 }
 
-/// Returns the register of a request over the configuration pin, or the bank selection if the number names none.
+/// Returns the register with a global number. Returns the bank selection register if the number is too large.
 pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
@@ -151,20 +150,20 @@ pub(super) fn requested_register(number: u16) -> RegisterAddress {
 /// Returns the registers as an array of the requested size.
 ///
 /// # Errors
-/// [`Error::TooFew`] if their number differs.
+/// Returns [`Error::TooFew`] if the number of registers differs.
 pub(super) fn to_register_array<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
     bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    #[error("bytes without a complete frame: {bytes}")]
+    #[error("no complete frame in the received bytes (number of bytes: {bytes})")]
     NoFrame { bytes: usize },
     /// The frame is not a reply to the request.
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// The reply arrived before the echo, or the echo was altered.
-    #[error("no correct echo before the reply")]
+    #[error("the adapter's echo before the reply was missing or wrong")]
     Echo,
     /// The received frame is invalid.
     #[error(transparent)]
@@ -198,7 +197,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the encoder cannot be reached, so that further attempts are useless.
+    /// Returns whether the encoder cannot be reached, which makes further attempts useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_)

@@ -7,15 +7,15 @@ pub enum EntryError {
     #[error("bank 0x{0:02X} appears twice")]
     Twice(u8),
     /// The bank range ends before it begins.
-    #[error("0x{first:02X} comes after 0x{last:02X}")]
+    #[error("the first bank 0x{first:02X} comes after the last bank 0x{last:02X}")]
     Order {
         /// First bank of the range.
         first: u8,
         /// Last bank of the range.
         last: u8,
     },
-    /// The bank is outside its area.
-    #[error("0x{bank:02X} is not within 0x{first:02X} to 0x{last:02X}")]
+    /// The bank does not belong to its area.
+    #[error("bank 0x{bank:02X} is outside the range 0x{first:02X} to 0x{last:02X}")]
     Outside {
         /// Number of the bank.
         bank: u8,
@@ -33,9 +33,9 @@ pub enum EntryError {
         expected: usize,
     },
     /// The string is not a firmware release.
-    #[error("{0:?} is not of the form 1.6.0")]
+    #[error("{0:?} is not a version number such as 1.6.0")]
     Release(String),
     /// The string does not name an item that can be marked.
-    #[error("{0:?} is neither calibration nor of the form 0x24:0x10+3")]
+    #[error("{0:?} is neither \"calibration\" nor a register range such as 0x24:0x10+3")]
     Marked(String),
 }

@@ -1,5 +1,6 @@
-//! Single-cycle data, which an encoder sends in every cycle: multiturn, singleturn, error and warning bit (both active
-//! low), and checksum, most significant bit first (manual 3.1.1, figure 2). The field widths depend on the encoder.
+//! Single-cycle data, which an encoder sends in every cycle. A frame contains multiturn, singleturn, error bit, warning
+//! bit and checksum, most significant bit first. The error and warning bits are active low. The field widths depend on
+//! the encoder. See manual 3.1.1, figure 2.
 
 use super::crc::{Crc, CrcError};
 
@@ -13,7 +14,7 @@ pub struct Layout {
     crc: Option<Crc>,
 }
 
-/// Reason why a layout is invalid.
+/// The reason why a layout is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// The field is wider than 32 bits.
@@ -25,10 +26,10 @@ pub enum LayoutError {
         bits: u8,
     },
     /// The layout contains no position bits.
-    #[error("multiturn and singleturn must have at least one bit together")]
+    #[error("multiturn and singleturn together must have at least one bit")]
     Empty,
     /// The frame, including the checksum, is longer than 64 bits.
-    #[error("the frame must have at most 64 bits with its CRC, not {0}")]
+    #[error("the frame including its CRC must have at most 64 bits, not {0}")]
     Long(u32),
     /// The CRC parameters are invalid.
     #[error(transparent)]
@@ -43,17 +44,17 @@ pub struct PositionData {
     /// Position within the revolution, in steps. The number of steps per revolution is 2 to the power of the layout's
     /// singleturn bits.
     pub singleturn: u32,
-    /// Whether the encoder reports that the position is invalid (the bit on the line is 0).
+    /// Whether the encoder reports that the position is invalid. The bit on the line is then 0.
     pub error: bool,
-    /// Whether the encoder reports a warning (the bit on the line is 0); the position remains valid.
+    /// Whether the encoder reports a warning. The bit on the line is then 0, and the position remains valid.
     pub warning: bool,
 }
 
-/// Reason why received bits are not a valid frame.
+/// The reason why received bits are not a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// All bits are 0, which is not a valid frame in this layout: no encoder, a short circuit, or an encoder that is
-    /// not ready.
+    /// All bits are 0, which is not a valid frame in this layout. There is no encoder, the line is short-circuited, or
+    /// the encoder is not ready.
     #[error("the data line stays low")]
     StuckLow,
     /// All bits are 1, which is not a valid frame in this layout. There is no encoder or a wire is broken.
@@ -80,8 +81,8 @@ impl Layout {
     /// warning bit.
     ///
     /// # Errors
-    /// [`LayoutError`] if a field is wider than 32 bits, the frame is longer than 64 bits, or the layout is otherwise
-    /// invalid.
+    /// Returns a [`LayoutError`] if a field is wider than 32 bits, the frame is longer than 64 bits, or the layout is
+    /// otherwise invalid.
     pub fn new(
         multiturn_bits: u8,
         singleturn_bits: u8,
@@ -145,7 +146,7 @@ impl Layout {
     /// Parses a right-justified frame, with the last received bit in bit 0.
     ///
     /// # Errors
-    /// [`FrameError`]; a stuck line is distinguished from a wrong checksum.
+    /// Returns a [`FrameError`], which distinguishes a stuck line from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = low_bits_mask(self.bits());
         if raw & !whole != 0 {
@@ -182,7 +183,7 @@ impl Layout {
         }
     }
 
-    /// Returns the angle within the revolution in degrees, from 0 up to but not including 360.
+    /// Returns the angle within the revolution in degrees, at least 0 and less than 360.
     pub fn degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
@@ -209,15 +210,15 @@ impl Layout {
 }
 
 impl Default for Layout {
-    /// Returns the layout of the kit encoder, with 16 + 17 position bits, an error bit, a warning bit and the inverted
-    /// CRC6 43h.
+    /// Returns the layout of the kit encoder: 16 multiturn bits, 17 singleturn bits, error bit, warning bit and
+    /// inverted CRC6 43h.
     fn default() -> Self {
         let crc = Crc::new(Crc::POSITION, 0, true).ok();
         Layout { multiturn_bits: 16, singleturn_bits: 17, error_bit: true, warning_bit: true, crc }
     }
 }
 
-/// Returns a mask with the lowest `bits` bits set, 0 to 64.
+/// Returns a mask of the lowest bits. `bits` is their number, 0 to 64.
 const fn low_bits_mask(bits: u8) -> u64 {
     match bits {
         0 => 0,

@@ -1,5 +1,5 @@
-//! Decoded register values as labels: by the register's description, with special handling for registers with a role
-//! and for the data sheet.
+//! Labels for decoded register values. They follow the description of the register, except for the data sheet and for
+//! registers with a role.
 
 use super::encoder::Encoder;
 use super::table::RegisterEntry;
@@ -12,7 +12,8 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// Returns the meaning of a register, or `None` if the register was not read or its number explains itself.
+    /// Returns the meaning of a register. Returns `None` if the register was not read or its number needs no
+    /// explanation.
     pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
@@ -140,10 +141,10 @@ mod tests {
             ("0x7E", "Fr", "Fr"),
             ("0x00:0x09", "5.3 V", "5,3 V"),
             ("0x02:0x01", "2 banks", "2 Bänke"),
-            ("0x02:0x05", "unit not published", "Einheit nicht veröffentlicht"),
+            ("0x02:0x05", "unit not documented", "Einheit nicht dokumentiert"),
             ("0x02:0x11", "1 slave address", "1 Slave-Adresse"),
             ("0x02:0x17", "0x43", "0x43"),
-            ("0x02:0x3F", "checksum fits", "Prüfsumme stimmt"),
+            ("0x02:0x3F", "checksum correct", "Prüfsumme stimmt"),
             ("0x03:0x04", "error, active low", "Fehler, aktiv 0"),
             ("0x03:0x30", "-40 °C", "-40 °C"),
             ("0x03:0x2C", "12000 1/min", "12000 1/min"),

@@ -16,17 +16,18 @@ pub enum EntryError {
     #[error(transparent)]
     Marked(#[from] ItemError),
     /// The marked item is not a setting.
-    #[error("{0} is not saved and does not belong to the mounting")]
+    #[error("{0} is not saved by the device and cannot be listed under \"mounting\"")]
     NoMounting(Item),
     /// The parameter is not a setting.
-    #[error("{name} is not saved by the device and is not part of a profile", name = .0.name())]
+    #[error("{name} is not saved by the device and cannot be part of a profile", name = .0.name())]
     NotKept(Item),
     /// The device has no parameter with this number.
     #[error("parameter {0} does not exist")]
     NoParameter(String),
     /// Drives have no parameter with this number.
     #[error(
-        "drives have no parameter {number}; give those of drive {drive} with the numbers of drive 1, 100 to 199",
+        "drives have no parameter {number}; specify the parameters of drive {drive} with the numbers of drive 1 (100 to \
+         199)",
         drive = .drive.get()
     )]
     NoParameterOfDrive {

@@ -13,7 +13,7 @@ pub struct Item(pub ParameterNumber);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
     /// The string does not have the form of a parameter name.
-    #[error("{0:?} is not a parameter: give a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
+    #[error("{0:?} is not a parameter; enter a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
     Unknown(String),
     /// The manual does not list a parameter with this number.
     #[error("parameter {0} does not exist")]
@@ -44,7 +44,7 @@ impl Item {
             Some(drive) => {
                 let no_drive = ItemError::NoDrive { number, drive };
                 let drive = DriveNumber::new(drive).ok_or_else(|| no_drive.clone())?;
-                // 258 already names drive 2.
+                // A number such as 258 already names drive 2.
                 match own.drive() {
                     Some(named) if named == drive => own,
                     Some(DriveNumber::FIRST) => ParameterNumber::for_drive(number, drive).ok_or(no_drive)?,

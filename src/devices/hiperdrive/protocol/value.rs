@@ -1,4 +1,4 @@
-//! Parameter values in CIP: numbers of the length of their type, and strings (reference 7).
+//! Parameter values in CIP: strings, and numbers whose length depends on their type (reference 7).
 
 /// Type of a parameter value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,7 +32,7 @@ pub enum Value {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
     /// The length does not match the type.
-    #[error("a value of {got} bytes instead of {expected}")]
+    #[error("the value has the wrong length (bytes received: {got}, expected: {expected})")]
     Length {
         /// Required length in bytes.
         expected: usize,
@@ -50,10 +50,10 @@ pub enum ValueError {
         high: i64,
     },
     /// A number was given for a string parameter.
-    #[error("a text is expected, not a number")]
+    #[error("the value must be text, not a number")]
     NumberForText,
     /// A string was given for a numeric parameter.
-    #[error("a number is expected, not a text")]
+    #[error("the value must be a number, not text")]
     TextForNumber,
 }
 
@@ -82,8 +82,8 @@ impl Kind {
         Some(limits)
     }
 
-    /// Parses a value. A string may consist of characters only or be preceded by its length (`U`); trailing zeros and
-    /// blanks are removed, and non-ASCII bytes become question marks.
+    /// Parses a value. A string may be preceded by its length (`U`). Trailing zeros and blanks are removed, and
+    /// non-ASCII bytes become question marks.
     ///
     /// # Errors
     /// Returns [`ValueError::Length`] if the data of a number have the wrong length.
@@ -121,8 +121,8 @@ impl Kind {
     }
 }
 
-/// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. The number is one if the
-/// value is preceded by an `A`, because it is then in tenths (manual 6.2).
+/// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. A value preceded by an
+/// `A` is in tenths and has one decimal (manual 6.2).
 pub fn nominal_value(text: &str) -> Option<(f64, usize)> {
     let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));
     digits.parse::<u32>().ok().map(|number| (f64::from(number) / by, decimals))

@@ -42,8 +42,8 @@ pub enum Attempt {
 impl fmt::Display for Attempt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Attempt::Listening => f.write_str("listening"),
-            Attempt::DefaultWindow => f.write_str("waiting for power-on"),
+            Attempt::Listening => f.write_str("listening to the bus"),
+            Attempt::DefaultWindow => f.write_str("waiting for the encoder to be switched on"),
             Attempt::Probing { address, format } => write!(f, "{address:02X}h at {format}"),
         }
     }

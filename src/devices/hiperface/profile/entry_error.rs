@@ -10,13 +10,13 @@ pub enum EntryError {
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
     /// A field that could not be read has content.
-    #[error("a locked field has no bytes")]
+    #[error("the bytes of a locked field must not be specified")]
     Locked,
     /// A readable field has no content.
-    #[error("missing; a field without bytes has locked: true")]
+    #[error("the bytes are missing; a field without bytes must have locked: true")]
     NotLocked,
     /// The number of bytes differs from the size of the field.
-    #[error("{got} bytes, but the status gives {expected}")]
+    #[error("the field has {got} bytes, but its status specifies {expected}")]
     Size {
         /// Number of bytes in the profile.
         got: usize,

@@ -20,13 +20,13 @@ pub struct Frame<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// The frame has fewer than the minimum of three bytes.
-    #[error("{got} bytes are too few for a frame")]
+    #[error("too few bytes for a frame ({got})")]
     Short {
         /// Received length in bytes.
         got: usize,
     },
     /// The last byte is not the XOR of all other bytes.
-    #[error("checksum {got:02X} where {expected:02X} was expected")]
+    #[error("checksum {got:02X} instead of {expected:02X}")]
     Checksum {
         /// Checksum calculated over the received bytes.
         expected: u8,

@@ -61,11 +61,11 @@ mod tests {
                 ("DATA −", &["RS-485"]),
             ],
         );
-        check_notes(&TEXTS, &NOTES, &["130 Ω and 1 kΩ pull-up and pull-down resistors built in"]);
+        check_notes(&TEXTS, &NOTES, &["130 Ω terminating resistor and 1 kΩ pull-up and pull-down resistors"]);
         check_notes(
             &TEXTS,
             &NOTES,
-            &["BUS version (up to 8 encoders): no built-in 130 Ω resistor", "farthest from the controller"],
+            &["BUS version (up to 8 encoders): the encoders contain no 130 Ω resistor", "farthest from the controller"],
         );
         check_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
     }

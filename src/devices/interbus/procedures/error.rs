@@ -1,4 +1,4 @@
-//! Errors of an encoder behind a gateway, with the facts that a message requires.
+//! Errors of an encoder behind a gateway.
 
 use std::fmt;
 
@@ -10,11 +10,11 @@ use crate::profile::DeviceError;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
-    /// Read of the IN word: two input registers, function 4.
+    /// Read of the IN word from two input registers with function 4.
     Input { register: u16 },
-    /// Read of the OUT word stored in the gateway: two holding registers, function 3.
+    /// Read of the OUT word from two holding registers with function 3.
     Output { register: u16 },
-    /// Write of an OUT word: two holding registers, function 16.
+    /// Write of an OUT word to two holding registers with function 16.
     Write { register: u16, word: u32 },
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// An exception code with which a gateway refuses a request (Modbus application protocol 1.1b3, chapter 7).
+/// An exception code with which a gateway refuses a request. See *MODBUS application protocol* 1.1b3, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exception(u8);
 
@@ -76,7 +76,7 @@ impl Exception {
         }
     }
 
-    /// Returns the most likely cause and a remedy.
+    /// Returns the most likely cause of the exception and a remedy.
     pub const fn cause(self) -> &'static str {
         match self.0 {
             0x01 => "the gateway does not have this function: check that its outputs are holding registers",
@@ -93,7 +93,7 @@ impl Exception {
         }
     }
 
-    /// Returns whether repeating the request may help.
+    /// Returns whether the request may succeed if it is repeated.
     pub(super) const fn passes(self) -> bool {
         !matches!(self.0, 1..=3)
     }
@@ -102,14 +102,14 @@ impl Exception {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// The received bytes are not a Modbus/TCP frame.
-    #[error("{bytes} bytes that are not a Modbus/TCP frame")]
+    #[error("the received bytes are not a Modbus/TCP frame (number of bytes: {bytes})")]
     NoFrame { bytes: usize },
-    #[error("a reply from unit {got} instead of {requested}")]
+    #[error("the reply is from unit {got} instead of {requested}")]
     Unit { requested: u8, got: u8 },
-    #[error("a reply to function {got} instead of {requested}")]
+    #[error("the reply is to function {got} instead of {requested}")]
     Function { requested: u8, got: u8 },
-    /// The reply covers registers other than those requested, or a different number of them.
-    #[error("not the registers that were requested")]
+    /// The reply covers other registers than the request or a different number of them.
+    #[error("the reply does not contain the requested registers")]
     Registers,
 }
 
@@ -117,7 +117,7 @@ pub enum Damage {
 pub enum ExpectedWord {
     Echo,
     Value,
-    /// A word sent during operation: a position, a speed, or cam outputs.
+    /// A word of a running encoder, which is a position, a speed or cam outputs.
     Run,
     /// The position equals the preset.
     Preset,
@@ -140,7 +140,7 @@ pub enum ImplausibleValue {
     Gear(#[from] GearError),
     #[error("{0} is not a direction")]
     Direction(u32),
-    /// A preset, edge or shift is out of range.
+    /// A preset, a cam edge or a shift exceeds its range.
     #[error("{value} for OUT {read:08X} is too large")]
     Value { read: u32, value: u32 },
 }
@@ -155,17 +155,17 @@ pub enum Error {
     Damaged {
         requested: RequestedItem,
         tries: u32,
-        /// Damage found in the last reply received.
+        /// Damage of the last reply.
         cause: Damage,
     },
-    /// Bytes keep arriving during the required silence.
+    /// The gateway keeps sending although the line must be silent.
     #[error("the gateway sends data that was not requested")]
     NeverSilent,
     #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception { requested: RequestedItem, exception: Exception },
     #[error("cancelled")]
     Cancelled,
-    /// The word was not sent, because the encoder would interpret it as another command in its present mode.
+    /// The word was not sent. In its present mode, the encoder would interpret it as another command.
     #[error(transparent)]
     Illegal(#[from] Refused),
     /// The encoder refused the command with an error word.
@@ -173,25 +173,25 @@ pub enum Error {
     Refused { sent: Command, error: ErrorWord },
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
-    /// The encoder did not react to a word within the handshake time.
+    /// The encoder did not react to a word within the time limit of the handshake.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", unexpected_echo_note(*input))]
     TimeOut {
         awaited: ExpectedWord,
         sent: u32,
         input: u32,
-        /// Time waited, in milliseconds.
+        /// Time limit in milliseconds.
         milliseconds: u64,
     },
     #[error("another master writes to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
     OtherMaster { sent: u32, output: u32 },
-    /// The encoder is being parameterised, but not by this program: a write was interrupted, or another master is
+    /// The encoder is being parameterised, but not by this program. Either a write was interrupted or another master is
     /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
-    /// IN words are meaningful only with their halves exchanged.
+    /// The IN word is only meaningful after an exchange of its halves.
     #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
     WordOrder {
-        /// The word in the order in which it was received.
+        /// The word as received.
         input: u32,
         swapped: u32,
     },
@@ -202,22 +202,22 @@ pub enum Error {
     NoMode { wanted: StartupMode, is: StartupMode },
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
-    /// The encoder is in a mode that the manual does not define, so the effect of any word other than a read-out is
-    /// unknown.
+    /// The encoder is in a mode that the manual does not define. Only read-outs were sent, since the effect of other
+    /// words is unknown.
     #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
-    /// The shaft is turning, but must stand still.
+    /// The shaft is turning although it must stand still.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving { from: u32, to: u32 },
-    /// A written value differs when read back.
+    /// A value differs from the written one when it is read back.
     #[error("{item} is {reads} after {wanted} was written")]
     NotTaken { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
-    /// The work ended early, and the encoder could not be returned to its mode.
+    /// The encoder could not be returned to its mode after the job.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {
-        /// The error of the work. If the work succeeded, the reason why the encoder could not be returned to its mode.
+        /// The error of the job. If the job succeeded, this is the error that prevented the return to the mode.
         cause: Box<Error>,
         standing: LeftState,
     },
@@ -251,7 +251,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the gateway can no longer be reached, so that further attempts are useless.
+    /// Returns whether the gateway cannot be reached any more, which makes further attempts useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,

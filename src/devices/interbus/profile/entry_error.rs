@@ -1,4 +1,4 @@
-//! Reasons why an INTERBUS profile is refused.
+//! Errors in the entries of an INTERBUS profile.
 
 use super::item::{Item, ItemError};
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
@@ -12,10 +12,10 @@ pub enum EntryError {
     /// The cam occurs twice in its program.
     #[error("cam {} appears twice", .0.get())]
     CamTwice(CamNumber),
-    /// The program, cam or marked item is unknown.
+    /// The program, the cam or the marked item does not exist.
     #[error(transparent)]
     Item(#[from] ItemError),
-    /// The marked item is not a setting.
-    #[error("{0} is measured and does not belong to the mounting")]
+    /// The marked item is measured, so it cannot be a setting.
+    #[error("{0} is a measured value and cannot be specific to a mounting")]
     Measured(Item),
 }

@@ -1,4 +1,5 @@
-//! Names of encoder items as accepted by `read`, such as `steps`, `cam:2:5` and `cam-mask:2`, and their values.
+//! Items of an encoder and their values. The command `read` accepts their names, such as `steps`, `cam:2:5` and
+//! `cam-mask:2`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,7 +7,7 @@ use std::str::FromStr;
 use super::{Direction, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, ProgramNumber, WindowShift};
 
-/// An item of an encoder.
+/// A setting or measured value of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Item {
     /// Steps over all programmed turns.
@@ -19,7 +20,7 @@ pub enum Item {
     Preset,
     /// Zero point shifting.
     ZeroShift,
-    /// Shift of the position in the window, common to all programs.
+    /// Shift of the position in the window of cam mode. It is common to all programs.
     Shift,
     /// Mask of the active cams of a program.
     CamMask(ProgramNumber),
@@ -34,7 +35,7 @@ pub enum Item {
 /// The value of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ItemValue {
-    /// Steps, turns, or window shift.
+    /// Steps, turns, a position or the window shift.
     Number(u32),
     /// Counting direction.
     Direction(Direction),
@@ -55,13 +56,13 @@ pub enum ItemError {
     #[error("{0:?} is not an item; items are {ITEMS}")]
     Unknown(String),
     /// The program does not exist.
-    #[error("program {number} is not within 1 to {}", ProgramNumber::COUNT)]
+    #[error("program {number} is outside the range 1 to {}", ProgramNumber::COUNT)]
     Program {
         /// Given program number.
         number: u64,
     },
     /// The cam does not exist.
-    #[error("cam {number} is not within 0 to {}", Program::CAMS - 1)]
+    #[error("cam {number} is outside the range 0 to {}", Program::CAMS - 1)]
     Cam {
         /// Given cam number.
         number: u64,
@@ -84,18 +85,19 @@ impl Item {
         Item::OperatingTime,
     ];
 
-    /// Returns all writable items in comparison order: parameters, the shift, then the mask and cams of each program.
+    /// Returns all writable items in comparison order. The parameters and the shift come first, then the mask and cams
+    /// of each program.
     pub fn writable() -> impl Iterator<Item = Item> {
         let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
         plain.chain(ProgramNumber::all().flat_map(Item::of_program))
     }
 
-    /// Returns the items of a program: its mask and cams.
+    /// Returns the mask and the cams of a program.
     pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
 
-    /// Returns whether the item can be written. Measured values cannot.
+    /// Returns whether the item is a setting. Measured values cannot be written.
     pub const fn is_writable(self) -> bool {
         !matches!(self, Item::Temperature | Item::OperatingTime)
     }
@@ -124,7 +126,7 @@ impl Item {
         }
     }
 
-    /// Returns the program to which the item belongs.
+    /// Returns the program to which the item belongs, or `None` if it belongs to no program.
     pub const fn program(self) -> Option<ProgramNumber> {
         match self {
             Item::CamMask(program) | Item::Cam(program, _) => Some(program),
@@ -220,8 +222,8 @@ impl Image {
         })
     }
 
-    /// Sets the value of an item, or returns `false` if the item cannot have the value. A program that was unknown is
-    /// created with a mask of 0.
+    /// Sets the value of an item. Returns `false` if the item cannot have the value. An unknown program is created with
+    /// a mask of 0.
     pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {
@@ -277,9 +279,9 @@ mod tests {
             assert_eq!(text.parse::<Item>(), Err(ItemError::Unknown(text.to_owned())));
         }
         let said = |text: &str| text.parse::<Item>().unwrap_err().to_string();
-        assert_eq!(said("cam:9:0"), "program 9 is not within 1 to 8");
-        assert_eq!(said("cam-mask:0"), "program 0 is not within 1 to 8");
-        assert_eq!(said("cam:1:8"), "cam 8 is not within 0 to 7");
+        assert_eq!(said("cam:9:0"), "program 9 is outside the range 1 to 8");
+        assert_eq!(said("cam-mask:0"), "program 0 is outside the range 1 to 8");
+        assert_eq!(said("cam:1:8"), "cam 8 is outside the range 0 to 7");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Parsing of numbers entered by the user into changes.
+//! Conversion of typed entries to values and edits.
 
 use super::staged::Edit;
 use super::words;
@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
-/// Parses a whole number. Its digits may be separated by blanks or apostrophes.
+/// Parses a whole number. Blanks and apostrophes may separate its digits.
 pub fn number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -18,11 +18,11 @@ pub fn number(text: &str) -> Result<u32, Text> {
     number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Parses an entered parameter into an edit. Whether the value is compatible with the other parameters is checked when
-/// the edit is applied.
+/// Parses the entry of a parameter into an edit. The edit itself checks whether the value is compatible with other
+/// parameters.
 ///
 /// # Errors
-/// The entry is not a number.
+/// Returns a message if the entry is not a number.
 pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
     let value = number(text)?;
     Ok(match parameter {
@@ -36,10 +36,10 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
     })
 }
 
-/// Parses the preset to set. An empty entry means the stored preset.
+/// Parses the entry of a preset. An empty entry selects the stored preset.
 ///
 /// # Errors
-/// The entry is not a number or is beyond the measuring range.
+/// Returns a message if the entry is not a number or is beyond the measuring range.
 pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
@@ -47,16 +47,16 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     within(Parameter::Preset, number(text)?, now)
 }
 
-/// Parses the number of steps by which a program is shifted later or earlier.
+/// Parses the number of steps by which a program is shifted. Negative numbers shift it to earlier positions.
 ///
 /// # Errors
-/// The entry is not a number.
+/// Returns a message if the entry is not a number.
 pub fn offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Formats a position as an entry in machine units.
+/// Formats a position for an entry field in the unit of the scale.
 pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => step.to_string(),
@@ -64,10 +64,10 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     }
 }
 
-/// Parses a position in machine units and returns the nearest step.
+/// Parses a position in the unit of the scale and returns the nearest step.
 ///
 /// # Errors
-/// The entry is not a number or is beyond the measuring range.
+/// Returns a message if the entry is not a number or is beyond the measuring range.
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
@@ -82,7 +82,7 @@ pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     Ok(placed.step)
 }
 
-/// Returns the default scale for a unit, in which the measuring range is one machine turn.
+/// Returns the initial scale of a unit. For degrees, the measuring range is one turn of the machine.
 pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     let steps = match unit {
         Unit::Degrees => f64::from(range.max(1)),
@@ -91,7 +91,7 @@ pub fn default_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     Scale::new(unit, steps, zero).unwrap_or_default()
 }
 
-/// Returns the number of steps per machine turn or per millimetre, or `None` if the unit is the step.
+/// Returns the number of steps per turn of the machine or per millimetre. The unit *steps* has none.
 pub fn steps_of(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
@@ -100,20 +100,20 @@ pub fn steps_of(scale: &Scale) -> Option<f64> {
     }
 }
 
-/// Parses a number of steps and returns the scale that uses it.
+/// Parses the number of steps per turn or per millimetre and returns the scale.
 ///
 /// # Errors
-/// The entry is not a number above 0.
+/// Returns a message if the entry is not a number above 0.
 pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
     let refused = || TEXTS.text("ib_entry.scale").with("entry", text.trim());
     let steps = decimal(text).ok_or_else(refused)?;
     Scale::new(unit, steps, zero).map_err(|_| refused())
 }
 
-/// Returns the scale with its zero at the entered encoder position.
+/// Returns the scale with its zero moved to the encoder position that was entered.
 ///
 /// # Errors
-/// The entry is not a position within the measuring range.
+/// Returns a message if the entry is not a position within the measuring range.
 pub fn scale_with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = number(text)?;
     let last = range.saturating_sub(1);
@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
         // Reference 3: a preset is below the steps; steps are at most 8192 per turn.
         let refused = edit(Parameter::Preset, "4096").unwrap_err().words(crate::app::Language::English);
-        assert_eq!(refused, "Preset value: 4096 is not within 0 to 4095.");
+        assert_eq!(refused, "Preset value: 4096 is outside the range 0 to 4095.");
         assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());
         assert!(edit(Parameter::Turns, "4097").is_err() && edit(Parameter::Turns, "0").is_err());
         assert_eq!((preset("", &now()), preset("12", &now())), (Ok(7), Ok(12)));

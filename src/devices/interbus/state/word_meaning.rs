@@ -1,4 +1,4 @@
-//! Meaning of process data words: OUT words as commands, IN words according to the mode.
+//! Meaning of process data words. OUT words are commands, and the mode determines the meaning of IN words.
 
 use super::words;
 use crate::app::Text;
@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 
-/// Facts about an encoder that determine how its IN words are decoded.
+/// Facts about an encoder that determine the meaning of its IN words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordContext {
     pub mode: EncoderMode,
@@ -18,14 +18,14 @@ pub struct WordContext {
 }
 
 impl WordContext {
-    /// Returns the facts about an encoder for which a command is intended.
+    /// Returns the facts that apply to the replies of a command.
     pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         WordContext { mode: mode_of_command(command), read_out, shift }
     }
 }
 
-/// Describes an OUT word in the given mode, including whether the word is illegal in that mode.
+/// Describes an OUT word, and whether it is illegal in the given mode.
 pub fn out(word: u32, mode: EncoderMode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
@@ -66,7 +66,7 @@ pub fn command_text(command: Command) -> Text {
     }
 }
 
-/// Returns the mode in which an encoder accepts a command, preferring position mode over cam mode.
+/// Returns a mode in which the encoder accepts a command. Position mode takes precedence over cam mode.
 pub fn mode_of_command(command: Command) -> EncoderMode {
     if command.is_legal_in(EncoderMode::Position) || !command.is_legal_in(EncoderMode::Cam) {
         EncoderMode::Position
@@ -173,7 +173,7 @@ mod tests {
             (
                 0x4600_0015,
                 EncoderMode::Position,
-                "Not valid in position mode. In other modes, this word means: Cam 3 starts at 21",
+                "This word is not valid in position mode. In another mode, it is the following command: Cam 3 starts at 21",
             ),
         ] {
             assert_eq!(english(out(word, mode)), says, "{word:08X}");
@@ -186,7 +186,7 @@ mod tests {
             (0xC200_00FF, EncoderMode::Parameterisation, "echo of: Steps := 255"),
             (0x01CD_EF20, EncoderMode::Cam, "cams on: 5; window 0x001CDEF"),
             (0x8000_0000, EncoderMode::Cam, "position or cam outputs not valid (0x80000000)"),
-            (0x9800_0004, EncoderMode::Cam, "a cam starts or stops outside the measuring range (0x98000004)"),
+            (0x9800_0004, EncoderMode::Cam, "start or stop of a cam outside the measuring range (0x98000004)"),
         ] {
             assert_eq!(english(word_text(word, &known(mode))), says, "{word:08X}");
         }

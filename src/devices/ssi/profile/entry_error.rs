@@ -16,10 +16,10 @@ pub enum EntryError {
         /// Last position of the frame.
         last: u64,
     },
-    /// The entry cannot be combined with the other one.
-    #[error("not together with {0}")]
+    /// The entry cannot be combined with the named one.
+    #[error("this entry cannot be combined with {0}")]
     NotWith(&'static str),
     /// The range of positions is missing.
-    #[error("the range of positions needs singleturn, steps or bits")]
+    #[error("one of the entries singleturn, steps and bits is required")]
     NoPositions,
 }

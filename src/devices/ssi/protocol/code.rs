@@ -1,4 +1,4 @@
-//! Position codes: binary, Gray, Gray excess and BCD (SICK SSI description 2.4; reference section 2).
+//! Position codes: binary, Gray, Gray excess and BCD. See SICK SSI description 2.4 and reference section 2.
 
 use serde::Deserialize;
 
@@ -10,8 +10,8 @@ pub enum Code {
     Binary,
     /// Gray: one bit changes between adjacent positions.
     Gray,
-    /// Gray excess: the middle part of a complete Gray code, so that a single bit changes at the end of the range as
-    /// well, although the number of steps is not a power of two. The number of steps must be even.
+    /// Gray excess, the middle part of a complete Gray code. A single bit changes at the end of the range as well, even
+    /// if the number of steps is not a power of two. The number of steps must be even.
     GrayExcess,
     /// BCD: four bits per decimal digit.
     Bcd,
@@ -20,10 +20,11 @@ pub enum Code {
 /// The reason why a code cannot represent the positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodeError {
-    /// Gray excess requires an even number of steps, because it omits as many words before the positions as after them.
+    /// The number of steps is odd. Gray excess omits as many words before the positions as after them, so the number of
+    /// steps must be even.
     #[error(
-        "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of \
-         the range"
+        "Gray excess requires an even number of steps, because with {0} steps two bits would change at the end of the \
+         range"
     )]
     Odd(u128),
     /// The code word would exceed 64 bits.
@@ -52,14 +53,14 @@ pub struct PositionCode {
     code: Code,
     last: u64,
     bits: u8,
-    /// Gray excess offset: the number whose Gray code represents position 0.
+    /// Number whose Gray code represents position 0 in Gray excess.
     offset: u64,
 }
 
 impl PositionCode {
     pub(super) const BIT: PositionCode = PositionCode { code: Code::Binary, last: 1, bits: 1, offset: 0 };
 
-    /// Creates the coding of the positions 0…`last`.
+    /// Creates the code for the positions 0 to `last`.
     ///
     /// # Errors
     /// [`CodeError`] if the code cannot represent this number of positions.
@@ -93,7 +94,7 @@ impl PositionCode {
         self.last
     }
 
-    /// Returns the number whose Gray code represents position 0 in Gray excess, or 0 for other codes.
+    /// Returns the number whose Gray code represents position 0 in Gray excess. It is 0 for the other codes.
     pub const fn offset(&self) -> u64 {
         self.offset
     }
@@ -130,7 +131,7 @@ pub(super) const fn bits_of(number: u64) -> u8 {
     if bits == 0 { 1 } else { bits as u8 }
 }
 
-/// Returns a mask of 0 to 64 ones, right-justified.
+/// Returns a mask in which the lowest `bits` bits are 1, from 0 to 64 bits.
 pub(super) const fn low_bits_mask(bits: u8) -> u64 {
     if bits >= 64 { u64::MAX } else { (1 << bits) - 1 }
 }

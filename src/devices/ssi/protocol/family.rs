@@ -1,5 +1,6 @@
-//! Families of SSI encoders: user-extensible descriptions (RON, `assets/devices/ssi/`) with the frames that a family
-//! can send, its timing and its additional signals. Pure data; [`Settings`] resolves the settings of a family.
+//! Families of SSI encoders, described in RON files in `assets/devices/ssi/` and in the folder of the user. A
+//! description contains the frames that a family can send, its timing and its additional signals. [`Settings`] selects
+//! one of the frames.
 
 mod sends;
 mod setting_name;
@@ -19,48 +20,49 @@ use super::code::Code;
 use super::descriptor::{ErrorBit, Pattern};
 use super::timing::Times;
 
-/// A family.
+/// A family of SSI encoders.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Family {
-    /// Key on the command line: `ahm36`.
+    /// Key of the family on the command line, such as `ahm36`.
     pub key: String,
-    /// Product name given by the manufacturer.
+    /// Product name used by the manufacturer.
     pub name: String,
-    /// Source of this description.
+    /// Document from which the description was made.
     pub source: String,
-    /// Length of a step in nanometres for linear encoders, or `None` for rotary ones.
+    /// Length of a step in nanometres. It is `None` for rotary encoders.
     #[serde(default)]
     pub step_nanometres: Option<u32>,
-    /// Minimum, factory and maximum width of the multiturn part in bits; `None` for singleturn and linear encoders.
+    /// Minimum, factory and maximum width of the multiturn part in bits. It is `None` for singleturn and linear
+    /// encoders.
     #[serde(default)]
     pub multiturn: Option<(u8, u8, u8)>,
-    /// Minimum, factory and maximum width in bits of the singleturn part or of a linear position.
+    /// Minimum, factory and maximum width of the singleturn part, or of a linear position, in bits.
     pub singleturn: (u8, u8, u8),
-    /// Maximum total width in bits, if below the sum of both parts.
+    /// Maximum width of the position in bits, if it is less than the sum of both parts.
     #[serde(default)]
     pub together: Option<u8>,
-    /// Limits for numbers of steps that are not powers of two, if supported.
+    /// Limits for a number of steps that is not a power of two.
     #[serde(default)]
     pub steps: Option<StepLimits>,
-    /// Codes named in the manual, starting with the factory setting. Other codes are accepted with a remark.
+    /// Codes named in the manual, starting with the factory setting. Another code is accepted with a remark.
     pub codes: Vec<Code>,
     /// Possible alignments. The factory setting is the first one with enough room for the position.
     pub align: Vec<Align>,
-    /// Whether the whole frame can be delayed by one clock.
+    /// Whether the position can be delayed by one clock.
     #[serde(default)]
     pub shift: bool,
-    /// Frames by resolution. The first one with room for the position applies.
+    /// Frames in the order of the width of the position. The first one with enough room for the position is used.
     pub frames: Vec<Frame>,
-    /// Words with a special meaning.
+    /// Words that have a special meaning and are not a position.
     #[serde(default)]
     pub patterns: Vec<Pattern>,
-    /// The allowed times.
+    /// Timing limits of the encoder.
     pub times: Times,
-    /// Signals besides SSI.
+    /// Signals that the encoder outputs in addition to SSI.
     #[serde(default)]
     pub signals: Vec<Signal>,
-    /// Further notes for engineers, a sentence each.
+    /// Further notes for the user, one sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
     /// German translations of the source and the notes, keyed by the English text.
@@ -68,15 +70,16 @@ pub struct Family {
     pub german: BTreeMap<String, String>,
 }
 
-/// Limits for numbers of steps that are not powers of two.
+/// Limits for a number of steps that is not a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepLimits {
-    /// Steps per turn.
+    /// Maximum number of steps per turn.
     pub per_turn: u32,
-    /// Altogether.
+    /// Maximum number of steps in total.
     pub total: u32,
-    /// Number of turns of a round axis as numerator and denominator, or `None` without a round axis.
+    /// Maximum numerator and denominator of the number of turns of a round axis, or `None` if round axes are not
+    /// supported.
     #[serde(default)]
     pub revolutions: Option<(u32, u32)>,
 }
@@ -85,23 +88,23 @@ pub struct StepLimits {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
-    /// Maximum width in bits of a position that fits into the frame.
+    /// Maximum width of the position in bits.
     pub up_to: u8,
-    /// Number of clocks for the position and its zeros, or `None` for exactly as many as the position has bits.
+    /// Number of clocks for the position and the zeros around it. `None` means one clock per bit of the position.
     #[serde(default)]
     pub area: Option<u8>,
-    /// Error bits in order. The `clock` of the first one is their fixed location.
+    /// Error bits in the order sent. The `clock` of the first one is used if the bits have a fixed location.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
     /// Possible locations of the error bits, starting with the factory setting.
     #[serde(default)]
     pub place: Vec<ErrorPlace>,
-    /// Maximum number of clocks in a burst, or `None` for exactly as many as the frame has bits.
+    /// Maximum number of clocks in a burst. `None` means that more clocks are accepted with a remark.
     #[serde(default)]
     pub most_clocks: Option<u8>,
 }
 
-/// The alignment of the position in its area (reference section 3).
+/// Alignment of the position in its area. See reference section 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
@@ -111,11 +114,11 @@ pub enum Align {
     Right24,
     /// The last position bit is on clock 25.
     Right25,
-    /// Tree format ("Tannenbaum") with turns ending on clock 12 and steps beginning on clock 13, and zeros on both
+    /// Tree format ("Tannenbaum"): turns end on clock 12 and steps begin on clock 13. Zeros fill the clocks on both
     /// sides.
     #[serde(rename = "tree12_13")]
     Tree12,
-    /// Tree format with turns ending on clock 13 and steps beginning on clock 14.
+    /// Tree format: turns end on clock 13 and steps begin on clock 14.
     #[serde(rename = "tree13_12")]
     Tree13,
 }
@@ -124,15 +127,15 @@ pub enum Align {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
-    /// Error bits are not sent, or not clocked in.
+    /// Error bits are not sent, or the host does not clock them in.
     None,
-    /// Error bits are on fixed clocks at any resolution.
+    /// Error bits have the same clocks at any resolution.
     Fix,
     /// Error bits directly follow the last position bit.
     Following,
 }
 
-/// A signal in addition to SSI.
+/// A signal that an encoder outputs in addition to SSI.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
@@ -149,7 +152,7 @@ pub struct Signal {
     pub supply_volts: Option<(f64, f64)>,
 }
 
-/// Error in a family file, with its position.
+/// Error in a family file with its line and column.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct FamilyError {
@@ -173,9 +176,9 @@ pub enum FamilyProblem {
     #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
     /// A German text translates neither the source nor a note.
-    #[error("german: {0:?} is neither the source nor a note")]
+    #[error("german: {0:?} does not match the source or any note of the family")]
     German(String),
-    /// The frame with factory settings is invalid.
+    /// The factory settings do not result in a valid frame.
     #[error("factory setting: {0}")]
     Delivered(SettingsError),
 }
@@ -188,8 +191,8 @@ impl Family {
     /// Parses a family. `file` is the name used in errors.
     ///
     /// # Errors
-    /// Invalid RON, unknown or missing keys, a key that cannot be used on the command line, or an invalid frame with
-    /// factory settings. The error contains line and column.
+    /// Returns an error with line and column if the text is not valid RON, if a key is unknown or missing, if the
+    /// family key cannot be used on the command line, or if the factory settings do not result in a valid frame.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
         let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, problem: what };
         let family: Family = ron::from_str(text).map_err(|wrong| {
@@ -225,7 +228,8 @@ impl Family {
     }
 }
 
-/// Returns line and column of the first line that begins with an entry, counted from 1; the beginning if there is none.
+/// Returns line and column of the first line that begins with `entry`. Both are counted from 1, and both are 1 if there
+/// is no such line.
 fn place(text: &str, entry: &str) -> (usize, usize) {
     let lines = text.lines().enumerate();
     let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
@@ -236,7 +240,7 @@ fn place(text: &str, entry: &str) -> (usize, usize) {
 }
 
 impl Families {
-    /// Built-in families, with their file names.
+    /// File names and contents of the built-in families.
     pub const BUILT_IN: [(&'static str, &'static str); 11] = [
         ("ahs36.ron", include_str!("../../../../assets/devices/ssi/ahs36.ron")),
         ("ahm36.ron", include_str!("../../../../assets/devices/ssi/ahm36.ron")),
@@ -251,7 +255,8 @@ impl Families {
         ("kh53.ron", include_str!("../../../../assets/devices/ssi/kh53.ron")),
     ];
 
-    /// Reads families from files, and returns an error for each unusable file. The other files are not affected.
+    /// Parses family files, given by name and content. Returns an error for each invalid file; the other files are
+    /// still used.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<FamilyError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -264,13 +269,13 @@ impl Families {
         (Families(read), errors)
     }
 
-    /// Creates the built-in ones.
+    /// Returns the built-in families.
     pub fn built_in() -> Self {
         // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0
     }
 
-    /// Returns these families combined with `others`, which replace families with the same key.
+    /// Returns these families and `others`. A family of `others` replaces a family with the same key.
     #[must_use]
     pub fn merged_with(self, others: Families) -> Self {
         let mut all = others.0;
@@ -287,7 +292,7 @@ impl Families {
         self.0.iter().find(|family| family.key == key)
     }
 
-    /// Returns all of them.
+    /// Returns an iterator over all families.
     pub fn iter(&self) -> impl Iterator<Item = &Family> {
         self.0.iter()
     }

@@ -1,4 +1,4 @@
-//! Range of positions and their meaning: turns and steps, a round axis, or a length (reference section 5).
+//! Range of positions and their meaning as turns and steps, as a round axis, or as a length. See reference section 5.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use crate::expected::AllowedValues;
 /// Range of positions from 0 up to a maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Separate bit fields for whole turns and steps within a turn. Singleturn encoders have no multiturn bits.
+    /// Separate bits for whole turns and for steps within a turn. Singleturn encoders have no multiturn bits.
     Bits {
         /// Width of the multiturn field, 0…32 bits.
         multiturn: u8,
@@ -23,7 +23,7 @@ pub enum Range {
         /// Number of turns, at least 1.
         turns: u32,
     },
-    /// Steps distributed evenly over a fractional number of turns of an endless shaft, after which positions wrap.
+    /// Round axis: steps that are distributed evenly over a fractional number of turns, after which positions wrap.
     RoundAxis {
         /// Total number of steps, at least 2.
         steps: u32,
@@ -48,8 +48,8 @@ pub struct Fraction {
     pub denominator: u32,
 }
 
-/// Direction in which positions increase, seen when looking at the shaft; for a linear encoder, its own direction or
-/// the opposite.
+/// Direction in which positions increase, seen when looking at the shaft. For a linear encoder, `Clockwise` is its
+/// normal direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Clockwise, the factory setting.
@@ -62,7 +62,7 @@ pub enum Direction {
 /// The reason why a range is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
-    /// A field exceeds the maximum width.
+    /// A part of the position exceeds the maximum width.
     #[error("{field} must have at most {limit} bits, not {bits}")]
     Wide {
         /// `multiturn`, `singleturn` or `position`.
@@ -76,7 +76,7 @@ pub enum RangeError {
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
     /// The numerator or denominator is zero.
-    #[error("numerator and denominator of revolutions must be greater than 0: {0}/{1}")]
+    #[error("numerator and denominator of revolutions must be greater than 0, not {0}/{1}")]
     Fraction(u32, u32),
 }
 
@@ -134,7 +134,7 @@ impl Range {
         }
     }
 
-    /// Returns the location of a position. A position beyond the last one is not wrapped.
+    /// Returns the location of a position. A position after the last one is not wrapped.
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
@@ -164,8 +164,8 @@ impl Range {
         }
     }
 
-    /// Returns the position for a turn and steps within it, or `None` if the range has no such turn or step, or no
-    /// turns at all.
+    /// Returns the position for a turn and a step within the turn. Returns `None` if the range has no such turn or
+    /// step, and for a length.
     pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
         let last = self.last().ok()?;
         let position = match *self {
@@ -187,23 +187,24 @@ impl Range {
         (position <= last).then_some(position)
     }
 
-    /// Returns the position of a shaft that has turned by `raw` steps from its zero, with `per_turn` steps per turn, at
-    /// least 1; positions start again after the last one (reference section 5: "position = floor(…)"). For a length,
-    /// `raw` counts its steps.
+    /// Returns the position of a shaft that has turned by `raw` steps from its zero point.
+    ///
+    /// The shaft has `per_turn` steps per turn, at least 1. Positions wrap after the last one. For a length, `raw` is
+    /// the number of its steps. See reference section 5, "position = floor(…)".
     pub fn position_from_shaft(&self, raw: u64, per_turn: u64) -> u64 {
         self.counted(raw, per_turn, Direction::Clockwise)
     }
 
-    /// Returns the position for a counting direction and a preset, which is the position at the zero of the shaft
-    /// (reference section 5: "Direction", "preset"). A preset beyond the last position wraps likewise.
+    /// Returns the position for a counting direction and a preset, which is the position at the zero point of the
+    /// shaft. A preset after the last position wraps. See reference section 5, "Direction" and "preset".
     pub fn position_with_preset(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last().unwrap_or(0);
         let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// Returns the count from 0 at the shaft's zero. Counting is symmetric, so that each position is equally wide in
-    /// both directions.
+    /// Returns the position counted from the zero point of the shaft. All positions have the same width in both
+    /// directions.
     fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);
@@ -216,7 +217,7 @@ impl Range {
             Range::Length { .. } if direction == Direction::CounterClockwise => return raw.wrapping_neg() & last,
             Range::Length { .. } => return raw & last,
         };
-        // Steps of the shaft until it starts again, as a fraction with `denominator` as the denominator.
+        // Number of shaft steps until positions wrap, multiplied by `denominator`.
         let round = (per_turn * numerator).max(1);
         let around = match direction {
             Direction::Clockwise => (turned * denominator) % round,
@@ -225,7 +226,7 @@ impl Range {
         u64::try_from(around * steps / round).unwrap_or(last)
     }
 
-    /// Returns the width of the multiturn field, or 0 if it is not separate.
+    /// Returns the width of the multiturn field in bits, or 0 if the range has no such field.
     pub const fn multiturn_bits(&self) -> u8 {
         match self {
             Range::Bits { multiturn, .. } => *multiturn,
@@ -243,7 +244,7 @@ impl Range {
 }
 
 impl fmt::Display for Fraction {
-    /// Writes `25/2`, or a whole number.
+    /// Writes a fraction such as `25/2`, or a whole number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.denominator {
             1 => write!(f, "{}", self.numerator),
@@ -255,7 +256,7 @@ impl fmt::Display for Fraction {
 impl FromStr for Fraction {
     type Err = AllowedValues;
 
-    /// Parses a direction. The error lists the allowed values.
+    /// Parses a fraction such as `25/2`, or a whole number.
     fn from_str(text: &str) -> Result<Self, AllowedValues> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
         let part = |text: &str| text.trim().parse().map_err(|_| AllowedValues::Fraction);

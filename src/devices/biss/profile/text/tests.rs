@@ -125,7 +125,11 @@ fn profile_errors_name_their_location() {
         ("0x6129", "0x16129", "identity.profile_id must be a number from 0 to 65535 (0x0000 to 0xFFFF)"),
         ("01 01 68 11 00 01", "01 01 68 11 00", "identity.device_id: 5 bytes instead of 6"),
         ("manufacturer:", "maker:", "identity.manufacturer is missing"),
-        ("profile_id:", "firmware: \"1.6\", profile_id:", "identity.firmware: \"1.6\" is not of the form 1.6.0"),
+        (
+            "profile_id:",
+            "firmware: \"1.6\", profile_id:",
+            "identity.firmware: \"1.6\" is not a version number such as 1.6.0",
+        ),
         ("profile_id:", "firmware: \"1.6.256\", profile_id:", "identity.firmware: \"1.6.256\" is not"),
         ("data:", "filter: \"dynamic\", data:", "filter must be a number from 0 to 255 (0x00 to 0xFF)"),
         ("data:", "preset: (singleturn: 1), data:", "preset.multiturn is missing"),
@@ -143,12 +147,12 @@ fn profile_errors_name_their_location() {
         (
             "data:",
             "mounting: [(item: \"preset\")], data:",
-            "mounting[0].item: \"preset\" is neither calibration nor of the form 0x24:0x10+3",
+            "mounting[0].item: \"preset\" is neither \"calibration\" nor a register range such as 0x24:0x10+3",
         ),
-        ("(0x24, 0x43)", "(0x43, 0x24)", "data[0].banks: 0x43 comes after 0x24"),
+        ("(0x24, 0x43)", "(0x43, 0x24)", "data[0].banks: the first bank 0x43 comes after the last bank 0x24"),
         ("(0x24, 0x43)", "0x24", "data[0].banks must be the first and the last bank, such as (0x24, 0x43)"),
         ("(0x24, 0x43)", "(0x24, 0x143)", "data[0].banks must be the first and the last bank, such as (0x24, 0x43)"),
-        ("bank: 0x25", "bank: 0x23", "data[0].listed[0].bank: 0x23 is not within 0x24 to 0x43"),
+        ("bank: 0x25", "bank: 0x23", "data[0].listed[0].bank: bank 0x23 is outside the range 0x24 to 0x43"),
         (
             "data: [(banks: (0x24, 0x43)",
             "data: [(banks: (0x04, 0x24)), (banks: (0x24, 0x43)",

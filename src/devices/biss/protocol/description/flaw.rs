@@ -1,5 +1,5 @@
-//! Mistakes in a description file. The RON parser only passes on error messages, so a flaw is kept in this module until
-//! the parser has reported its position.
+//! Errors in a description file. The RON parser passes on only the message of an error. Therefore, the error is stored
+//! in this module until the parser has reported its position.
 
 use std::cell::Cell;
 
@@ -10,17 +10,17 @@ use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::LayoutError;
 use super::register::{Register, Role};
 
-/// A mistake in a description file.
+/// The kind of error in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DescriptionErrorKind {
     /// The file does not have the form of a description. Contains the message of the RON parser.
     #[error("{0}")]
     Form(String),
     /// The address is not valid for a direct register.
-    #[error("direct(0x{0:02X}): a direct register is from 0x40 to 0x7F")]
+    #[error("direct(0x{0:02X}): the address of a direct register must be from 0x40 to 0x7F")]
     Direct(u8),
     /// The offset is not valid for a register in a bank.
-    #[error("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")]
+    #[error("bank(0x{bank:02X}, 0x{offset:02X}): the offset of a register in a bank must be from 0x00 to 0x3F")]
     Banked {
         /// Number of the bank.
         bank: u8,
@@ -36,7 +36,7 @@ pub enum DescriptionErrorKind {
         width: u8,
     },
     /// The register extends beyond its bank.
-    #[error("\"{name}\": {width} bytes from {address} on do not fit into the bank")]
+    #[error("\"{name}\": a register of {width} bytes at {address} extends past the end of the bank")]
     BeyondBank {
         /// Name of the register.
         name: String,
@@ -46,7 +46,7 @@ pub enum DescriptionErrorKind {
         address: RegisterAddress,
     },
     /// The number of default bytes differs from the width of the register.
-    #[error("\"{name}\": {bytes} default bytes for a width of {width}")]
+    #[error("\"{name}\": the number of default bytes ({bytes}) does not match the register width ({width})")]
     Default {
         /// Name of the register.
         name: String,
@@ -56,7 +56,7 @@ pub enum DescriptionErrorKind {
         width: u8,
     },
     /// The bit number exceeds the width of the register.
-    #[error("\"{name}\": there is no bit {bit} in a width of {width}")]
+    #[error("\"{name}\": bit {bit} is outside the register, which has a width of {width}")]
     Bit {
         /// Name of the register.
         name: String,
@@ -68,11 +68,11 @@ pub enum DescriptionErrorKind {
     /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
     Endless(String),
-    /// Values are declared to save something, but the register cannot be written.
-    #[error("\"{0}\": a register that is not written saves nothing")]
+    /// The row lists values that save something, but the register cannot be written.
+    #[error("\"{0}\": a read-only register cannot have \"saves\" values")]
     SavesNothing(String),
     /// The first bank of an area comes after its last.
-    #[error("\"{name}\": bank 0x{first:02X} comes after bank 0x{last:02X}")]
+    #[error("\"{name}\": the first bank (0x{first:02X}) comes after the last bank (0x{last:02X})")]
     Banks {
         /// Name of the area.
         name: String,
@@ -84,18 +84,18 @@ pub enum DescriptionErrorKind {
     /// The frame layout is impossible.
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    /// An item is claimed by more than one row.
-    #[error("{0} stands here for the second time")]
+    /// An item occurs in more than one row.
+    #[error("{0} is defined more than once")]
     Twice(Claim),
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
     /// A German name is given for an English name that does not occur in the description.
-    #[error("german: nothing is called \"{0}\" here")]
+    #[error("german: the description does not contain the name \"{0}\"")]
     GermanNeedless(String),
 }
 
-/// An item that only one row of a description may claim.
+/// An item that may occur only once in a description.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum Claim {
     /// A register byte.
@@ -119,7 +119,7 @@ thread_local! {
     static FOUND: Cell<Option<DescriptionErrorKind>> = const { Cell::new(None) };
 }
 
-/// Records a flaw and returns an error for the RON parser, which adds the position.
+/// Stores an error and returns a copy of its message for the RON parser, which adds the position.
 pub(super) fn found<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);
@@ -127,7 +127,7 @@ pub(super) fn found<E: Error>(flaw: impl Into<DescriptionErrorKind>) -> E {
     words
 }
 
-/// Takes the last flaw found on the current thread.
+/// Removes and returns the last error found on the current thread.
 pub(super) fn take() -> Option<DescriptionErrorKind> {
     FOUND.take()
 }

@@ -69,7 +69,7 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
     }
 }
 
-/// Groups consecutive registers, with one line per group.
+/// Returns one line for each group of consecutive registers.
 fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
@@ -93,7 +93,8 @@ fn preset_text(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Tex
         .with("multiturn", value.multiturn())
 }
 
-/// Returns the warning about the limited write cycles of the flash, or `None` if a plan does not come near the limit.
+/// Returns the warning about the limited write cycles of the flash. Returns `None` if the plan does not come near the
+/// limit.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
@@ -277,7 +278,7 @@ mod tests {
             (ChangeKind::Restore, "restore the profile again"),
             (ChangeKind::Bytes, "Other registers keep the new value"),
             (ChangeKind::Guided, "completed steps do not have to be repeated"),
-            (ChangeKind::WiegandTest, "changes nothing but its saved result"),
+            (ChangeKind::WiegandTest, "changes only its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
         ];

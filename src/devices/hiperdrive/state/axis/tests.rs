@@ -441,6 +441,10 @@ fn every_step_has_instructions_and_a_result() {
         "those that were looked at"
     );
     assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm to 20.00 mm.");
-    assert_eq!(found(AxisStep::Jog), "Moved 5.00 mm up, 4.00 mm down. The position increases clockwise.");
-    assert_eq!(found(AxisStep::Test), "Positions reached: 3 of 3, at most 0.02 mm off target.");
+    assert_eq!(
+        found(AxisStep::Jog),
+        "Distance moved: 5.00 mm in the + direction, 4.00 mm in the − direction. Clockwise rotation increases the \
+         position."
+    );
+    assert_eq!(found(AxisStep::Test), "Positions reached: 3 of 3. The largest deviation from the target is 0.02 mm.");
 }

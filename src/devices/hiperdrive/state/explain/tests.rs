@@ -44,7 +44,7 @@ fn invalid_input_names_cause_and_remedy() {
     assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) is read-only. Choose another parameter.");
     assert_eq!(
         english(&device(&Error::NotRequested { drive: ONE })),
-        "Drive 1 is not requested (parameter 152 is 0). Set parameter 152 to 1 first."
+        "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
     let switch = ended(Ended::NotStarted, plain);
     assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
@@ -97,11 +97,11 @@ fn errors_name_cause_and_remedy() {
     for (language, said) in [
         (
             Language::English,
-            "Parameter 107 (Actual position) was not used, because its value has the wrong length (bytes received: 2, expected: 4)",
+            "The value of parameter 107 (Actual position) was ignored because it has the wrong length (bytes received: 2, expected: 4)",
         ),
         (
             Language::German,
-            "Parameter 107 (Istposition) wurde nicht verwendet, weil sein Wert die falsche Länge hat (Bytes empfangen: 2, erwartet: 4)",
+            "Der Wert von Parameter 107 (Istposition) wurde ignoriert, weil er die falsche Länge hat (Bytes empfangen: 2, erwartet: 4)",
         ),
     ] {
         assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));

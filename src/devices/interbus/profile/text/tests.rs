@@ -91,10 +91,10 @@ fn errors_name_their_entry() {
         ("steps: 3600", "steps: -1", "parameters.steps must be a number from 0 to 33554431"),
         ("steps: 3600", "steps: 33554432", "parameters.steps must be a number from 0 to 33554431"),
         ("\"ccw\"", "\"left\"", "parameters.direction must be cw or ccw"),
-        ("program: 2", "program: 9", "programs[0].program: program 9 is not within 1 to 8"),
+        ("program: 2", "program: 9", "programs[0].program: program 9 is outside the range 1 to 8"),
         ("mask: 0b101, ", "", "programs[0].mask is missing"),
         ("mask: 0b101", "mask: 256", "programs[0].mask must be a number from 0 to 255 (0x00 to 0xFF)"),
-        ("cam: 2", "cam: 8", "programs[0].cams[0].cam: cam 8 is not within 0 to 7"),
+        ("cam: 2", "cam: 8", "programs[0].cams[0].cam: cam 8 is outside the range 0 to 7"),
         ("start: 3500, ", "", "programs[0].cams[0].start is missing"),
         ("        ]),\n", "        ]), (program: 2, mask: 0)\n", "programs[1].program: program 2 appears twice"),
         ("name: \"glue\"),", "), (cam: 2, start: 1, stop: 2)", "programs[0].cams[1].cam: cam 2 appears twice"),
@@ -102,7 +102,7 @@ fn errors_name_their_entry() {
         (
             "    programs",
             "    mounting: [(item: \"temperature\")], programs",
-            "mounting[0].item: temperature is measured and does not belong to the mounting",
+            "mounting[0].item: temperature is a measured value and cannot be specific to a mounting",
         ),
     ];
     for (from, to, message) in cases {

@@ -1,4 +1,4 @@
-//! Messages about a cam table that was read.
+//! Messages about an imported cam table.
 
 use crate::analysis::capture::Delimiter;
 use crate::app::Text;
@@ -7,10 +7,10 @@ use crate::devices::interbus::profile::{
 };
 use crate::devices::interbus::state::TEXTS;
 
-/// Maximum number of useful decimals.
+/// Maximum number of displayed decimals.
 const MOST_DECIMALS: usize = 6;
 
-/// Describes how a table was read: its delimiter, and whether the columns have names.
+/// Describes the delimiter of a table and whether its columns have names.
 pub fn layout(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
         Some(Delimiter::Tab) => "camtable.tab",
@@ -72,11 +72,11 @@ pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
 }
 
-/// Describes an edge by its requested value, its rounded value, and the difference.
+/// Describes the requested position of an edge, its rounded position and the difference.
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
-    // As in the table: rounding here would hide the effect.
+    // The number has all decimals of the table, since rounding would hide the difference.
     let requested = decimals.max(decimal_count(edge.requested));
     let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
@@ -122,7 +122,7 @@ mod tests {
         let says = |text: Text| text.words(Language::English);
         assert_eq!(
             says(layout(&table)),
-            "Pulses read: 3. The columns are separated by semicolons and named in the first line."
+            "Pulses read: 3. The columns are separated by semicolons, and the first line contains their names."
         );
         assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
         let pulses = "Program 2: Glue has 2 pulses, which use cams 1, 2.";

@@ -69,7 +69,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
     let says = |lamp| words::lamp(lamp).words(Language::English);
     assert_eq!(says(lamps[5]), "Encoder: on, simulation: off");
-    assert_eq!(says(chart.lamps(None, None)[0]), "not known");
+    assert_eq!(says(chart.lamps(None, None)[0]), "unknown");
 }
 
 #[test]

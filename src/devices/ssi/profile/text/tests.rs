@@ -257,20 +257,20 @@ fn profile_errors_name_their_location() {
         (
             "multiturn: 12, singleturn: 14",
             "code: \"gray\"",
-            "frame: the range of positions needs singleturn, steps or bits",
+            "frame: one of the entries singleturn, steps and bits is required",
         ),
-        ("singleturn: 14", "steps: 16384", "frame.multiturn: not together with steps"),
-        ("singleturn: 14", "singleturn: 14, turns: 4", "frame.turns: not together with singleturn"),
+        ("singleturn: 14", "steps: 16384", "frame.multiturn: this entry cannot be combined with steps"),
+        ("singleturn: 14", "singleturn: 14, turns: 4", "frame.turns: this entry cannot be combined with singleturn"),
         ("multiturn: 12, singleturn: 14", "bits: 24", "frame.step_nanometres is missing"),
         (
             "multiturn: 12, singleturn: 14",
             "steps: 359, code: \"gray-excess\"",
-            "frame: Gray excess needs an even number",
+            "frame: Gray excess requires an even number",
         ),
         (
             "multiturn: 12, singleturn: 14",
             "steps: 9, revolutions: \"1/0\"",
-            "frame: numerator and denominator of revolutions must be greater than 0: 1/0",
+            "frame: numerator and denominator of revolutions must be greater than 0, not 1/0",
         ),
         (
             "multiturn: 12, singleturn: 14",
@@ -281,7 +281,11 @@ fn profile_errors_name_their_location() {
         ("clocks: 27", "code: \"grey\", clocks: 27", "frame.code must be binary, gray, gray-excess or bcd"),
         ("clocks: 27", "code: 1, clocks: 27", "frame.code must be a text"),
         ("clocks: 27", "over: \"all\", clocks: 27", "frame.over must be position, padded or errors"),
-        ("clocks: 27", "over: \"padded\", clocks: 27", "frame: only Gray code can include zeros and error bits"),
+        (
+            "clocks: 27",
+            "over: \"padded\", clocks: 27",
+            "frame: zeros and error bits can be included in the code word only if Gray code is used",
+        ),
         ("clocks: 27", "shift: 1, clocks: 27", "frame.shift must be true or false"),
         ("clocks: 27", "repeat: (gap: 1), clocks: 27", "frame.repeat.word is missing"),
         ("clocks: 27", "parity: (clock: 28), clocks: 28", "frame.parity.even is missing"),

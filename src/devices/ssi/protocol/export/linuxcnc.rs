@@ -1,6 +1,8 @@
-//! Format string of LinuxCNC's hostmot2 driver (`ssi_chan_0=…`): fields from the last clock to the first, each
-//! consisting of a name, `%`, the number of bits, and the type: `p` padding, `b` bit, `u` number, `e` position; a
-//! preceding `g` denotes Gray.
+//! Format string of LinuxCNC's hostmot2 driver (`ssi_chan_0=…`).
+//!
+//! The string lists the fields from the last clock to the first. A field consists of a name, `%`, the number of bits,
+//! and the type: `p` for padding, `b` for a bit, `u` for a number, and `e` for a position. A `g` before the type means
+//! Gray code.
 
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning};
@@ -11,8 +13,8 @@ use crate::devices::ssi::protocol::range::Range;
 /// A property of a frame that LinuxCNC cannot decode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnsupportedProperty {
-    /// Gray code over more than the position.
-    #[error("a Gray code that includes zeros or error bits")]
+    /// Gray code that covers more than the position.
+    #[error("Gray code that also covers zeros or error bits")]
     GrayOver,
     /// Gray excess code.
     #[error("gray excess")]
@@ -20,11 +22,11 @@ pub enum UnsupportedProperty {
     /// BCD code.
     #[error("BCD")]
     Bcd,
-    /// Zeros between the multiturn and the singleturn part.
+    /// Zeros between multiturn and singleturn.
     #[error("zeros between turns and steps")]
     Between,
     /// Swapped data wires.
-    #[error("exchanged data wires")]
+    #[error("swapped data wires")]
     Inverted,
 }
 
@@ -35,19 +37,21 @@ pub enum FormatError {
     #[error("LinuxCNC cannot decode {0}")]
     Cannot(UnsupportedProperty),
     /// A field is not of the form `name%bits` followed by a letter.
-    #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
+    #[error("\"{0}\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)")]
     Form(String),
     /// A field type is not supported for SSI frames.
-    #[error("\"{0}\" is a field of other encoders: only p b u s f e are supported, with g before for Gray")]
+    #[error("the field type \"{0}\" is not supported; use p, b, u, s, f or e (for Gray code with g before the type)")]
     Kind(char),
     /// There is more than one position field.
-    #[error("there are two positions, \"{0}\" and \"{1}\"")]
+    #[error("the format string contains two positions, \"{0}\" and \"{1}\"")]
     Two(String, String),
     /// There is no position field.
-    #[error("the position is missing: a field of type e or u, with g before for Gray")]
+    #[error(
+        "the format string contains no position; add a field of type e or u (for Gray code with g before the type)"
+    )]
     None,
     /// The fields exceed the length of a frame.
-    #[error("the fields have more than 64 bits together")]
+    #[error("the fields together have more than 64 bits")]
     Long,
     /// The frame is impossible.
     #[error(transparent)]
@@ -57,8 +61,7 @@ pub enum FormatError {
 /// Returns the format string of a frame.
 ///
 /// # Errors
-/// [`FormatError::Cannot`]: BCD, Gray excess, Gray over more than the position, zeros between multiturn and singleturn,
-/// or swapped wires.
+/// [`FormatError::Cannot`] if LinuxCNC cannot decode the frame.
 pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let descriptor = layout.descriptor();
     let modifier = match layout.coding().code() {
@@ -96,7 +99,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     Ok(words.collect())
 }
 
-/// Returns a valid pin name that is not taken yet.
+/// Converts a name to a pin name that is not taken yet, and adds it to `taken`.
 fn pin_name(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });
@@ -115,8 +118,8 @@ enum Field {
     Bit(String),
 }
 
-/// Parses a format string as a frame with a single undivided position. Bit fields become error bits that invalidate the
-/// position, which the user can change.
+/// Parses a format string as a frame whose position is a single number. Bit fields become error bits that make the
+/// position invalid; the user can change this.
 ///
 /// # Errors
 /// [`FormatError`] with the invalid field.
@@ -132,7 +135,7 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
     }
     let clocks = fields.iter().try_fold(0_u8, |sum, field| sum.checked_add(field.bits)).filter(|sum| *sum <= 64);
     let clocks = clocks.ok_or(FormatError::Long)?;
-    // The last field is on the first clocks.
+    // The last field is sent first.
     fields.reverse();
     let mut position: Option<(Given, u8)> = None;
     let mut errors = Vec::new();

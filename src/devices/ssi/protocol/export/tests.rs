@@ -50,19 +50,34 @@ fn each_bit_has_a_unique_pin() {
 fn limits_of_linuxcnc_are_reported() {
     let cases = [
         ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
-        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that includes zeros or error bits"),
+        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode Gray code that also covers zeros or error bits"),
     ];
     for (text, reason) in cases {
         assert_eq!(to_linuxcnc(&layout(text)).unwrap_err().to_string(), reason);
     }
     let cases = [
-        ("", "the position is missing: a field of type e or u, with g before for Gray"),
-        ("error%1b", "the position is missing: a field of type e or u, with g before for Gray"),
-        ("a%12eb%12e", "there are two positions, \"b\" and \"a\""),
-        ("position%24", "\"position%24\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
-        ("position%0e", "\"position%0e\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
-        ("low%16l", "\"l\" is a field of other encoders: only p b u s f e are supported, with g before for Gray"),
-        ("position%60e%5p", "the fields have more than 64 bits together"),
+        (
+            "",
+            "the format string contains no position; add a field of type e or u (for Gray code with g before the type)",
+        ),
+        (
+            "error%1b",
+            "the format string contains no position; add a field of type e or u (for Gray code with g before the type)",
+        ),
+        ("a%12eb%12e", "the format string contains two positions, \"b\" and \"a\""),
+        (
+            "position%24",
+            "\"position%24\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)",
+        ),
+        (
+            "position%0e",
+            "\"position%0e\" must be NAME%BITS followed by a type (p, b, u, s, f or e; for Gray code with g before the type)",
+        ),
+        (
+            "low%16l",
+            "the field type \"l\" is not supported; use p, b, u, s, f or e (for Gray code with g before the type)",
+        ),
+        ("position%60e%5p", "the fields together have more than 64 bits"),
     ];
     for (text, reason) in cases {
         assert_eq!(from_linuxcnc(text).unwrap_err().to_string(), reason, "{text}");
@@ -75,7 +90,7 @@ fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
         |layout: &Layout| settings_sheet(layout, None, "", &english).lines().map(str::to_owned).collect::<Vec<_>>();
     let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
     let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
-    assert!(error.ends_with("1: the last bit is an error bit"), "{error}");
+    assert!(error.ends_with("1 (the last bit is an error bit)"), "{error}");
     let parity = Some(Parity { clock: 15, even: true });
     let own = Layout::new(Descriptor { clocks: 15, parity, ..Descriptor::plain(0, 14) }).unwrap();
     let lines = sheet(&own);

@@ -1,5 +1,5 @@
-//! Text of the exports, represented as facts so that the window can use its language. The command line uses the English
-//! texts below.
+//! Texts of the exports as values, which the window translates to its language. The command line uses the English texts
+//! below.
 
 use std::fmt;
 
@@ -14,15 +14,12 @@ pub enum ExportText {
     /// Purpose of the settings sheet.
     SheetPurpose,
     FrameLength,
-    /// Number of bits.
     Bits(u8),
     Code,
     CodeName(Code),
     LowestBit,
     HighestBit,
-    /// Number of a bit.
     BitNumber(u8),
-    /// Name of the parity bit.
     ParityBit,
     Parity,
     ParityIs {
@@ -30,7 +27,7 @@ pub enum ExportText {
     },
     NoParity,
     Monoflop,
-    /// Monoflop times in microseconds.
+    /// Minimum and maximum monoflop time in microseconds.
     MonoflopTimes {
         least: f64,
         most: f64,
@@ -39,7 +36,7 @@ pub enum ExportText {
     ClockLimit {
         kilohertz: u32,
     },
-    /// Numbering of bits.
+    /// Remark on how the bits are numbered.
     Counting {
         first: u8,
     },
@@ -47,7 +44,7 @@ pub enum ExportText {
     Obstacle(ModuleObstacle),
     /// Advice to read the frame as binary.
     ReadAsBinary,
-    /// Code type of TM PosInput.
+    /// Label of the code type in the module TM PosInput.
     CodeType,
     FrameBits {
         bits: u8,
@@ -59,7 +56,6 @@ pub enum ExportText {
         bit: u8,
         fits: bool,
     },
-    /// Value of a setting with its meaning.
     Setting(u8, SettingMeaning),
     FrameTypeNone {
         bits: u8,
@@ -70,7 +66,7 @@ pub enum ExportText {
         by: u64,
         bits: u8,
     },
-    /// Width of a field and its first bit.
+    /// Width of a field in bits and its highest bit.
     Field {
         bits: u8,
         highest: u8,
@@ -98,15 +94,14 @@ pub enum ExportText {
 pub enum ModuleObstacle {
     GrayExcess,
     Bcd,
-    /// Gray code over more than the position.
+    /// Gray code that covers more than the position.
     GrayOver,
     /// Swapped data wires.
     Inverted,
-    /// Zeros between the multiturn and the singleturn part.
+    /// Zeros between multiturn and singleturn.
     Between,
 }
 
-/// Meaning of a setting's value.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingMeaning {
@@ -120,10 +115,10 @@ pub enum SettingMeaning {
     Odd,
 }
 
-/// Function that converts a text to a string in the caller's language.
+/// Function that converts an export text to a string in the language of the caller.
 pub type Say<'a> = &'a dyn Fn(&ExportText) -> String;
 
-/// Returns the English string, used by the command line.
+/// Returns the English text, which the command line uses.
 pub fn english(text: &ExportText) -> String {
     text.to_string()
 }
@@ -134,27 +129,33 @@ impl fmt::Display for ExportText {
             Self::SheetTitle(title) => return write!(f, "SSI settings: {title}"),
             Self::Bits(bits) => return write!(f, "{bits} bits"),
             Self::BitNumber(bit) => return write!(f, "bit {bit}"),
-            Self::MonoflopTimes { least, most } => return write!(f, "{least} to {most} µs; the pause must be longer"),
+            Self::MonoflopTimes { least, most } => {
+                return write!(f, "{least} to {most} µs (the pause must be longer than this)");
+            }
             Self::ClockLimit { kilohertz } => return write!(f, "{kilohertz} kHz, less on long cables"),
-            Self::Counting { first } => return write!(f, "Bit 0 is the last bit received, bit {first} the first."),
-            Self::FrameBits { bits, fits: true } => return write!(f, "{bits} bit"),
-            Self::FrameBits { bits, fits: false } => return write!(f, "{bits} bit (the module takes 10 to 40)"),
+            Self::Counting { first } => {
+                return write!(f, "Bit 0 is the last bit received, and bit {first} is the first bit received.");
+            }
+            Self::FrameBits { bits, fits: true } => return write!(f, "{bits} bits"),
+            Self::FrameBits { bits, fits: false } => return write!(f, "{bits} bits (the module supports 10 to 40)"),
             Self::HighestNumber { bit, fits: true } => return write!(f, "{bit}"),
             Self::HighestNumber { bit, fits: false } => {
-                return write!(f, "{bit} (more than 32 bits apart: the module takes 32)");
+                return write!(f, "{bit} (the module supports positions of up to 32 bits)");
             }
             Self::Setting(number, value) => return write!(f, "{number} ({value})"),
             Self::FrameTypeNone { bits } => {
-                return write!(f, "none: the terminal reads up to 32 bits, not {bits}");
+                return write!(f, "none (the terminal reads at most 32 bits, but the frame has {bits})");
             }
-            Self::Divide { by, bits } => return write!(f, "divide the value by {by} ({bits} bits follow)"),
+            Self::Divide { by, bits } => {
+                return write!(f, "divide the value by {by} (number of bits that follow: {bits})");
+            }
             Self::Field { bits: 1, highest } => return write!(f, "1 bit at b{highest}"),
             Self::Field { bits, highest } => return write!(f, "{bits} bits from b{highest}"),
             Self::BurstSpan { clocks, micros } => return write!(f, "{clocks} clocks, {micros:.2} µs"),
             Self::PauseSpan { micros, monoflop_micros } => {
                 return write!(f, "pause {micros:.1} µs, tm up to {monoflop_micros:.0} µs");
             }
-            Self::SheetPurpose => "This sheet is for the control. It does not program the encoder.",
+            Self::SheetPurpose => "This sheet lists the settings for the control. It does not program the encoder.",
             Self::FrameLength => "Frame length",
             Self::Code => "Code",
             Self::CodeName(Code::Binary) => "binary (dual)",
@@ -171,21 +172,23 @@ impl fmt::Display for ExportText {
             Self::Monoflop => "Monoflop time (tm)",
             Self::HighestClock => "Highest clock",
             Self::Obstacle(ModuleObstacle::GrayExcess) => {
-                "Gray excess: modules know binary and Gray; as Gray the value is too high by a fixed number."
+                "The modules support binary and Gray code but not Gray excess. If the value is read as Gray code, it is \
+                 too high by a constant."
             }
-            Self::Obstacle(ModuleObstacle::Bcd) => "BCD: modules know binary and Gray.",
+            Self::Obstacle(ModuleObstacle::Bcd) => "The modules support binary and Gray code but not BCD.",
             Self::Obstacle(ModuleObstacle::GrayOver) => {
-                "The Gray code goes over more than the position; modules convert the position alone."
+                "The Gray code covers more bits than the position, but the modules convert only the position."
             }
-            Self::Obstacle(ModuleObstacle::Inverted) => "The data wires are exchanged: exchange them again.",
+            Self::Obstacle(ModuleObstacle::Inverted) => "The data wires are swapped. Connect them the other way round.",
             Self::Obstacle(ModuleObstacle::Between) => {
-                "Turns and steps are apart; most modules read one position without a gap."
+                "There is a gap between the turn bits and the step bits, but most modules can read only a position \
+                 without gaps."
             }
-            Self::ReadAsBinary => "Read the whole frame as binary, and decode it in the program.",
+            Self::ReadAsBinary => "Read the whole frame as binary, and decode it in the program of the control.",
             Self::CodeType => "Code type",
             Self::BitNumberLowest => "Bit number LSB of the position",
             Self::BitNumberHighest => "Bit number MSB of the position",
-            Self::LastIsError => "1: the last bit is an error bit",
+            Self::LastIsError => "1 (the last bit is an error bit)",
             Self::InTheProgram => "In the program",
             Self::NoField => "0 bits",
             Self::Binary => "binary",

@@ -1,30 +1,30 @@
-//! Names of settings in the description of a family.
+//! Names of a family's settings in error messages.
 
-/// A setting of a family, as named in error messages.
+/// Name of a family's setting in an error message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingName {
-    /// The frame is exactly as wide as the position.
+    /// Frame that has exactly the width of the position.
     #[error("frame")]
     Frame,
-    /// Positions shifted to the right.
+    /// Shift of the position by one clock.
     #[error("shifting to the right")]
     ShiftRight,
     /// Number of steps that is not a power of two.
     #[error("number of steps that is not a power of two")]
     AnySteps,
-    /// Multiturn width that was set.
+    /// Multiturn width as named on the command line.
     #[error("mt")]
     Mt,
     /// Multiturn part.
     #[error("multiturn")]
     Multiturn,
-    /// Multiturn width, with its limits.
+    /// Multiturn width that is outside its limits.
     #[error("multiturn bits")]
     MultiturnBits,
-    /// Singleturn width that was set.
+    /// Singleturn width as named on the command line.
     #[error("st")]
     St,
-    /// Singleturn width, with its limits.
+    /// Singleturn width that is outside its limits.
     #[error("singleturn bits")]
     SingleturnBits,
     /// Width of a linear position.
@@ -39,7 +39,7 @@ pub enum SettingName {
     /// Total number of steps.
     #[error("total number of steps")]
     StepsAltogether,
-    /// Number of steps on a round axis.
+    /// Number of steps on all turns of a round axis.
     #[error("steps over this number of revolutions")]
     StepsAround,
     /// Turns.
@@ -60,11 +60,11 @@ pub enum SettingName {
     /// Round axis.
     #[error("round axis")]
     RoundAxis,
-    /// Step length as set.
+    /// Step length as named on the command line.
     #[error("step")]
     Step,
     /// Step length.
-    #[error("length of a step")]
+    #[error("step length")]
     StepLength,
     /// The preset.
     #[error("preset")]

@@ -1,4 +1,4 @@
-//! Resolution of a family's settings to a frame: resolution, code, alignment, error bits and clocks.
+//! Conversion of a family's settings to a frame with its resolution, code, alignment, error bits and clocks.
 
 use super::{Align, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode};
@@ -6,7 +6,8 @@ use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCovera
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
 
-/// Settings of an encoder family; `None` selects the factory setting with the highest resolution.
+/// Settings of an encoder family. `None` selects the factory setting, or the highest resolution that the other settings
+/// allow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Width of the multiturn part in bits.
@@ -21,7 +22,7 @@ pub struct Settings {
     pub revolutions: Option<Fraction>,
     /// Position code.
     pub code: Option<Code>,
-    /// Extent of the code word.
+    /// Bits that a Gray code covers.
     pub coded: Option<GrayCoverage>,
     /// Number of clocks in a burst.
     pub clocks: Option<u8>,
@@ -31,11 +32,11 @@ pub struct Settings {
     pub shift: bool,
     /// Location of the error bits.
     pub errors: Option<ErrorPlace>,
-    /// Length of a step.
+    /// Length of a step in nanometres.
     pub step_nanometres: Option<u32>,
     /// Counting direction.
     pub direction: Option<Direction>,
-    /// Position at the zero of the shaft.
+    /// Position at the zero point of the shaft.
     pub preset: Option<u64>,
 }
 
@@ -48,20 +49,20 @@ pub struct ResolvedFrame {
     pub align: Align,
     /// Location of the error bits.
     pub errors: ErrorPlace,
-    /// Counting direction, which does not affect the reading of frames.
+    /// Counting direction. It does not change how a frame is read.
     pub direction: Direction,
-    /// Position at the zero of the shaft, within the range. It does not affect the reading of frames.
+    /// Position at the zero point of the shaft, within the range. It does not change how a frame is read.
     pub preset: u64,
-    /// Accepted settings that the manual does not mention.
+    /// Remarks about settings that were accepted although the manual does not mention them.
     pub advice: Vec<Advice>,
 }
 
-/// A setting that the manual does not mention.
+/// A remark about a setting that was accepted although the manual does not mention it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advice {
     /// The manual lists other codes for this family.
     Code(Code),
-    /// The burst has more clocks than the frame has bits, and the content of the surplus clocks is unknown.
+    /// The burst has more clocks than the frame has bits. The content of the additional clocks is unknown.
     Clocks {
         /// Number of bits in the frame.
         bits: u8,
@@ -81,8 +82,8 @@ pub enum SettingsError {
         /// The unavailable setting.
         field: SettingName,
     },
-    /// The two settings are mutually exclusive.
-    #[error("{0} and {1} exclude each other")]
+    /// The two settings cannot be combined.
+    #[error("{0} and {1} cannot be used together")]
     Both(SettingName, SettingName),
     /// A value is outside its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
@@ -98,8 +99,8 @@ pub enum SettingsError {
         /// Requested value.
         value: u64,
     },
-    /// The family does not support the alignment, or the frame is too short for it.
-    #[error("{family}: {bits} position bits cannot be {align}; possible: {possible}")]
+    /// The family does not support the alignment, or the position does not fit into the frame with it.
+    #[error("{family} does not support the alignment {align} for {bits} position bits; supported: {possible}")]
     Align {
         /// Name of the family.
         family: String,
@@ -111,7 +112,7 @@ pub enum SettingsError {
         possible: String,
     },
     /// The family does not support this location of the error bits.
-    #[error("{family} cannot send its error bits {place}; possible: {possible}")]
+    #[error("{family} does not support the setting {place} for error bits; supported: {possible}")]
     Errors {
         /// Name of the family.
         family: String,
@@ -120,7 +121,7 @@ pub enum SettingsError {
         /// Supported locations.
         possible: String,
     },
-    /// There are more clocks than the encoder tolerates.
+    /// The burst has more clocks than the encoder allows.
     #[error("{family} supports at most {most} clocks, not {clocks}")]
     Clocks {
         /// Name of the family.
@@ -145,7 +146,7 @@ impl Settings {
     /// Returns the frame that a family sends with these settings.
     ///
     /// # Errors
-    /// [`SettingsError`] with the reason why the family cannot send such a frame.
+    /// [`SettingsError`] if the family cannot send such a frame.
     pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
         let range = self.range(family)?;
         let preset = self.preset.unwrap_or(0);
@@ -163,7 +164,7 @@ impl Settings {
             let possible = family.align.iter().filter(|align| fitting(align));
             return Err(SettingsError::Align { family: family.name.clone(), bits, align, possible: list(possible) });
         };
-        // Right-aligned to clock 25 *is* right-aligned to 24 and shifted (reference section 6, trap 3).
+        // Alignment to clock 25 already is alignment to clock 24 with a shift. See reference section 6, trap 3.
         let shift_right = self.shift && align != Align::Right25;
         if shift_right && !family.shift {
             return Err(SettingsError::None { family: family.name.clone(), field: SettingName::ShiftRight });
@@ -176,7 +177,7 @@ impl Settings {
         }
         let errors = placed(frame, place, lead + bits);
         let last_error = errors.iter().map(|bit| bit.clock).max().unwrap_or(0);
-        // An error bit that could be placed after the area does not change the length of the frame.
+        // Error bits that follow the position leave the length of the frame unchanged if there is room for them.
         let fixed = placed(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
         let whole = if place == ErrorPlace::Following && frame.area.is_some() { fixed } else { last_error };
         let own = area.max(whole);
@@ -190,7 +191,8 @@ impl Settings {
             range,
             code,
             coded: self.coded.unwrap_or(GrayCoverage::Position),
-            // A host that cannot use error bits clocks the resolution only (manual 3.1): zeros are left out with them.
+            // A host that cannot use error bits clocks in only the position, without the zeros after it. See manual
+            // 3.1.
             area: if place == ErrorPlace::None { area.min(clocks) } else { area },
             lead,
             between: 0,
@@ -290,7 +292,7 @@ fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: 
     }
 }
 
-/// Returns the number of zeros before the position, or `None` if the position does not fit.
+/// Returns the number of zeros before the position, or `None` if the position is too wide for the alignment.
 fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
     let tree = |slot: u8, behind: u8| match *range {
         Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn && singleturn <= behind => {
@@ -311,7 +313,7 @@ fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
-/// Returns the error bits of a frame with their clocks. `behind` is the last clock of the position.
+/// Returns the error bits of a frame at the given location. `behind` is the last clock of the position.
 fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {

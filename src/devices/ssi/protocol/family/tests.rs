@@ -82,9 +82,9 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
 #[test]
 fn settings_that_would_be_ignored_are_refused() {
     let cases = [
-        ("ahm36,steps=3600,mt=12", "steps and mt exclude each other"),
-        ("ahm36,steps=3600,st=12", "steps and st exclude each other"),
-        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns exclude each other"),
+        ("ahm36,steps=3600,mt=12", "steps and mt cannot be used together"),
+        ("ahm36,steps=3600,st=12", "steps and st cannot be used together"),
+        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns cannot be used together"),
         ("afs60,steps=1000,turns=4", "AFS60 SSI has no turns"),
     ];
     for (text, reason) in cases {
@@ -211,15 +211,18 @@ fn unsupported_settings_are_refused_with_a_reason() {
         ("ahs36,clocks=14", "ERROR is on clock 15, but the frame has only 14 clocks"),
         (
             "ahs36,steps=359,code=gray-excess",
-            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
-             of the range",
+            "Gray excess requires an even number of steps, because with 359 steps two bits would change at the end of \
+             the range",
         ),
         ("ahs36,st=15", "AHS36 SSI: singleturn bits must be from 1 to 14, not 15"),
         ("ahs36,mt=4", "AHS36 SSI has no multiturn"),
         ("afm60,mt=10", "AFM60 SSI: multiturn bits must be from 12 to 12, not 10"),
         ("atm60,mt=13,st=13", "ATM60 SSI: singleturn bits must be from 1 to 12, not 13"),
-        ("atm60,align=right24", "ATM60 SSI: 25 position bits cannot be right24; possible: tree12_13, right25"),
-        ("afs60,err=fix", "AFS60 SSI cannot send its error bits fix; possible: following, none"),
+        (
+            "atm60,align=right24",
+            "ATM60 SSI does not support the alignment right24 for 25 position bits; supported: tree12_13, right25",
+        ),
+        ("afs60,err=fix", "AFS60 SSI does not support the setting fix for error bits; supported: following, none"),
         ("afs60s,err=none,shift=1", "AFS60S Pro has no shifting to the right"),
         ("atm60,steps=9000", "ATM60 SSI: steps per turn must be from 2 to 8192, not 9000"),
         (

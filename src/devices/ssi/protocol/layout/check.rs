@@ -1,4 +1,4 @@
-//! Validation of a frame, and computation of its shifts and masks.
+//! Validation of a descriptor, and calculation of the shifts and masks of its layout.
 
 use super::{Flags, Layout, Part};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
@@ -8,7 +8,7 @@ use crate::devices::ssi::protocol::range::{Range, RangeError};
 /// The reason why a frame is impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// The number of clocks is zero, or exceeds what an adapter or a number can hold.
+    /// The number of clocks is 0 or above 64.
     #[error("a frame has 1 to 64 clocks, not {0}")]
     Clocks(u8),
     /// The range of positions is invalid.
@@ -18,7 +18,7 @@ pub enum LayoutError {
     #[error(transparent)]
     Code(#[from] CodeError),
     /// The position area extends beyond the frame.
-    #[error("the position reaches clock {area}, but there are only {clocks} clocks")]
+    #[error("the position extends to clock {area}, but the frame has only {clocks} clocks")]
     Area {
         /// Last clock of the area.
         area: u8,
@@ -38,7 +38,7 @@ pub enum LayoutError {
         area: u8,
     },
     /// Zeros are specified between multiturn and singleturn, although these have no separate bits.
-    #[error("zeros between turns and steps require separate bits for both; here the position is a single number")]
+    #[error("the position is a single number, so there cannot be zeros between turns and steps")]
     Between,
     /// The same clock is used twice.
     #[error("clock {clock} is used by both {first} and {second}")]
@@ -61,42 +61,42 @@ pub enum LayoutError {
         clocks: u8,
     },
     /// There are too many error bits or patterns.
-    #[error("at most {limit} {what}, not {count}")]
+    #[error("at most {limit} {what} are supported, not {count}")]
     Many {
-        /// The content in question.
+        /// The part that occurs too often.
         what: RepeatedPart,
         /// Maximum number.
         limit: usize,
         /// Given number.
         count: usize,
     },
-    /// Only a Gray code may cover more than the position.
-    #[error("only Gray code can include zeros and error bits")]
+    /// A code other than Gray covers more than the position.
+    #[error("zeros and error bits can be included in the code word only if Gray code is used")]
     NotGray,
-    /// An error or parity bit is within a part that is coded or shifted as a whole.
-    #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
+    /// An error or parity bit lies within the clocks that are coded or shifted as a whole.
+    #[error("{name} cannot be on clock {clock}, because the first {area} clocks are {done} together")]
     Inside {
         /// Use of the bit.
         name: ClockUse,
         /// Clock number of the bit.
         clock: u8,
-        /// Number of clocks in the area.
+        /// Number of clocks that are coded or shifted.
         area: u8,
-        /// Operation applied to the part.
+        /// Operation that applies to these clocks.
         done: WordOperation,
     },
-    /// The lowest bit is lost, which the code does not allow.
-    #[error("shifting right drops the lowest bit, and without it a word of this code is not a position")]
+    /// The shift drops the lowest bit, which only binary and Gray allow.
+    #[error("shifting to the right drops the lowest bit, without which this code cannot be decoded")]
     Lost,
     /// The frame has too few clocks for the repetition.
-    #[error("the frame and its repetition need {needed} clocks, but there are only {clocks}")]
+    #[error("the frame and the repeated frame need {needed} clocks, but there are only {clocks}")]
     Repeat {
         /// Required number of clocks.
         needed: u16,
         /// Available number of clocks.
         clocks: u8,
     },
-    /// The pattern cannot occur in any frame.
+    /// The pattern has more bits than the frame.
     #[error("the pattern {word:X} has more than {clocks} bits")]
     Pattern {
         /// The pattern.
@@ -205,7 +205,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
         taken.take(clock, ClockUse::Parity)?;
-        // The parity is computed from the sent bits, after all that.
+        // The parity is calculated from the bits as sent, after coding and shifting.
         let inside = |done, area| Err(LayoutError::Inside { name: ClockUse::Parity, clock, area, done });
         if clock <= coded_clocks {
             return inside(WordOperation::Coded, coded_clocks);
@@ -245,7 +245,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     })
 }
 
-/// Returns the location of the code word's bits within a word.
+/// Returns the locations of the upper and lower part of the code word within a word.
 fn parts(descriptor: &Descriptor, coding: &PositionCode) -> Result<[Part; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
@@ -266,7 +266,7 @@ fn parts(descriptor: &Descriptor, coding: &PositionCode) -> Result<[Part; 2], La
     };
     let behind = descriptor.word() - descriptor.lead - descriptor.between - bits;
     let low = Part { in_word: behind, in_code: 0, mask: low_bits_mask(lower) };
-    // Shifts of a part without bits are 0, so that none is as wide as a number.
+    // A part without bits has shifts of 0, because a shift by the full width would overflow.
     let high = if lower == bits {
         Part::default()
     } else {

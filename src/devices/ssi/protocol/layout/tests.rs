@@ -115,13 +115,13 @@ fn impossible_layouts_are_refused_with_a_reason() {
         (
             "few clocks",
             Descriptor { clocks: 24, ..plain() },
-            "the position reaches clock 25, but there are only 24 clocks",
+            "the position extends to clock 25, but the frame has only 24 clocks",
         ),
         (
             "odd gray excess",
             Descriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
-            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
-             of the range",
+            "Gray excess requires an even number of steps, because with 359 steps two bits would change at the end of \
+             the range",
         ),
         (
             "error bit on the position",
@@ -146,7 +146,7 @@ fn impossible_layouts_are_refused_with_a_reason() {
         (
             "repetition",
             Descriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
-            "the frame and its repetition need 51 clocks, but there are only 50",
+            "the frame and the repeated frame need 51 clocks, but there are only 50",
         ),
         (
             "parity bit in the Gray code",
@@ -158,12 +158,12 @@ fn impossible_layouts_are_refused_with_a_reason() {
                 parity: parity(27),
                 ..plain()
             },
-            "the parity bit on clock 27 is among the 27 clocks that are coded as a whole",
+            "the parity bit cannot be on clock 27, because the first 27 clocks are coded together",
         ),
         (
             "parity bit in what is shifted",
             Descriptor { clocks: 28, area: 28, shift_right: true, parity: parity(28), ..plain() },
-            "the parity bit on clock 28 is among the 28 clocks that are shifted as a whole",
+            "the parity bit cannot be on clock 28, because the first 28 clocks are shifted together",
         ),
     ];
     for (what, descriptor, reason) in cases {

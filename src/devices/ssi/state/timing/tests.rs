@@ -62,7 +62,7 @@ fn the_sampling_moment_is_shown() {
         (TimingEvent::Next, 267.5),
     ];
     assert_eq!(marks, expected);
-    assert_eq!(span_texts(&synchronous)[4..], ["Minimum pause: 150 µs", "Next position being prepared: 125 µs"]);
+    assert_eq!(span_texts(&synchronous)[4..], ["Minimum pause: 150 µs", "Preparation of the next position: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
     assert_eq!(first_edge.marks()[0], TimingMark { event: TimingEvent::Taken, at: 0.0 });
     assert_eq!(span_texts(&first_edge)[3], "tm = 150 µs");
@@ -84,7 +84,7 @@ fn a_point_in_time_is_described() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let told =
         |at: f64| diagram.state_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
-    assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: MT11, one of 12 turn bits"]);
+    assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: bit MT11 of the turns (number of turn bits: 12)"]);
     assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
     assert_eq!(told(0.5), ["500 ns after the first edge"]);
 }

@@ -158,7 +158,9 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, AxisButton::Restarted);
     assert!(
-        axis.survived() && found(&axis, &seen).contains("You confirmed the power-off. The program did not detect it"),
+        axis.survived()
+            && found(&axis, &seen)
+                .contains("You confirmed that the supply was switched off, but the program could not verify this"),
         "{}",
         found(&axis, &seen)
     );
@@ -226,7 +228,7 @@ fn differences_from_saved_values_are_shown_and_restored() {
     let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().words(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
-    assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
+    assert!(returned(&seen).contains("have their previous value again: 2 of 2"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
     let told = words::unrestored_position_text(&axis, &seen).unwrap().words(Language::English);
     assert!(
@@ -292,10 +294,10 @@ fn a_run_ends_with_a_report() {
         "serial number 77",
         "Spindle pitch: 4.000 mm per turn",
         "7. Upper limit: done\n   The drive's limits are -10.00 mm to 20.00 mm.",
-        "The test moves used 10 % speed and 25 % torque.",
+        "The test moves were made at 10 % speed and 25 % torque.",
         "Lower limit: reached -10.01 mm (-0.01 mm off target)",
         "The virtual supply was switched off and on.",
-        "All values that can be saved are saved.",
+        "All values that the device can save have been saved.",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }

@@ -63,14 +63,14 @@ fn value(harness: &Harness<'_, Design>, label: &str) -> String {
 #[test]
 fn boundaries_are_moved_by_keys() {
     let mut harness = tree();
-    let split = "Boundary between turns and steps";
+    let split = "Boundary between the turn bits and the step bits";
     assert_eq!(value(&harness, split), "after clock 12");
     focus(&mut harness, split);
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::ArrowRight), (NONE, Key::ArrowLeft)]);
     assert_eq!(moves(&harness), [13, 14, 13].map(|clock| StripEvent::Moved(Handle::Split, clock)));
     assert!(harness.get_by_label(split).is_focused());
-    harness.get_by_label("Turns: 9 bit, clocks 5 to 13");
-    harness.get_by_label("Steps: 7 bit, clocks 14 to 20");
+    harness.get_by_label("Turn bits: 9, clocks 5 to 13");
+    harness.get_by_label("Step bits: 7, clocks 14 to 20");
     press(&mut harness, &[(NONE, Key::Home), (NONE, Key::Home), (NONE, Key::End)]);
     assert_eq!(moves(&harness)[3..], [5, 19].map(|clock| StripEvent::Moved(Handle::Split, clock)));
 
@@ -82,13 +82,13 @@ fn boundaries_are_moved_by_keys() {
 #[test]
 fn focus_follows_the_zeros_between() {
     let mut harness = tree();
-    focus(&mut harness, "Start of the steps");
+    focus(&mut harness, "Start of the step bits");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
-    harness.get_by_label("Zeros between: 1, on clock 13");
-    focus(&mut harness, "End of the turns");
+    harness.get_by_label("Zeros between turns and steps: 1, on clock 13");
+    focus(&mut harness, "End of the turn bits");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
-    assert!(harness.get_by_label("Boundary between turns and steps").is_focused());
-    assert_eq!(value(&harness, "Start of the steps"), "after clock 13");
+    assert!(harness.get_by_label("Boundary between the turn bits and the step bits").is_focused());
+    assert_eq!(value(&harness, "Start of the step bits"), "after clock 13");
 }
 
 /// Presses a handle, moves the pointer by this number of cells of 28 points, and releases it.
@@ -107,11 +107,11 @@ fn drag(harness: &mut Harness<'_, Design>, label: &str, cells: f32) {
 #[test]
 fn boundaries_are_dragged() {
     let mut harness = tree();
-    drag(&mut harness, "Boundary between turns and steps", 3.1);
+    drag(&mut harness, "Boundary between the turn bits and the step bits", 3.1);
     assert_eq!(moves(&harness), [StripEvent::Moved(Handle::Split, 15)]);
     let previews = harness.state().events.iter().filter(|event| matches!(event, StripEvent::Preview(Handle::Split, _)));
     assert!(previews.count() >= 2);
-    drag(&mut harness, "End of the position", 20.0);
+    drag(&mut harness, "End of the position bits", 20.0);
     assert_eq!(moves(&harness)[1..], [StripEvent::Moved(Handle::StepsEnd, 25)], "the frame has no more clocks");
     drag(&mut harness, "Entire position", 4.0);
     assert_eq!(moves(&harness).len(), 2, "there is no zero behind it");
@@ -119,24 +119,24 @@ fn boundaries_are_dragged() {
     assert_eq!(moves(&harness)[2..], [StripEvent::Moved(Handle::Position, 3)]);
     drag(&mut harness, "End of the frame", 2.0);
     assert_eq!(moves(&harness)[3..], [StripEvent::Moved(Handle::FrameEnd, 27)]);
-    drag(&mut harness, "Start of position", 0.2);
+    drag(&mut harness, "Start of the position bits", 0.2);
     assert_eq!(moves(&harness).len(), 4, "where it is, is no other place");
 }
 
 #[test]
 fn a_drag_previews_the_frame_and_can_be_cancelled() {
     let mut harness = tree();
-    let from = harness.get_by_label("End of the position").rect().center();
+    let from = harness.get_by_label("End of the position bits").rect().center();
     harness.drag_at(from);
     harness.step();
     harness.hover_at(from - Vec2::new(28.0 * 3.0, 0.0));
     harness.run_steps(3);
-    harness.get_by_label("Steps: 5 bit, clocks 13 to 17");
+    harness.get_by_label("Step bits: 5, clocks 13 to 17");
     assert_eq!(harness.state().events.last(), Some(&StripEvent::Preview(Handle::StepsEnd, 17)));
     press(&mut harness, &[(NONE, Key::Escape)]);
     harness.hover_at(from - Vec2::new(28.0 * 4.0, 0.0));
     harness.run_steps(3);
-    harness.get_by_label("Steps: 8 bit, clocks 13 to 20");
+    harness.get_by_label("Step bits: 8, clocks 13 to 20");
     harness.drop_at(from - Vec2::new(28.0 * 4.0, 0.0));
     harness.run();
     assert!(moves(&harness).is_empty());
@@ -147,14 +147,14 @@ fn error_bits_are_dragged_to_another_clock() {
     let mut harness = strip(&layout("afs60", &Settings { clocks: Some(24), ..Settings::default() }), 860.0);
     assert_eq!(
         value(&harness, "Error bit ERRSYNC"),
-        "on clock 21, position invalid at some time since the last transfer"
+        "clock 21, position was invalid at least once since the last transfer"
     );
     drag(&mut harness, "Error bit ERRSYNC", 2.0);
     assert_eq!(moves(&harness), [StripEvent::Moved(Handle::Error(2), 23)]);
     focus(&mut harness, "Error bit ERRDIG");
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::Home)]);
     assert_eq!(moves(&harness)[1..], [20, 19].map(|clock| StripEvent::Moved(Handle::Error(0), clock)));
-    assert_eq!(value(&harness, "Error bit ERRSI"), "on clock 20, position invalid");
+    assert_eq!(value(&harness, "Error bit ERRSI"), "clock 20, position invalid");
 }
 
 #[test]
@@ -169,11 +169,11 @@ fn cells_can_be_selected_and_bits_toggled() {
         harness.run();
     }
     assert_eq!(harness.state().events, [StripEvent::Toggled(7), StripEvent::Selected(7)]);
-    assert_eq!(value(&harness, "Frame"), "Clock 7: MT5, one of 8 turn bits = 1");
+    assert_eq!(value(&harness, "Frame"), "Clock 7: bit MT5 of the turns (number of turn bits: 8) = 1");
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::Space), (NONE, Key::End), (NONE, Key::Home)]);
     let keyed = [StripEvent::Selected(8), StripEvent::Toggled(8), StripEvent::Selected(25), StripEvent::Selected(1)];
     assert_eq!(harness.state().events[2..], keyed);
-    assert_eq!(value(&harness, "Turns: 8 bit, clocks 5 to 12"), "00110000");
+    assert_eq!(value(&harness, "Turn bits: 8, clocks 5 to 12"), "00110000");
 }
 
 #[test]
@@ -182,8 +182,8 @@ fn every_frame_stays_within_its_width() {
         let plain = crate::devices::ssi::protocol::Descriptor::plain(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
         let left = harness.get_by_label("before").rect().left();
-        let labels = ["Frame", "End of the frame", "Start of position", "Entire position"];
-        for label in labels.into_iter().chain(["Boundary between turns and steps"]) {
+        let labels = ["Frame", "End of the frame", "Start of the position bits", "Entire position"];
+        for label in labels.into_iter().chain(["Boundary between the turn bits and the step bits"]) {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= left && rect.right() <= left + width, "{label} at {width}: {rect}");
         }
@@ -195,7 +195,7 @@ fn a_handle_describes_its_purpose_and_range() {
     let mut harness = tree();
     // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five after it.
     for (label, reach) in
-        [("Boundary between turns and steps", "Range: 5 to 19"), ("Entire position", "Range: 1 to 10")]
+        [("Boundary between the turn bits and the step bits", "Range: 5 to 19"), ("Entire position", "Range: 1 to 10")]
     {
         let rect = harness.get_by_label(label).rect();
         harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
