@@ -126,7 +126,7 @@ fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
     let file = bench.file("wanted.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
     let ran = bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]);
-    ran.fails(1, &["write protection: 0", "backups"]);
+    ran.fails(1, &["still not write-protected: 0", "backups"]);
     assert!(ran.took < Duration::from_secs(15), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4D 00 C8 55"), frame("40 4B 00 00 04 55 0A 0B 0C 0D")]);
 
