@@ -18,7 +18,7 @@ use encoder_studio::buses::ethernet_ip::protocol::{
 use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionIntent, MotionRequest, Permit, SpeedTorque};
-use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, MotionRules, Opened};
+use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, MotionLimitParameters, Opened};
 use encoder_studio::devices::hiperdrive::protocol::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutputImage, Topology, Variant,
 };
@@ -184,7 +184,7 @@ fn port() -> (Box<dyn DatagramChannel>, Target, Arc<RealClock>) {
 fn ours() -> (Box<dyn DeviceConnection>, Target) {
     let (packets, target, clock) = port();
     let motion = Motion::new(clock.clone());
-    let rules = MotionRules {
+    let rules = MotionLimitParameters {
         requested: Some(1),
         scale: Some((256, 1)),
         limits: Some((-33_000_000, 33_000_000)),
@@ -324,7 +324,7 @@ pub(crate) fn run() {
             println!("{range:>22} {:>10} {:>10}", sent.count, came.count);
         }
         for (name, histogram) in [("sent", &sent), ("came", &came)] {
-            let (least, most) = histogram.range_us().unwrap_or_default();
+            let (least, most) = histogram.deviation_range_us().unwrap_or_default();
             println!("{name}: {} intervals, off by {least} to {most} µs", histogram.total());
         }
     }

@@ -73,7 +73,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// Runs the complete window with the position of a virtual BiSS encoder at the virtual adapter in its plot, as drawn
 /// when the adapter streams 20 000 frames per second.
 fn stream() {
-    use encoder_studio::app::{Action, Environment, Studio, Tab, ThemeData};
+    use encoder_studio::app::{Action, Studio, StudioEnvironment, Tab, ThemeData};
     use encoder_studio::kinds::program;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -134,7 +134,7 @@ fn stream() {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
             let mut studio = Studio::new(
-                Environment::real(Store::at(&folder), program().studio),
+                StudioEnvironment::real(Store::at(&folder), program().studio),
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
             studio.act(Action::ShowTab(Tab::named("Biss")));
@@ -164,7 +164,7 @@ fn write_capture(path: &std::path::Path) {
 /// Runs the complete window with the capture in its scope: every frame another stretch, as fast as possible.
 fn plot() {
     use encoder_studio::analysis::SampleTime;
-    use encoder_studio::app::{Action, Environment, Studio, ThemeData, recorder};
+    use encoder_studio::app::{Action, Studio, StudioEnvironment, ThemeData, recorder};
     use encoder_studio::kinds::program;
     use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
@@ -224,7 +224,8 @@ fn plot() {
         }
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
-    let mut studio = Studio::new(Environment::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
+    let mut studio =
+        Studio::new(StudioEnvironment::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
     studio.begin(None, None);
     studio.act(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {

@@ -117,7 +117,7 @@ pub enum Done {
     /// A search in the connection form of a tab has a result. See [`Done::finder`].
     Finder(Tab, Payload),
     /// A task that belongs to no session has ended. Contains the function that handles its result.
-    Shared(SharedResult),
+    Shared(SharedResultHandler),
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
         file: ProfileFile,
@@ -228,7 +228,7 @@ pub enum OpenFailure {
 }
 
 /// Function that handles a result that belongs to no session.
-pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
+pub(crate) type SharedResultHandler = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 #[derive(Debug)]
 pub enum ReadError {

@@ -28,7 +28,7 @@ impl Studio {
     pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
-        let writes = services.is_closing_with_write() || self.devices.iter().any(|device| device.is_writing());
+        let writes = services.has_closing_write() || self.devices.iter().any(|device| device.is_writing());
         let runs = !services.closing_sessions.is_empty() || self.devices.iter().any(|device| device.is_busy());
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
@@ -43,7 +43,7 @@ impl Studio {
         if let Some(motion) = device.motion_mut() {
             motion.stop();
         }
-        if device.is_busy() || device.is_dirty() || device.has_recorded_much() {
+        if device.is_busy() || device.is_dirty() || device.has_long_unsaved_recording() {
             let text = match (device.source(), device.is_dirty() && !device.preserves_edits()) {
                 (_, true) => "question.session_lost",
                 _ if device.is_busy() => "question.session_busy",
@@ -73,7 +73,7 @@ impl Studio {
         self.stop_motion();
         let busy = self.devices.iter().any(|device| device.is_busy());
         let edits = self.devices.iter().any(|device| device.is_dirty());
-        let recorded = self.devices.iter().any(|device| device.has_recorded_much());
+        let recorded = self.devices.iter().any(|device| device.has_long_unsaved_recording());
         if busy || edits || recorded {
             let lost = |device: &&AnyDevice| device.is_dirty() && !device.preserves_edits();
             let text = match self.devices.iter().map(Box::as_ref).find(lost) {
@@ -89,7 +89,7 @@ impl Studio {
     }
 
     /// Handles a request of the system to end the program. Edits are kept as drafts, and no questions are asked.
-    pub(super) fn quit(&mut self) {
+    pub(super) fn quit_without_asking(&mut self) {
         self.question = None;
         self.stop();
         self.begin_closing();

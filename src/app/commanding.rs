@@ -38,7 +38,7 @@ impl Studio {
     }
 
     /// Starts live values automatically once the device has been read and its line is idle.
-    pub(super) fn start_live(&mut self) {
+    pub(super) fn start_due_live_values(&mut self) {
         let is_due = |device: &AnyDevice| {
             let state = device.state();
             state.live_due && !state.just_connected && device.is_ready()
@@ -57,10 +57,10 @@ impl Studio {
     fn write_profile_to(&mut self, id: SessionId, target: SessionId) {
         // A device without a memory is never written to, so it can adopt a read-only profile.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
-        if is_written && self.is_only_looked_at(id) {
+        if is_written && self.refuse_if_read_only(id) {
             return;
         }
-        let Some(body) = self.device(id).and_then(AnyDevice::wanted_body) else { return };
+        let Some(body) = self.device(id).and_then(AnyDevice::edited_body) else { return };
         let Some(tab) = self.device(target).map(AnyDevice::tab) else { return };
         self.show(tab, target);
         let Some(at) = self.devices.iter().position(|device| device.id() == target) else { return };

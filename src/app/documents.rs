@@ -79,7 +79,7 @@ impl Studio {
     }
 
     /// Refuses to save or write a profile with a newer schema. Returns `true` if it was refused.
-    pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
+    pub(crate) fn refuse_if_read_only(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };
         self.services.notify(Severity::Error, vec![refusal], None);

@@ -66,14 +66,14 @@ pub enum SettingsReadState {
 }
 
 /// A device with drives, about which the settings store data.
-pub trait DriveMemory {
+pub trait StoredDriveData {
     /// Returns the name of the entry in the settings, or `None` before the device has been read.
     fn storage_name(&self) -> Option<String>;
 
     /// Adopts the stored data of the drives. Returns the data to store next, if they differ.
     ///
     /// All data are adopted once per device. After that, only limits marked elsewhere are adopted.
-    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
+    fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
     /// Locks the drives whose limits were marked elsewhere. The settings need not contain the mark yet.
     fn lock_marked_drives(&mut self, found: &RememberedDrives);
@@ -122,7 +122,7 @@ impl RememberedDrives {
     ///
     /// A mark with the same number may already be confirmed here, but not yet on disk. Programs that do not count marks
     /// leave out the numbers.
-    pub(crate) fn newly_marked(&self, before: &RememberedDrives) -> Vec<u8> {
+    pub(crate) fn newly_marked_drives(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
             number != before.marks(*drive) || number == 0 && !before.is_unconfirmed(*drive)
@@ -188,7 +188,7 @@ mod tests {
             ("marks: {1: 2}", "marks: {1: 1}", &[]),
         ];
         for (found, before, marked) in cases {
-            assert_eq!(of(found).newly_marked(&of(before)), marked, "{found}, {before}");
+            assert_eq!(of(found).newly_marked_drives(&of(before)), marked, "{found}, {before}");
         }
     }
 }

@@ -58,7 +58,7 @@ impl<B: EditBase> Edits<B> {
     }
 
     /// Reverts the edits for which `is_meant` is true, as one undo step. Returns `false` if there are none.
-    pub fn undo_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
+    pub fn revert_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
@@ -68,7 +68,7 @@ impl<B: EditBase> Edits<B> {
     pub fn reread(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
-        self.history.forget_undone();
+        self.history.discard_undone_steps();
     }
 
     /// Discards all values and edits, because another device is connected.
@@ -113,7 +113,7 @@ impl<B: EditBase> PendingEdits for Edits<B> {
     }
 
     fn revert(&mut self) -> bool {
-        self.undo_matching(|_| true)
+        self.revert_matching(|_| true)
     }
 
     fn forget_steps(&mut self) {

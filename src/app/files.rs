@@ -202,8 +202,8 @@ impl Studio {
     /// Passes new samples to the tables that are being written.
     pub(super) fn feed_exports(&mut self) {
         for device in &mut self.devices {
-            device.recorders_mut().into_iter().for_each(Recorder::feed_export);
+            device.recorders_mut().into_iter().for_each(Recorder::pass_rows_to_export);
         }
-        self.tools.iter_mut().for_each(|(_, tool)| tool.recorder_mut().feed_export());
+        self.tools.iter_mut().for_each(|(_, tool)| tool.recorder_mut().pass_rows_to_export());
     }
 }

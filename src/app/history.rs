@@ -51,7 +51,7 @@ impl<T> History<T> {
         *self = History::default();
     }
 
-    pub(super) fn forget_undone(&mut self) {
+    pub(super) fn discard_undone_steps(&mut self) {
         self.redo.clear();
     }
 }

@@ -131,7 +131,7 @@ impl HoldState {
                 self.pointer = true;
                 self.let_go();
                 if on && alone && scene.enabled && scene.window {
-                    self.hold_by(HoldSource::Pointer);
+                    self.start_hold(HoldSource::Pointer);
                 }
             }
             HoldInput::PointerMoved { inside: true } => {}
@@ -193,7 +193,7 @@ impl HoldState {
             None if !scene.keyboard => {}
             None if scene.moving => self.stop = true,
             None if fresh && plain && scene.enabled && scene.window && !self.pointer => {
-                self.hold_by(HoldSource::Key(key))
+                self.start_hold(HoldSource::Key(key))
             }
             None => {}
         }
@@ -203,7 +203,7 @@ impl HoldState {
         self.keys.is_down(PressKey::Space) || self.keys.is_down(PressKey::Enter)
     }
 
-    fn hold_by(&mut self, holder: HoldSource) {
+    fn start_hold(&mut self, holder: HoldSource) {
         self.holder = Some(holder);
         self.began = true;
     }

@@ -6,9 +6,9 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use super::action::{Action, Attempt, Done, OpenFailure, Opened};
 use super::given::LinkOpener;
 use super::question::{Question, Then};
-use super::services::{Environment, JobState, Services};
+use super::services::{JobState, Services, StudioEnvironment};
 use super::session::{Kind, PendingOpen, Phase, Source};
-use super::shutdown::shares_wire;
+use super::shutdown::is_same_connection;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
@@ -47,7 +47,7 @@ impl Studio {
     /// otherwise in a new session. A session of another kind releases the connection.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_absolute_file(url);
-        if let Some(id) = self.session_at(tab, &url) {
+        if let Some(id) = self.prepare_session_for_link(tab, &url) {
             self.open_session_link(id, url);
         }
     }
@@ -56,16 +56,16 @@ impl Studio {
     pub(super) fn open_discovered(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
-        if let Some(id) = self.session_at(tab, &url) {
+        if let Some(id) = self.prepare_session_for_link(tab, &url) {
             self.start_open_attempt(id, url, was_asked);
         }
     }
 
     /// Selects the session for a link and returns its id, or `None` if the link must not be opened.
-    fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
+    fn prepare_session_for_link(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
-            let holds = matches!(device.source(), Source::Link(other) if shares_wire(other, url));
+            let holds = matches!(device.source(), Source::Link(other) if is_same_connection(other, url));
             if !holds {
                 continue;
             }
@@ -107,7 +107,7 @@ impl Studio {
     pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
-            held && matches!(device.source(), Source::Link(own) if shares_wire(own, url))
+            held && matches!(device.source(), Source::Link(own) if is_same_connection(own, url))
         };
         let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(holds)) else {
             return Ok(None);
@@ -197,7 +197,7 @@ impl Services {
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.world.clone(), self.tasks.wake());
-        let endings = self.closing_workers_on(&url);
+        let endings = self.sessions_closing_on_link(&url);
         self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
                 // Nothing is ever sent on this channel; it only closes.
@@ -212,7 +212,7 @@ impl Services {
 }
 
 fn open<D: Kind>(
-    world: &Environment,
+    world: &StudioEnvironment,
     url: &LinkUrl,
     prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,

@@ -36,11 +36,11 @@ pub(crate) trait SteppedEdits {
     fn history(&self) -> &History<Self::Values>;
 
     /// Returns the original values, the edited values and the undo steps, or `None` if nothing has been read.
-    fn parts(&mut self) -> Option<SteppedParts<'_, Self::Values>>;
+    fn parts(&mut self) -> Option<EditHistoryParts<'_, Self::Values>>;
 }
 
 /// The original values, the edited values and the undo steps.
-pub(crate) type SteppedParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
+pub(crate) type EditHistoryParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
 
 impl<S: SteppedEdits> PendingEdits for S {
     fn count(&self) -> usize {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Settings;
 use super::devices::MotionControl;
-use super::drives::{DriveMemory, SettingsReadState};
+use super::drives::{SettingsReadState, StoredDriveData};
 use super::studio::Studio;
 use crate::store::FileError;
 
@@ -17,7 +17,7 @@ impl Studio {
     pub(super) fn remember_drives(&mut self) {
         for drives in self.devices.iter_mut().filter_map(|device| device.drive_memory()) {
             let Some(key) = drives.storage_name() else { continue };
-            if let Some(changed) = drives.exchange_remembered(&self.settings.drives(&key)) {
+            if let Some(changed) = drives.sync_remembered_drives(&self.settings.drives(&key)) {
                 self.settings.remember_drives(key, changed);
             }
         }
@@ -27,8 +27,8 @@ impl Studio {
     /// unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
-        let is_old = self.settings_store.is_older(&now, STALE);
-        let mut is_due = self.has_control() && self.settings_store.is_older(&now, PACE);
+        let is_old = self.settings_store.is_last_read_older(&now, STALE);
+        let mut is_due = self.has_control() && self.settings_store.is_last_read_older(&now, PACE);
         for drives in self.controlled_drives() {
             if is_old && drives.marks() == SettingsReadState::Read {
                 drives.set_read_state(SettingsReadState::Unread);
@@ -42,13 +42,13 @@ impl Studio {
     }
 
     pub(super) fn apply_read_settings(&mut self, found: Option<Settings>) {
-        if let Some(found) = self.settings_store.finish_read(found, &mut self.settings) {
+        if let Some(found) = self.settings_store.merge_read_settings(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.drive_memory()) {
                 drives.storage_name().into_iter().for_each(|key| drives.lock_marked_drives(&found.drives(&key)));
             }
         }
         self.remember_drives();
-        let reading = |drives: &&mut dyn DriveMemory| drives.marks() == SettingsReadState::Reading;
+        let reading = |drives: &&mut dyn StoredDriveData| drives.marks() == SettingsReadState::Reading;
         self.controlled_drives().filter(reading).for_each(|drives| drives.set_read_state(SettingsReadState::Read));
     }
 
@@ -59,7 +59,7 @@ impl Studio {
         self.controlled_drives().for_each(|drives| drives.set_read_state(SettingsReadState::Unread));
     }
 
-    fn controlled_drives(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
+    fn controlled_drives(&mut self) -> impl Iterator<Item = &mut dyn StoredDriveData> {
         let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::has_control));
         in_hand.filter_map(|device| device.drive_memory())
     }

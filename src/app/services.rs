@@ -21,7 +21,7 @@ use crate::worker::JobId;
 
 /// Access to everything outside the studio. Tests replace it.
 #[derive(Clone)]
-pub struct Environment {
+pub struct StudioEnvironment {
     pub store: Store,
     /// Values for kinds of devices from outside.
     pub given: Given,
@@ -34,9 +34,9 @@ pub struct Environment {
     pub patience: GracePeriods,
 }
 
-impl Environment {
+impl StudioEnvironment {
     pub fn real(store: Store, kinds: KindRegistry) -> Self {
-        Environment {
+        StudioEnvironment {
             store,
             given: Given::default(),
             kinds,
@@ -67,7 +67,7 @@ pub struct JobRecord {
 }
 
 pub struct Services {
-    pub(crate) world: Environment,
+    pub(crate) world: StudioEnvironment,
     pub(crate) tasks: TaskRunner,
     pub log: NoticeLog,
     /// Jobs, newest last.
@@ -95,7 +95,7 @@ impl Services {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
-    pub(crate) fn new(world: Environment, wake: Wake) -> Self {
+    pub(crate) fn new(world: StudioEnvironment, wake: Wake) -> Self {
         let (log, jobs) = (NoticeLog::default(), VecDeque::new());
         let (tasks, closing_sessions) = (TaskRunner::new(wake), Vec::new());
         let opening_files = Vec::new();
@@ -144,7 +144,7 @@ impl Services {
         self.jobs.iter()
     }
 
-    pub(super) fn job_begins(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
+    pub(super) fn record_job_start(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
         let about = about.to_owned();
         let since = self.now();
         self.jobs.push_back(JobRecord {

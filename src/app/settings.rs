@@ -122,15 +122,15 @@ impl Settings {
             ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
         take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone);
-        self.change_drives(known, ours);
+        self.apply_drive_changes(known, ours);
         for tab in ours.links.tabs() {
-            let used = newer_links(known.links(tab), ours.links(tab));
+            let used = links_used_since(known.links(tab), ours.links(tab));
             used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
         self
     }
 
-    pub(super) fn change_drives(&mut self, known: &Settings, ours: &Settings) {
+    pub(super) fn apply_drive_changes(&mut self, known: &Settings, ours: &Settings) {
         let none = RememberedDrives::default();
         for (device, own) in &ours.drives {
             let before = known.drives.get(device).unwrap_or(&none);
@@ -141,7 +141,7 @@ impl Settings {
         }
     }
 
-    pub(super) fn adopt_drives(&mut self, from: &Settings) {
+    pub(super) fn adopt_drive_data(&mut self, from: &Settings) {
         self.drives = from.drives.clone();
     }
 
@@ -240,7 +240,7 @@ impl<'de> Deserialize<'de> for Links {
 }
 
 /// Returns the links of `ours` that were used since `known`. They precede the unchanged links.
-fn newer_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
+fn links_used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
         let mut before = known.iter().filter(|link| !used.contains(link));

@@ -150,7 +150,7 @@ impl SettingsStore {
         match result {
             Ok(SavedSettings { settings: found, aside }) => {
                 self.known = written;
-                self.reconcile(&found, settings);
+                self.merge_drive_data(&found, settings);
                 self.failed = None;
                 if let Some((path, aside)) = aside {
                     let text = Text::new("session.settings_broken").with("aside", aside.display());
@@ -194,30 +194,30 @@ impl SettingsStore {
 
     /// Merges settings that were read. While a write is in progress they are returned instead, because the result of
     /// the write is merged later.
-    pub(crate) fn finish_read(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
+    pub(crate) fn merge_read_settings(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
             return found;
         }
         if let Some(found) = found {
-            self.reconcile(&found, settings);
+            self.merge_drive_data(&found, settings);
         }
         None
     }
 
     /// Returns whether the last read of the settings is older than the given time.
-    pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
+    pub(crate) fn is_last_read_older(&self, now: &Zoned, than: Duration) -> bool {
         // The clock of the system may be set back, so the difference has no sign.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
     /// Adopts data about drives from other windows.
-    fn reconcile(&mut self, found: &Settings, settings: &mut Settings) {
+    fn merge_drive_data(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
-        settings.adopt_drives(found);
-        settings.change_drives(&self.known, &ours);
-        self.known.adopt_drives(found);
+        settings.adopt_drive_data(found);
+        settings.apply_drive_changes(&self.known, &ours);
+        self.known.adopt_drive_data(found);
     }
 
     pub(super) fn is_idle(&self) -> bool {
@@ -281,7 +281,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
             Some((found, is_whole)) => (Some(found), is_whole),
             None => (None, true),
         };
-        let aside = if is_whole { None } else { move_to_backup(path)? };
+        let aside = if is_whole { None } else { copy_broken_settings(path)? };
         // A deleted file has no changes of others.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
@@ -290,7 +290,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: KindRegistry) ->
 }
 
 /// Copies an invalid file, unless this has been done before. Returns the paths of the file and of the copy.
-fn move_to_backup(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
+fn copy_broken_settings(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
     let aside = broken_copy_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));
     if is_there {

@@ -90,7 +90,7 @@ impl ClosingWorker for End {
     }
 }
 
-pub(crate) fn shares_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
+pub(crate) fn is_same_connection(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
 }
 
@@ -102,7 +102,7 @@ impl Services {
     }
 
     /// Releases a stream that belongs to no session.
-    pub(crate) fn leave_stream(&mut self, end: End, url: LinkUrl) {
+    pub(crate) fn close_stream(&mut self, end: End, url: LinkUrl) {
         let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.close_session_thread(Arc::new(end), info, None);
     }
@@ -148,13 +148,13 @@ impl Services {
     }
 
     /// Returns whether a session is ending and still writes.
-    pub(super) fn is_closing_with_write(&self) -> bool {
+    pub(super) fn has_closing_write(&self) -> bool {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
     /// Returns the sessions that are still ending on the connection of a link, with the maximum waiting time for each.
-    pub(crate) fn closing_workers_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
-        let own = self.closing_sessions.iter().filter(|closing| shares_wire(&closing.info.url, url));
+    pub(crate) fn sessions_closing_on_link(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
+        let own = self.closing_sessions.iter().filter(|closing| is_same_connection(&closing.info.url, url));
         own.map(|closing| (closing.ending.clone(), self.closing_timeout(closing.info.write.is_some()))).collect()
     }
 

@@ -15,7 +15,7 @@ pub struct StopPresses {
 impl StopPresses {
     /// Returns whether a press at the given time is meant for a motion that is running or has just ended. Such a press
     /// counts as another stop.
-    pub fn counts_as_stop(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
+    pub fn register_stop_press(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_recently_stopped(pressed);
         if means {
             self.stopped = Some(now);
@@ -45,23 +45,23 @@ mod tests {
     #[test]
     fn a_second_press_within_half_a_second_counts_for_the_same_motion() {
         let mut presses = StopPresses::default();
-        assert!(!presses.counts_as_stop(false, 9.0, 9.0), "nothing moves, and nothing has");
-        assert!(presses.counts_as_stop(true, 10.0, 10.0));
-        assert!(presses.counts_as_stop(false, 10.5, 10.5), "half a second later");
+        assert!(!presses.register_stop_press(false, 9.0, 9.0), "nothing moves, and nothing has");
+        assert!(presses.register_stop_press(true, 10.0, 10.0));
+        assert!(presses.register_stop_press(false, 10.5, 10.5), "half a second later");
         // The time counts from the last of them.
-        assert!(presses.counts_as_stop(false, 11.0, 11.0));
-        assert!(!presses.counts_as_stop(false, 11.75, 11.75));
+        assert!(presses.register_stop_press(false, 11.0, 11.0));
+        assert!(!presses.register_stop_press(false, 11.75, 11.75));
     }
 
     #[test]
     fn a_click_counts_from_the_button_press() {
         let mut presses = StopPresses::default();
-        presses.counts_as_stop(true, 10.0, 10.0);
+        presses.register_stop_press(true, 10.0, 10.0);
         presses.goes_down(10.25);
         // Released long after.
         let pressed = presses.press_time(true, 12.0);
         assert_eq!(pressed, 10.25);
-        assert!(presses.counts_as_stop(false, pressed, 12.0));
+        assert!(presses.register_stop_press(false, pressed, 12.0));
         assert_eq!(presses.press_time(false, 13.0), 13.0, "by the keyboard");
     }
 }

@@ -10,11 +10,11 @@ use super::diverged::ProfileConflict;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
-use super::services::{Environment, Services};
+use super::services::{Services, StudioEnvironment};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
-use super::tasks::{Mailbox, Wake};
+use super::tasks::{ActionMailbox, Wake};
 use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
@@ -43,7 +43,7 @@ pub struct Studio {
 
 impl Studio {
     /// Creates a studio with the stored settings. `wake` is called when there are new events.
-    pub fn new(world: Environment, wake: Wake) -> Self {
+    pub fn new(world: StudioEnvironment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
         let (settings, settings_store) = SettingsStore::load(&mut services);
@@ -101,7 +101,7 @@ impl Studio {
             Action::LetGo => self.release_jogs(),
             Action::Escape => self.press_escape(),
             Action::Close => self.close(),
-            Action::Quit => self.quit(),
+            Action::Quit => self.quit_without_asking(),
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.apply_connect_action(action),
@@ -169,7 +169,7 @@ impl Studio {
             connect.pump();
         }
         self.services.poll_closing_sessions();
-        self.start_live();
+        self.start_due_live_values();
         self.feed_exports();
         self.remember_drives();
         self.refresh_settings();
@@ -184,7 +184,7 @@ impl Studio {
         }
     }
 
-    pub fn mailbox(&self) -> Mailbox {
+    pub fn mailbox(&self) -> ActionMailbox {
         self.services.tasks.mailbox()
     }
 

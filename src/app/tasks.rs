@@ -20,7 +20,7 @@ pub struct TaskRunner {
 
 /// A mailbox that passes actions to the studio from any thread.
 #[derive(Clone)]
-pub struct Mailbox {
+pub struct ActionMailbox {
     sender: Sender<Action>,
     wake: Wake,
 }
@@ -41,8 +41,8 @@ impl TaskRunner {
         }
     }
 
-    pub fn mailbox(&self) -> Mailbox {
-        Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
+    pub fn mailbox(&self) -> ActionMailbox {
+        ActionMailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }
 
     /// Returns the callback with which sessions wake the window.
@@ -55,7 +55,7 @@ impl TaskRunner {
     }
 }
 
-impl Mailbox {
+impl ActionMailbox {
     pub fn send(&self, action: Action) {
         // If the studio has ended, the action is not needed.
         let _ = self.sender.send(action);

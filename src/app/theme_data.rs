@@ -24,7 +24,7 @@ pub struct TextSizes {
 /// Distances in points, all multiples of four.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Spaces {
+pub struct SpacingSizes {
     pub inside: f32,
     pub between: f32,
     pub groups: f32,
@@ -56,7 +56,7 @@ pub struct Palette {
 #[serde(deny_unknown_fields)]
 pub struct ThemeData {
     pub text: TextSizes,
-    pub space: Spaces,
+    pub space: SpacingSizes,
     pub radius: f32,
     dark: Palette,
     light: Palette,
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn distances_are_on_the_grid() {
-        let Spaces { inside, between, groups, around } = ThemeData::built_in().unwrap().space;
+        let SpacingSizes { inside, between, groups, around } = ThemeData::built_in().unwrap().space;
         assert!([inside, between, groups, around].iter().all(|space| space % 4.0 == 0.0));
     }
 }

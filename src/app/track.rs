@@ -204,7 +204,7 @@ impl<W: Watchable> DeviceRecorder<W> {
             }
             return columns.push(time, self.last, MotionRates::default(), Flags::BAD);
         };
-        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.continues_track(time, self.apart)) {
+        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.is_joined_to_last(time, self.apart)) {
             self.reset_tracking();
         }
         self.last = word;
@@ -312,7 +312,7 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     /// Prepares to decode the recording again from the `kept` words that are stored. The times do not change. If not
     /// all words are stored, the old recording is kept as well.
-    pub fn restart_decoding(&mut self, kept: usize) {
+    pub fn prepare_redecoding(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::for_steps(None));
             (self.follower, self.newest) = (None, None);
@@ -374,7 +374,7 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     pub fn gap(&mut self) {
-        self.recorder.break_all();
+        self.recorder.break_all_groups();
         self.reset_tracking();
     }
 

@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use crate::app::{Action, DriveStopHandles, Mailbox, Studio};
+use crate::app::{Action, ActionMailbox, DriveStopHandles, Studio};
 
 const ANSWERS: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal, which is 128 plus the number of SIGTERM.
@@ -44,7 +44,7 @@ pub(super) fn prepare(studio: &Studio) {
 }
 
 /// Ends the drives first, then closes the window without asking any questions. Returns whether the window closes.
-fn end(brakes: &DriveStopHandles, mailbox: &Mailbox) -> bool {
+fn end(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);
     brakes.wait(DriveStopHandles::PATIENCE);

@@ -4,7 +4,7 @@ use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, connection_dot, enabled_button, icon_button, name};
 use super::page::apart;
-use super::stop_debounce::{counts_as_stop, goes_down, press_time};
+use super::stop_debounce::{goes_down, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
@@ -243,7 +243,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
         // The display of a drive continues while it is stopped, and so does everything else that runs.
-        let motion = counts_as_stop(ui.ctx(), by_hand, press_time(ui, pressed));
+        let motion = register_stop_press(ui.ctx(), by_hand, press_time(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }

@@ -52,7 +52,7 @@ impl KeyboardFilter {
                     Some(own) => fresh.press(own),
                     None => {
                         if !asks {
-                            fresh.press_other_key(now);
+                            fresh.note_other_key_press(now);
                         }
                         if !typing {
                             fresh.doubt(now);
@@ -72,7 +72,7 @@ impl KeyboardFilter {
             ctx.request_repaint_after_secs(seconds as f32);
         }
         if stops {
-            stop_debounce::counts_as_stop(ctx, true, now);
+            stop_debounce::register_stop_press(ctx, true, now);
         }
         stops
     }

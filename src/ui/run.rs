@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::live_pace::processor_time;
 use super::{TabViews, Window, end, install_fonts};
-use crate::app::{Environment, KindRegistry, Studio, ThemeData, Wake, explain};
+use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
@@ -33,7 +33,8 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
             context.request_repaint();
         }
     });
-    let mut studio = Studio::new(Environment { given: start.given, ..Environment::real(store, kinds) }, wake);
+    let mut studio =
+        Studio::new(StudioEnvironment { given: start.given, ..StudioEnvironment::real(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);

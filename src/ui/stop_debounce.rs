@@ -5,9 +5,9 @@ use egui::{Context, Event, Id, Key, Response, Ui};
 use crate::app::StopPresses;
 
 /// Returns whether a press at the given frame time applies to a motion that is running or has just ended.
-pub(crate) fn counts_as_stop(ctx: &Context, moves: bool, pressed: f64) -> bool {
+pub(crate) fn register_stop_press(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
-    with(ctx, |presses| presses.counts_as_stop(moves, pressed, now))
+    with(ctx, |presses| presses.register_stop_press(moves, pressed, now))
 }
 
 /// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.

@@ -3,7 +3,7 @@
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
-use crate::app::{ColorScheme, Language, Palette, Rgb, Spaces, Text, TextSizes, ThemeData};
+use crate::app::{ColorScheme, Language, Palette, Rgb, SpacingSizes, Text, TextSizes, ThemeData};
 use crate::bits::Word;
 
 impl From<Rgb> for Color32 {
@@ -16,7 +16,7 @@ impl From<Rgb> for Color32 {
 pub struct Theme {
     pub palette: &'static Palette,
     pub sizes: &'static TextSizes,
-    pub space: &'static Spaces,
+    pub space: &'static SpacingSizes,
     pub radius: CornerRadius,
     pub language: Language,
     theme: ColorScheme,

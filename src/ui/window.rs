@@ -319,13 +319,13 @@ impl Window {
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
             // With Ctrl or Alt it closes nothing, but still stops.
-            stop_debounce::counts_as_stop(ctx, true, ctx.input(|input| input.time));
+            stop_debounce::register_stop_press(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }
         if !is_pressed || (in_use || !goes_down) && !moves {
             return;
         }
-        let means_motion = stop_debounce::counts_as_stop(ctx, moves, ctx.input(|input| input.time));
+        let means_motion = stop_debounce::register_stop_press(ctx, moves, ctx.input(|input| input.time));
         // A held key stops what has started since it was pressed, and nothing else. A further press within the half second
         // only applies to motion either: also to one requested in this frame that does not move yet.
         if !goes_down || means_motion && !moves {

@@ -5,8 +5,8 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
-    Code, Descriptor, ErrorBit, Families, FrameReading, GrayCoverage, Layout, Meaning, Parity, Range, Repeat, Settings,
-    TooWideError, c99, scl_source, structured_text, structured_text_32,
+    Code, ErrorBit, Families, FrameDescriptor, FrameReading, GrayCoverage, Layout, Meaning, Parity, Range, Repeat,
+    Settings, TooWideError, c99, scl_source, structured_text, structured_text_32,
 };
 
 use crate::support::python;
@@ -34,7 +34,7 @@ fn family(text: &str) -> Layout {
 /// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit
 /// that is active at 0.
 fn unusual_step_cost() -> Layout {
-    Layout::new(Descriptor {
+    Layout::new(FrameDescriptor {
         clocks: 51,
         code: Code::Gray,
         coded: GrayCoverage::AreaAndErrors,
@@ -52,7 +52,7 @@ fn unusual_step_cost() -> Layout {
         repeat: Some(Repeat { word: 25, gap: 1 }),
         inverted: true,
         range: Range::Bits { multiturn: 7, singleturn: 12 },
-        ..Descriptor::plain(0, 0)
+        ..FrameDescriptor::plain(0, 0)
     })
     .unwrap()
 }
@@ -213,7 +213,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
 
 #[test]
 fn what_32_bits_cannot_hold_is_refused() {
-    let wide = Layout::new(Descriptor::plain(12, 22)).unwrap();
+    let wide = Layout::new(FrameDescriptor::plain(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
     for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
         for (_, text) in decoders_of_32_bits(&layout) {

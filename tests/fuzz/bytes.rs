@@ -5,7 +5,7 @@ use encoder_studio::buses::{bridge, ethernet_ip, ubicom};
 use encoder_studio::devices::biss::protocol::{Descriptions, Eds, EdsBank};
 use encoder_studio::devices::hiperdrive::protocol::{AddressSwitch, PARAMETERS};
 use encoder_studio::devices::hiperface::protocol as hiperface;
-use encoder_studio::devices::interbus::procedures::process_data_word;
+use encoder_studio::devices::interbus::procedures::word_in_frame;
 use encoder_studio::devices::interbus::protocol::{Reply, WordOrder};
 
 use crate::{fuzz, hex_lines};
@@ -100,7 +100,7 @@ fn ethernet_ip_packets() {
 fn interbus_words() {
     fuzz("interbus", &hex_lines(include_str!("corpus/interbus.txt")), |bytes| {
         for order in [WordOrder::HighFirst, WordOrder::LowFirst] {
-            let _ = (process_data_word(true, bytes, order), process_data_word(false, bytes, order));
+            let _ = (word_in_frame(true, bytes, order), word_in_frame(false, bytes, order));
         }
         for word in bytes.chunks_exact(4) {
             let _ = Reply::parse(u32::from_be_bytes([word[0], word[1], word[2], word[3]]));

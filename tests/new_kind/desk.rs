@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{
-    Action as StudioAction, AnyDevice, DeviceCommand, Environment, ReviewAction, Severity, Studio,
+    Action as StudioAction, AnyDevice, DeviceCommand, ReviewAction, Severity, Studio, StudioEnvironment,
 };
 use encoder_studio::kinds::{KINDS, Program};
 use encoder_studio::store::Store;
@@ -28,9 +28,9 @@ pub(crate) struct Desk {
 impl Desk {
     pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let world = Environment {
+        let world = StudioEnvironment {
             ports: Arc::new(|| Ok(vec![])),
-            ..Environment::real(Store::at(folder.path()), program().studio)
+            ..StudioEnvironment::real(Store::at(folder.path()), program().studio)
         };
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }

@@ -106,13 +106,13 @@ fn every_frame_is_shown_with_its_meaning() {
 fn a_bank_is_read_once_when_it_becomes_visible() {
     let mut desk = open("sim:?bridge=on");
     let bank = encoder(&desk).table.position(Some(0x24)).unwrap();
-    assert!(encoder(&desk).should_read_group(&encoder(&desk).table.groups()[bank]));
+    assert!(encoder(&desk).should_read_bank(&encoder(&desk).table.groups()[bank]));
     ask(&mut desk, Biss::SeeBank(Some(0x24)));
     desk.until("the bank is read", |studio| {
         studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x24:0x3F")).is_some())
     });
     let jobs = desk.studio.services.jobs().len();
-    assert!(!encoder(&desk).should_read_group(&encoder(&desk).table.groups()[bank]));
+    assert!(!encoder(&desk).should_read_bank(&encoder(&desk).table.groups()[bank]));
     ask(&mut desk, Biss::SeeBank(Some(0x24)));
     assert_eq!(desk.studio.services.jobs().len(), jobs);
 }
@@ -136,7 +136,7 @@ fn data_areas_are_not_read_while_the_shaft_turns() {
 fn a_register_is_watched_with_the_position() {
     let mut desk = open("sim:?bridge=on&rpm=60");
     let description = encoder(&desk).description.clone().unwrap();
-    let temperature = description.with_role(Role::Temperature).unwrap().clone();
+    let temperature = description.register_with_role(Role::Temperature).unwrap().clone();
     ask(&mut desk, Biss::Watch(Box::new(temperature), true));
     command(&mut desk, DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.until("samples come", |studio| {

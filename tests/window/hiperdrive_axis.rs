@@ -135,7 +135,7 @@ fn a_recall_does_not_change_the_drive() {
     let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
     assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is lost: the shown step remains, and names the one that has to be repeated.
-    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_text()), (AxisStep::Jog, Some(AxisStep::Request)));
+    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
 /// Issue 21.6 (a): the pads of the run send their own effort, and the Motion page keeps its own.
@@ -180,7 +180,7 @@ fn a_pitch_applies_only_after_confirmation() {
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
     desk.settle();
-    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_text()), (AxisStep::Confirm, Some(AxisStep::Scale)));
+    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_step()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
 /// Issue 21.6 (h): the next run reports an interrupted one, also after a restart of the program.

@@ -42,7 +42,7 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     until_free(&mut desk, two());
     let moves = &unit(&desk).moves;
     assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (SpeedTorque::MOVE, SpeedTorque::JOG));
-    assert_eq!((moves.is_expert(ONE), moves.is_expert(two())), (true, false));
+    assert_eq!((moves.allows_endless_run(ONE), moves.allows_endless_run(two())), (true, false));
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.endless"]);
     let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(own.drive()).unwrap().position };

@@ -204,7 +204,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(warned(&desk), ["hd_refused.outside"]);
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
-    assert!(unit(&desk).could_run_endlessly(ONE).is_ok(), "it can be switched on");
+    assert!(unit(&desk).check_can_allow_endless(ONE).is_ok(), "it can be switched on");
     drive(&mut desk, Motor::Expert(true));
     assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
@@ -212,10 +212,10 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     // Each endless run must be allowed again.
     let run = |_: &Unit| Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless };
     drive_until(&mut desk, run, "it runs", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position > 0);
-    assert!(unit(&desk).moves.is_expert(ONE), "while it runs");
+    assert!(unit(&desk).moves.allows_endless_run(ONE), "while it runs");
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
-    assert!(!unit(&desk).moves.is_expert(ONE), "the run has ended");
+    assert!(!unit(&desk).moves.allows_endless_run(ONE), "the run has ended");
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
 }
@@ -302,7 +302,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.limits(ONE) == Some((-65_536, 65_536)) && own.session.is_ready()
     });
-    assert!(unit(&desk).could_run_endlessly(ONE).is_err(), "they are not the factory's");
+    assert!(unit(&desk).check_can_allow_endless(ONE).is_err(), "they are not the factory's");
     drive(&mut desk, Motor::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, Environment, Severity, Studio};
+use encoder_studio::app::{Action, Severity, Studio, StudioEnvironment};
 use encoder_studio::devices::hiperdrive::jobs::DeviceConnection;
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
@@ -109,7 +109,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let bad = Arc::new(AtomicBool::default());
     let outside = Outside::new("");
     let is_bad = bad.clone();
-    let world = Environment {
+    let world = StudioEnvironment {
         given: outside.world().given.with(LinkOpener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());

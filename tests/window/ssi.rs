@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, Location, Range, Uncertainty};
+use encoder_studio::devices::ssi::protocol::{Code, Location, Range, SearchUncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
 use encoder_studio::devices::ssi::state::{
     Edit, Encoder, Entry, ExportFormat, Field, FieldInput, SearchState, SsiAction as Ssi, TrialInput,
@@ -282,7 +282,7 @@ fn a_layout_found_live_can_be_adopted() {
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
     // The end of 4096 turns was not passed.
-    assert_eq!(search.doubt, Some(Uncertainty::Open));
+    assert_eq!(search.doubt, Some(SearchUncertainty::Open));
     let members = &search.classes[0].members;
     let place = members.iter().position(|own| own.family.as_ref().is_some_and(|(key, _)| key == "afm60")).unwrap();
     act(&mut desk, Ssi::Take(0, place));

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Environment, GracePeriods, ReviewAction, Severity, Studio, connect};
+use encoder_studio::app::{Action, GracePeriods, ReviewAction, Severity, Studio, StudioEnvironment, connect};
 use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Transport;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
@@ -115,11 +115,11 @@ impl Outside {
         &self.wires[port]
     }
 
-    pub(crate) fn world(&self) -> Environment {
+    pub(crate) fn world(&self) -> StudioEnvironment {
         let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         let novos = self.wires.clone();
-        Environment {
+        StudioEnvironment {
             given: Given::default()
                 .with(LinkOpener::new(move |url, store| {
                     let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
@@ -172,7 +172,7 @@ impl Outside {
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
             folders: BaseFolders::at(&self.path("work"), &self.path("home")),
-            ..Environment::real(self.store(), self.program.studio)
+            ..StudioEnvironment::real(self.store(), self.program.studio)
         }
     }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use encoder_studio::app::{Action, ColorScheme, Environment, Language, Settings, Studio};
+use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, StudioEnvironment};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, PositionUnit};
@@ -193,7 +193,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = Environment::real(Store::at(folder.as_ref()), program().studio);
+    let world = StudioEnvironment::real(Store::at(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 

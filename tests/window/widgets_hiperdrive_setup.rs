@@ -317,7 +317,7 @@ fn the_layout_of_a_step_does_not_shift() {
     let scale = ParameterNumber::for_drive(154, DriveNumber::FIRST).unwrap();
     unit(&screen).with(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
     screen.until("somebody else has set the scale", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.axis().unwrap().invalidated_text() == Some(AxisStep::Scale))
+        studio.hiperdrive().is_some_and(|own| own.axis().unwrap().invalidated_step() == Some(AxisStep::Scale))
     });
     screen.steps();
     assert!(screen.shows("Step 2 (Pitch and resolution) is no longer valid"));

@@ -29,7 +29,7 @@ impl Studio {
                 }
             }
             ConnectAction::Device(device) => {
-                self.end_search();
+                self.end_finder();
                 self.edit(|connect| (connect.device, connect.typed) = (device, None));
                 self.list_ports();
             }
@@ -79,7 +79,7 @@ impl Studio {
 
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_finder_action(&action);
-        let Some((tab, place)) = self.form_position(is_its) else {
+        let Some((tab, place)) = self.form_index(is_its) else {
             // If the dialog is closed, the result comes too late and is ignored.
             if self.connect.is_some() {
                 self.notify_wrong_kind(None);
@@ -87,7 +87,7 @@ impl Studio {
             return;
         };
         let mut fills_in = Ok(false);
-        self.with_finder(tab, place, |form, context| fills_in = form.find(action, context));
+        self.call_finder(tab, place, |form, context| fills_in = form.find(action, context));
         match fills_in {
             Ok(true) => self.edit(|connect| connect.typed = None),
             Ok(false) => {}
@@ -99,7 +99,7 @@ impl Studio {
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
-            self.with_finder(tab, place, |form, context| form.confirmed(context));
+            self.call_finder(tab, place, |form, context| form.confirmed(context));
         }
     }
 
@@ -113,13 +113,13 @@ impl Studio {
         }
     }
 
-    fn form_position(&self, is_it: impl Fn(&dyn AnyForm) -> bool) -> Option<(Tab, usize)> {
+    fn form_index(&self, is_it: impl Fn(&dyn AnyForm) -> bool) -> Option<(Tab, usize)> {
         let forms = &self.connect.as_ref()?.forms;
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
     /// Calls `act` with a form of the dialog and the rest of the studio, and then executes what the form has requested.
-    fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
+    fn call_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
         let mut context = FinderContext::new(self, tab, link);
@@ -148,14 +148,14 @@ impl Studio {
         }
     }
 
-    fn end_search(&mut self) {
+    fn end_finder(&mut self) {
         if let Some(connect) = &mut self.connect {
             connect.forms_mut().for_each(|form| drop(form.end(&mut self.services)));
         }
     }
 
     pub(in crate::app) fn close_dialog(&mut self) {
-        self.end_search();
+        self.end_finder();
         self.connect = None;
     }
 }

@@ -64,7 +64,7 @@ impl<'a> FinderContext<'a> {
     }
 
     /// Asks the user whether another master is on the line. The search continues if there is none.
-    pub fn confirm_other_master(&mut self, url: &LinkUrl) {
+    pub fn ask_about_other_master_on_link(&mut self, url: &LinkUrl) {
         self.studio.question =
             Some(Question::other_master(self.studio.services.world.kinds.display_link(url), Then::Find(self.tab)));
     }

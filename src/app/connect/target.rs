@@ -119,7 +119,7 @@ pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, Stri
 const TCP: &str = "tcp:";
 
 /// Returns the network address of an adapter, or `None` for an adapter at a serial port.
-pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
+pub(crate) fn network_address_of_adapter(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 

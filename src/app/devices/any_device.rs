@@ -133,7 +133,7 @@ impl AnyDevice {
     }
 
     /// Returns whether the recording contains minutes of data that have not been exported.
-    pub(in crate::app) fn has_recorded_much(&self) -> bool {
+    pub(in crate::app) fn has_long_unsaved_recording(&self) -> bool {
         self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
     }
 

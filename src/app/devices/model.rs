@@ -9,11 +9,11 @@ use crate::app::action::{Opened, ReadError, ReviewAction};
 use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
 use crate::app::review::ReviewSheet;
-use crate::app::services::{Environment, Services};
+use crate::app::services::{Services, StudioEnvironment};
 use crate::app::session::{DeviceHistory, HasDraft, HasMemory, HasProfile, HasSession, Kind, SessionEvents};
 use crate::app::studio::SessionId;
 use crate::app::{
-    AnyDevice, DeviceAction, DeviceCommand, DriveMemory, EditStep, Recording, Severity, SineCosineSource, Tab, Text,
+    AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, Severity, SineCosineSource, StoredDriveData, Tab, Text,
 };
 use crate::link::LinkUrl;
 use crate::profile::{Body, ProfileDocument, ProfileError};
@@ -34,7 +34,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     type Done: Any + Send;
 
     /// Returns a function that prepares the session before it moves to its thread.
-    fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
+    fn prepare(&self, _world: &StudioEnvironment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
 
@@ -157,8 +157,8 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     }
 
     /// Returns the edited profile that is to be written to another device, if any.
-    fn wanted_body(&self) -> Option<Body> {
-        self.memory()?.wanted_body()
+    fn edited_body(&self) -> Option<Body> {
+        self.memory()?.edited_body()
     }
 
     /// Returns the profile for comparisons, or `None` if nothing has been read. This is the edited profile, or else the
@@ -167,7 +167,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     /// # Errors
     /// Returns a message for each value that a profile requires but that has not been read.
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
-        self.wanted_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
+        self.edited_body().map(Ok).or_else(|| self.memory()?.last_read_profile())
     }
 
     /// Adopts a profile. Depending on the kind of device, this opens the review of a write or edits the layout.
@@ -209,7 +209,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     }
 
     /// Returns the access to stored data about drives, or `None` for a kind without drives.
-    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
+    fn drive_memory(&mut self) -> Option<&mut dyn StoredDriveData> {
         None
     }
 }
@@ -244,7 +244,7 @@ impl<'a> ActionContext<'a> {
     /// The profile is read-only.
     pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
-        read_only_reason(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)
+        read_only_reason(other.source()).map_or_else(|| Ok(other.edited_body()), Err)
     }
 }
 
@@ -288,7 +288,7 @@ pub trait DeviceMemory {
     fn close_review(&mut self);
 
     /// Returns the edited profile, or `None` for a device.
-    fn wanted_body(&self) -> Option<Body>;
+    fn edited_body(&self) -> Option<Body>;
 
     /// Returns the profile of the last reading, or `None` if nothing has been read.
     ///
@@ -352,8 +352,8 @@ impl<T: HasProfile> DeviceMemory for T {
         HasMemory::close_review(self);
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        HasProfile::wanted_body(self)
+    fn edited_body(&self) -> Option<Body> {
+        HasProfile::edited_body(self)
     }
 
     fn last_read_profile(&self) -> Option<Result<Body, Vec<Text>>> {
@@ -369,7 +369,7 @@ impl<T: HasProfile> DeviceMemory for T {
     }
 
     fn is_savable(&self) -> bool {
-        self.saves_what_was_read() || self.session().is_savable()
+        self.saves_last_reading() || self.session().is_savable()
     }
 
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {

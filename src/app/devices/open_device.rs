@@ -17,7 +17,7 @@ use crate::app::services::{JobState, Services};
 use crate::app::session::{
     DraftOutcome, HasDraft, Kind, ProfileFile, SaveRequest, SessionEvents, SessionState, Source,
 };
-use crate::app::{DriveMemory, Payload, PayloadKindError, SineCosineSource, Tab, Text};
+use crate::app::{Payload, PayloadKindError, SineCosineSource, StoredDriveData, Tab, Text};
 use crate::link::LinkUrl;
 use crate::profile::{Body, ProfileDocument, ProfileError};
 use crate::store::FileError;
@@ -91,7 +91,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
     #[doc(hidden)]
-    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory>;
+    fn drive_memory(&mut self) -> Option<&mut dyn StoredDriveData>;
     #[doc(hidden)]
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
     #[doc(hidden)]
@@ -105,7 +105,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn wanted_body(&self) -> Option<Body>;
+    fn edited_body(&self) -> Option<Body>;
     #[doc(hidden)]
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
     #[doc(hidden)]
@@ -269,7 +269,7 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::motion_mut(self)
     }
 
-    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
+    fn drive_memory(&mut self) -> Option<&mut dyn StoredDriveData> {
         DeviceModel::drive_memory(self)
     }
 
@@ -306,8 +306,8 @@ impl<M: DeviceModel> OpenDevice for M {
         Ok(())
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        DeviceModel::wanted_body(self)
+    fn edited_body(&self) -> Option<Body> {
+        DeviceModel::edited_body(self)
     }
 
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {

@@ -125,7 +125,7 @@ impl Recorder {
 
     /// Starts to write a table of the displayed lines, with either the visible part or the whole recording.
     ///
-    /// Returns the part to run on a thread; [`feed_export`](Self::feed_export) supplies it with rows. Returns `None` if
+    /// Returns the part to run on a thread; [`pass_rows_to_export`](Self::pass_rows_to_export) supplies it with rows. Returns `None` if
     /// there is nothing to write, or if a table is already being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
         if self.export.is_some() {
@@ -180,12 +180,12 @@ impl Recorder {
             lost: 0,
             until: self.recorded().map(|(_, last)| last).filter(|_| !visible),
         });
-        self.feed_export();
+        self.pass_rows_to_export();
         Some(writing)
     }
 
     /// Passes on as many rows as possible between two frames, without blocking.
-    pub(in crate::app) fn feed_export(&mut self) {
+    pub(in crate::app) fn pass_rows_to_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
         if let Some(sender) = export.sender.clone() {
             let portion = match export.next.take() {

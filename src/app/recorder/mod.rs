@@ -62,7 +62,7 @@ pub struct GroupId(u32);
 #[derive(Debug)]
 struct Group {
     history: History,
-    stamp: Stamp,
+    stamp: SampleGroupStamp,
     columns: Vec<Kind>,
     capacity: usize,
     longest_pause: Option<i64>,
@@ -71,12 +71,12 @@ struct Group {
 /// Identifier of the samples of a group. It is unique among all groups, including cleared ones and those of other
 /// recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stamp(u64);
+pub struct SampleGroupStamp(u64);
 
-impl Stamp {
+impl SampleGroupStamp {
     fn new() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        Stamp(NEXT.fetch_add(1, Ordering::Relaxed))
+        SampleGroupStamp(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
@@ -139,7 +139,7 @@ impl Recorder {
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
-        let stamp = Stamp::new();
+        let stamp = SampleGroupStamp::new();
         self.groups.insert(id, Group { history, stamp, columns: columns.to_vec(), capacity, longest_pause });
         id
     }
@@ -179,7 +179,7 @@ impl Recorder {
     /// Returns an error if the samples do not have the columns of the group, or if a time is earlier than the previous
     /// one.
     pub fn append(&mut self, group: GroupId, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
-        if self.would_discard_picture(group, times.len()) {
+        if self.would_evict_held_view(group, times.len()) {
             self.break_before_next(group);
             return Ok(());
         }
@@ -191,7 +191,7 @@ impl Recorder {
     }
 
     /// Marks a gap before the next samples of every group.
-    pub(in crate::app) fn break_all(&mut self) {
+    pub(in crate::app) fn break_all_groups(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
@@ -257,7 +257,7 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
-    pub fn stamp(&self, line: &Series) -> Option<Stamp> {
+    pub fn stamp(&self, line: &Series) -> Option<SampleGroupStamp> {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
 
@@ -295,7 +295,7 @@ impl Recorder {
         ended.into_iter().for_each(|id| self.remove_line(id));
         for Group { history, stamp, columns, capacity, longest_pause } in self.groups.values_mut() {
             *history = Group::history(columns, *capacity, *longest_pause);
-            *stamp = Stamp::new();
+            *stamp = SampleGroupStamp::new();
         }
         // A table that is not complete is discarded.
         self.export = None;

@@ -276,7 +276,7 @@ fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
     let exported = std::thread::scope(|scope| {
         let written = scope.spawn(|| writing.run(&|| {}));
         while !written.is_finished() {
-            recorder.feed_export();
+            recorder.pass_rows_to_export();
             std::thread::yield_now();
         }
         written.join().unwrap()
@@ -345,7 +345,7 @@ fn a_long_export_is_complete_and_can_be_cancelled() {
     let writing = recorder.begin_export(&path, false).unwrap();
     assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
     recorder.act(RecorderAction::CancelExport);
-    recorder.feed_export();
+    recorder.pass_rows_to_export();
     let given_up = writing.run(&|| {});
     assert!(given_up.rows.unwrap().is_none());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
@@ -366,7 +366,7 @@ fn an_export_is_cancelled_when_its_samples_are_evicted() {
         let path = folder.path().join("samples.csv");
         std::fs::write(&path, "the old one").unwrap();
         let writing = recorder.begin_export(&path, false).unwrap();
-        recorder.feed_export();
+        recorder.pass_rows_to_export();
         if clear {
             recorder.act(RecorderAction::Clear);
         }

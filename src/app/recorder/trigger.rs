@@ -23,7 +23,7 @@ impl TriggerCondition {
         TriggerCondition::Error,
     ];
 
-    pub const fn has_level(self) -> bool {
+    pub const fn needs_level(self) -> bool {
         !matches!(self, TriggerCondition::Error)
     }
 }
@@ -105,7 +105,7 @@ impl Recorder {
     pub(super) fn arm(&mut self, trigger: Trigger) {
         let Some(factor) = self.line(trigger.line).map(super::Series::factor) else { return };
         let level = trigger.level / factor;
-        if trigger.when.has_level() && !level.is_finite() {
+        if trigger.when.needs_level() && !level.is_finite() {
             return;
         }
         // In a unit with the opposite sign, a rising edge is a falling one.
@@ -145,7 +145,7 @@ impl Recorder {
     }
 
     /// Returns whether new samples of a group would displace samples of a held view.
-    pub(super) fn would_discard_picture(&self, group: GroupId, more: usize) -> bool {
+    pub(super) fn would_evict_held_view(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;

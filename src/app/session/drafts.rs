@@ -156,7 +156,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
             DraftOutcome::Looked { key, claim, result } if own == Some(&key) => (claim, result),
             DraftOutcome::Looked { .. } => return None,
             DraftOutcome::Kept { key, result } => {
-                self.finish_draft_store(own == Some(&key), result, name, services);
+                self.handle_draft_stored(own == Some(&key), result, name, services);
                 return None;
             }
         };
@@ -201,7 +201,13 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.kept = edits;
     }
 
-    fn finish_draft_store(&mut self, is_own: bool, result: Result<(), FileError>, name: &str, services: &mut Services) {
+    fn handle_draft_stored(
+        &mut self,
+        is_own: bool,
+        result: Result<(), FileError>,
+        name: &str,
+        services: &mut Services,
+    ) {
         if is_own {
             self.busy = false;
         }

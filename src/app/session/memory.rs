@@ -83,13 +83,13 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Marks the values that the running plan changes as not read. Called however the plan ends.
-    fn rereads_after_write(&mut self) {}
+    fn schedule_rereads(&mut self) {}
 
     /// Handles the end of a plan that has been executed.
     fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
     /// Logs the start of a write and its changes.
-    fn log_begin(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
+    fn log_write_start(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
         let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
@@ -110,7 +110,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     /// Requests a plan for a change, to be reviewed by the user.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         self.prepare_review();
-        if let Some(why) = self.session().not_ready_reason() {
+        if let Some(why) = self.session().plan_obstacle() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
         let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_another_type(&change));
@@ -204,7 +204,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         review.state = ReviewState::Writing(prepared.clone());
         let begins = self.try_submit(job, services);
         if begins {
-            self.log_begin(&what, &prepared, services);
+            self.log_write_start(&what, &prepared, services);
         } else if let Some(review) = self.review_mut() {
             review.state = ReviewState::Ready(prepared);
         }
@@ -232,7 +232,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             services.notify(severity, texts, Some(&name));
         }
         self.pending_mut().forget_steps();
-        self.rereads_after_write();
+        self.schedule_rereads();
         self.carried_out(&committed, services);
         if let Some(review) = self.review_mut()
             && let ReviewState::Writing(prepared) = &review.state
@@ -257,7 +257,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
                 let done = error.done();
                 if done.is_some() {
-                    self.rereads_after_write();
+                    self.schedule_rereads();
                 }
                 (done.is_some(), done.unwrap_or(0))
             }

@@ -219,7 +219,7 @@ impl<D: Kind> Session<D> {
         };
         match line.submit(job, what.clone(), writes, services.now()) {
             Ok(id) => {
-                services.job_begins(self.id, id, &name, what);
+                services.record_job_start(self.id, id, &name, what);
                 return true;
             }
             Err(SubmitError::Busy | SubmitError::Unread) => {
@@ -232,7 +232,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Returns the reason why no plan can be made now, if any.
-    pub(crate) fn not_ready_reason(&self) -> Option<Text> {
+    pub(crate) fn plan_obstacle(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
             _ if self.is_busy() => Some(Text::new("session.busy")),

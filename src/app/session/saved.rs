@@ -25,7 +25,7 @@ pub trait HasProfile: HasMemory {
     fn read_all() -> Job<Self>;
 
     /// Returns the edited profile, or `None` if the session is a device.
-    fn wanted_body(&self) -> Option<Body>;
+    fn edited_body(&self) -> Option<Body>;
 
     /// Returns a profile of earlier readings with remarks, or `None` if nothing was read.
     ///
@@ -34,7 +34,7 @@ pub trait HasProfile: HasMemory {
     fn last_read_profile(&self) -> Option<KnownProfile>;
 
     /// Returns whether a profile would be saved from earlier readings. This is done if the device no longer replies.
-    fn saves_what_was_read(&self) -> bool {
+    fn saves_last_reading(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.last_read_profile().is_some()
     }
 
@@ -56,12 +56,12 @@ pub trait HasProfile: HasMemory {
             self.session().refuse(refusal, services);
         } else if let Source::File { document, .. } = &self.session().source {
             let mut document = (**document).clone();
-            if let Some(body) = self.wanted_body() {
+            if let Some(body) = self.edited_body() {
                 document.body = body;
             }
             let remarks = self.remarks();
             self.session_mut().write_document(path, document, remarks, services);
-        } else if let Some(known) = self.last_read_profile().filter(|_| self.saves_what_was_read()) {
+        } else if let Some(known) = self.last_read_profile().filter(|_| self.saves_last_reading()) {
             let (body, remarks) = match known {
                 Ok(known) => known,
                 Err(missing) => {

@@ -46,7 +46,7 @@ pub trait SessionEvents: HasSession {
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open, but the device does not reply.
-    fn is_silence(&self, error: &Error<Self>) -> bool;
+    fn means_no_response(&self, error: &Error<Self>) -> bool;
 
     /// Discards pending requests, because their replies will not arrive.
     fn forget_requests(&mut self);
@@ -88,7 +88,7 @@ pub trait SessionEvents: HasSession {
     /// Handles the line. Kinds of devices that have more to do at this point override it.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples that precede a job are handled before its result. Later ones are handled in the next call.
-        self.take_samples_and_frames();
+        self.fetch_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
             self.take(event, services);
         }
@@ -98,7 +98,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Fetches the samples and frames received since the last call.
-    fn take_samples_and_frames(&mut self) {
+    fn fetch_samples_and_frames(&mut self) {
         let Some(line) = &mut self.session_mut().line else { return };
         let (samples, dropped) = line.samples();
         let (frames, missed) = line.frames();
@@ -139,7 +139,7 @@ pub trait SessionEvents: HasSession {
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
             None => {
-                let is_silent = self.is_silence(error);
+                let is_silent = self.means_no_response(error);
                 self.session_mut().polling_failed(Self::Device::error_texts(error), is_silent, services);
             }
         }
@@ -166,7 +166,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
-            None if self.is_silence(error) || self.session().just_connected => {
+            None if self.means_no_response(error) || self.session().just_connected => {
                 self.session_mut().mark_silent(texts, services);
             }
             None => {
@@ -183,7 +183,7 @@ pub trait SessionEvents: HasSession {
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.prepare_release();
         // The last frames are fetched, because they show the cause best.
-        self.take_samples_and_frames();
+        self.fetch_samples_and_frames();
         self.forget_requests();
         self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);

@@ -30,7 +30,7 @@ impl PositionTracker {
     ///
     /// It must arrive soon enough. If there were samples without a position in between, the shaft must be too slow to
     /// have passed the range unnoticed.
-    pub(super) fn continues_track(&self, time: SampleTime, apart: i64) -> bool {
+    pub(super) fn is_joined_to_last(&self, time: SampleTime, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
             return false;

@@ -26,7 +26,7 @@ impl Meaning {
     }
 
     /// Creates the meaning of positions on a shaft. The number of steps per revolution may be fractional.
-    pub fn for_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
+    pub fn for_steps_per_turn(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
             vec![

@@ -37,7 +37,7 @@ fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags
 
 #[test]
 fn a_stream_is_recorded_completely() {
-    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     // In portions of odd sizes.
     let all = stream(0, 40_000);
@@ -55,7 +55,7 @@ fn a_stream_is_recorded_completely() {
 
 #[test]
 fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
-    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
     let mut track = DeviceRecorder::<Nothing>::default();
     let mut own = stream(0, 6);
     own[2].position = None;
@@ -89,7 +89,7 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
 /// in 50 µs.
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
-    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
     for damaged in [10, 3] {
         let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 20_000);
@@ -113,7 +113,7 @@ fn damaged_frames_do_not_interrupt_the_speed() {
 /// are not bridged, a few are.
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
-    let meaning = Meaning::for_turns(Some(1000), 1000.0);
+    let meaning = Meaning::for_steps_per_turn(Some(1000), 1000.0);
     for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
         let mut track = DeviceRecorder::<Nothing>::default();
         let mut all = stream(0, 50);
@@ -151,10 +151,10 @@ fn steps(track: &DeviceRecorder<Nothing>, heading: &str) -> Vec<f64> {
 fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let mut track = DeviceRecorder::<Nothing>::default();
     track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
-    track.add(&seconds(0, 3), &Meaning::for_turns(None, 1000.0));
+    track.add(&seconds(0, 3), &Meaning::for_steps_per_turn(None, 1000.0));
     let [position, ..] = track.lines;
     track.recorder.act(recorder::RecorderAction::SetScale(position, 1));
-    track.add(&seconds(3, 2), &Meaning::for_turns(None, 400.0));
+    track.add(&seconds(3, 2), &Meaning::for_steps_per_turn(None, 400.0));
     let current = [("position", false), ("speed", false), ("acceleration", false)];
     let ended = ["position", "speed", "acceleration"].map(|name| (format!("{name} until 09:00:02"), true));
     let expected: Vec<(String, bool)> =
@@ -185,12 +185,12 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
 #[test]
 fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
-        let mut meaning = Meaning::for_turns(None, 1000.0);
+        let mut meaning = Meaning::for_steps_per_turn(None, 1000.0);
         meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
         meaning
     };
     let mut track = DeviceRecorder::<Nothing>::default();
-    track.add(&seconds(0, 3), &Meaning::for_turns(None, 1000.0));
+    track.add(&seconds(0, 3), &Meaning::for_steps_per_turn(None, 1000.0));
     let [position, ..] = track.lines;
     track.recorder.act(recorder::RecorderAction::SetScale(position, 2));
     for pitch in [1.0, 12.0] {
@@ -234,7 +234,7 @@ fn a_value_no_longer_watched_keeps_its_samples() {
 /// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
 #[test]
 fn minutes_of_another_device_are_kept() {
-    let meaning = Meaning::for_turns(None, 1000.0);
+    let meaning = Meaning::for_steps_per_turn(None, 1000.0);
     for (count, lines) in [(120, 3), (121, 6)] {
         let mut track = DeviceRecorder::<Nothing>::default();
         track.add(&seconds(0, count), &meaning);
@@ -250,11 +250,11 @@ fn minutes_of_another_device_are_kept() {
 /// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
 #[test]
 fn samples_that_cannot_be_decoded_again_are_kept() {
-    let (before, after) = (Meaning::for_turns(None, 1000.0), Meaning::for_turns(None, 400.0));
+    let (before, after) = (Meaning::for_steps_per_turn(None, 1000.0), Meaning::for_steps_per_turn(None, 400.0));
     for (kept, ended) in [(5, 0), (4, 3)] {
         let mut track = DeviceRecorder::<Nothing>::default();
         track.add(&seconds(0, 5), &before);
-        track.restart_decoding(kept);
+        track.prepare_redecoding(kept);
         track.add(&seconds(5 - kept as u64, kept as u64), &after);
         assert_eq!(track.recorder.lines().iter().filter(|line| line.ended).count(), ended, "{kept}");
         assert_eq!(steps(&track, "position").len(), kept);

@@ -96,7 +96,7 @@ impl AdapterLink {
         services: &Services,
     ) -> Result<SignalFeed, Text> {
         let AdapterLink { url, clock, margin, open } = self;
-        let (before, patience) = (services.closing_workers_on(&url), services.world.patience.job);
+        let (before, patience) = (services.sessions_closing_on_link(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
             if let Some(earlier) = earlier {
                 // Nothing is sent on it: it disconnects, or never does.
@@ -197,7 +197,7 @@ impl SignalFeed {
         if let SignalFeed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();
             drop(stream);
-            services.leave_stream(end, url);
+            services.close_stream(end, url);
         }
     }
 }

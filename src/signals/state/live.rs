@@ -14,7 +14,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::quality::Family;
 use crate::analysis::wiring::Wire;
 use crate::app::services::Services;
-use crate::app::shutdown::shares_wire;
+use crate::app::shutdown::is_same_connection;
 use crate::app::{Severity, Text, explain};
 use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
@@ -238,7 +238,8 @@ impl Source {
 
     /// Releases the adapter if an encoder search needs its connection.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
-        let holds = |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if shares_wire(own, url));
+        let holds =
+            |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
             self.refuse(TEXTS.text("adapter.let_go"));

@@ -3,11 +3,11 @@
 
 use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
-use crate::app::tasks::{Mailbox, TaskRunner};
+use crate::app::tasks::{ActionMailbox, TaskRunner};
 
 /// Guard that sends a message if the task ends without returning.
 struct CompletionGuard {
-    mailbox: Mailbox,
+    mailbox: ActionMailbox,
     failed: Option<Done>,
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::app::{Action, FileQuestion, Mailbox, Text};
+use crate::app::{Action, ActionMailbox, FileQuestion, Text};
 use crate::store::BaseFolders;
 use crate::ui::controls::{button, modal, primary_button, right_aligned, text_entry};
 use crate::ui::{Theme, icons};
@@ -23,7 +23,7 @@ const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] is used
 /// instead.
-pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox) {
+pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: ActionMailbox) {
     let filter = theme.words(&kind(&question));
     if !has_dialogs() {
         mailbox.send(Action::TypePath(question));

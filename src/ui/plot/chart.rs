@@ -220,7 +220,7 @@ fn paint_trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font
     let palette = context.theme.palette;
     let colour = Color32::from(palette.accent);
     if let Some(lane) = layout.lanes.iter().find(|lane| lane.lines.contains(&trigger.line))
-        && trigger.when.has_level()
+        && trigger.when.needs_level()
     {
         let y = lane.axis().y(trigger.level).round();
         if lane.rect.y_range().contains(y) {

@@ -8,7 +8,7 @@ use egui::{Rect, pos2};
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
 use crate::analysis::history::{Grid, GridColumns, Picture};
-use crate::app::recorder::{Recorder, Series, SeriesId, Stamp};
+use crate::app::recorder::{Recorder, SampleGroupStamp, Series, SeriesId};
 
 /// Gap between two lanes, in points.
 const BETWEEN: f32 = 6.0;
@@ -54,7 +54,7 @@ pub(super) struct Reduced {
 /// Inputs of a picture. The picture is redrawn only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
-    samples: Option<Stamp>,
+    samples: Option<SampleGroupStamp>,
     all: Range<u64>,
     grid: Grid,
 }

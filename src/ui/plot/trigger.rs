@@ -63,7 +63,7 @@ pub(super) fn form_ui(
     let word_of = label(ui, "trigger.when");
     options(ui, &word_of, &mut form.when, TriggerCondition::ALL.map(|when| (when, theme.say(word(when)))));
     let mut enter = false;
-    if form.when.has_level() {
+    if form.when.needs_level() {
         entry(ui, theme, &theme.say("trigger.level"), |ui| {
             let response = text_entry(ui, &mut form.level, 88.0, &theme.say("trigger.level"), "");
             if response.changed() {
@@ -97,7 +97,7 @@ pub(super) fn form_ui(
 impl Form {
     fn trigger(&self) -> Result<Trigger, Text> {
         let level = match crate::app::number(&self.level) {
-            _ if !self.when.has_level() => 0.0,
+            _ if !self.when.needs_level() => 0.0,
             Some(level) => level,
             None => return Err(Text::new("trigger.no_level")),
         };

@@ -203,7 +203,7 @@ fn handle(
     });
     if let Some(wanted) = wanted.filter(|_| response.dragged()) {
         let text = Text::new("widget.map_size").with("bytes", wanted * map.block_bytes);
-        paint::ghost(ui, theme, strip, &strip.runs(start, start + wanted), &theme.words(&text));
+        paint::draw_drag_ghost(ui, theme, strip, &strip.runs(start, start + wanted), &theme.words(&text));
     } else if !response.dragged() {
         let words = theme.say("widget.map_resize");
         show_tooltip(response.clone(), &words);

@@ -124,7 +124,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }
     if event == Some(HoldEvent::Stop) {
-        stop_debounce::counts_as_stop(ui.ctx(), true, now);
+        stop_debounce::register_stop_press(ui.ctx(), true, now);
     }
     ui.data_mut(|data| {
         data.insert_temp(response.id, HoldButtonState { state, pass, modifiers });

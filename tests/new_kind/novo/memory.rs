@@ -85,7 +85,7 @@ impl HasProfile for Encoder {
     fn read_all() -> Job {
         Job::Survey
     }
-    fn wanted_body(&self) -> Option<Body> {
+    fn edited_body(&self) -> Option<Body> {
         Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read()?.clone() }))
     }
     fn last_read_profile(&self) -> Option<KnownProfile> {

@@ -79,8 +79,10 @@ impl Encoder {
             is_warned: false,
         };
         self.track.record_dropped(dropped);
-        self.track
-            .add(&samples.iter().map(sighting).collect::<Vec<_>>(), &Meaning::for_turns(Some(65536), TURN.into()));
+        self.track.add(
+            &samples.iter().map(sighting).collect::<Vec<_>>(),
+            &Meaning::for_steps_per_turn(Some(65536), TURN.into()),
+        );
         self.last = samples.last().copied().or(self.last);
     }
     fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
@@ -128,7 +130,7 @@ impl SessionEvents for Encoder {
             Output::Committed(committed) => self.committed(*committed, services),
         }
     }
-    fn is_silence(&self, error: &JobError) -> bool {
+    fn means_no_response(&self, error: &JobError) -> bool {
         error.device() == Some(&Error::Silent)
     }
     fn forget_requests(&mut self) {

@@ -43,8 +43,8 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         }
         3 => bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() }),
         4 | 5 => bench.load(SpindleLoad::default()),
-        6 => bench.station.turn_s3(now, dice.u8(..3)),
-        7 => bench.station.turn_s3(now, 0),
+        6 => bench.station.set_s3(now, dice.u8(..3)),
+        7 => bench.station.set_s3(now, 0),
         8 => bench.reset(),
         9 => {
             bench.reconnect();
@@ -114,7 +114,7 @@ fn any_session_ends_at_a_standstill() {
             moved += u64::from(moves);
             // Losses make it longer: a stop word may need some tries.
             assert!(!moves || unwanted < 40, "{seed}/{step}: {unwanted} intervals unwanted, {:?}", bench.man.phase());
-            if bench.man.gives_up() {
+            if bench.man.has_exhausted_stop_levels() {
                 bench.reconnect();
                 model.end();
             }

@@ -126,7 +126,7 @@ fn a_drive_that_does_not_stop_climbs_the_ladder() {
             rungs,
             [(StopLevel::Mode, 0), (StopLevel::Operational, 200), (StopLevel::Off, 400), (StopLevel::Close, 600)]
         );
-        assert!(bench.man.gives_up());
+        assert!(bench.man.has_exhausted_stop_levels());
         let moved = if stop == "0469" { "0479" } else { "1459" };
         assert_eq!(super::words(&mut bench), format!("{moved} {stop} 0401 0000"));
     }
@@ -143,7 +143,7 @@ fn a_drive_without_reports_is_stopped() {
     assert!(bench.man.sent().control.is_standing());
     assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Deaf));
     bench.run(600);
-    assert!(bench.man.gives_up() && !bench.moves());
+    assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());
 }
 
 /// A drive at rest that turns all the same loses operation, then everything.
@@ -160,7 +160,7 @@ fn an_uncommanded_motion_is_stopped() {
     assert!(!bench.man.is_idle());
     bench.run(700);
     assert_eq!(super::words(&mut bench), "0409 0401 0000");
-    assert!(bench.man.gives_up());
+    assert!(bench.man.has_exhausted_stop_levels());
 }
 
 /// Nothing moves after a connection was opened until the user acts, whatever was requested before.

@@ -252,7 +252,7 @@ fn a_word_the_gateway_may_have_written_is_led_back() {
 fn leading_back_creates_a_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
-    assert_eq!(Master::over(script, &mut station).end_leftover_operation(), Ok(StartupMode::K3));
+    assert_eq!(Master::over(script, &mut station).end_foreign_operation(), Ok(StartupMode::K3));
     assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
 }
 

@@ -172,7 +172,7 @@ fn a_saved_profile_matches_the_encoder() {
         assert_eq!((profile.identity.serial_number.as_str(), profile.image.parameters.steps), ("31", 36_000));
         assert_eq!(profile.image.known().count(), if programs { 8 } else { 0 });
         assert_eq!(profile.image.shift.is_some(), programs);
-        assert!(profile.is_mounting_value(Item::Preset));
+        assert!(profile.depends_on_mounting(Item::Preset));
     }
     assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Committed, DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, Prepared,
 };
-use encoder_studio::devices::interbus::procedures::{Carried, Handshake, Station, process_data_word};
+use encoder_studio::devices::interbus::procedures::{Carried, Handshake, Station, word_in_frame};
 use encoder_studio::devices::interbus::protocol::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
 use encoder_studio::devices::interbus::sim::{Config, Gateway};
 use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
@@ -128,7 +128,7 @@ impl Stand {
     pub(crate) fn sent(&self) -> Vec<u32> {
         let entries = self.trace.lock().unwrap();
         let sent = entries.iter().filter(|entry| entry.direction == Direction::Sent);
-        let words = sent.filter_map(|entry| process_data_word(true, &entry.bytes.to_bytes()?, WordOrder::HighFirst));
+        let words = sent.filter_map(|entry| word_in_frame(true, &entry.bytes.to_bytes()?, WordOrder::HighFirst));
         words
             .map(|word| match word {
                 Carried::Out(word) => word,

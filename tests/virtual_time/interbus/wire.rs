@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::procedures::{
-    Carried, Damage, Error, Exception, Master, RequestedItem, Station, WordReading, identify, process_data_word,
+    Carried, Damage, Error, Exception, Master, RequestedItem, Station, WordReading, identify, word_in_frame,
 };
 use encoder_studio::devices::interbus::protocol::WordOrder;
 use encoder_studio::link::{ByteLink, CancelToken, Clock, Ctx, LinkError, Trace, VirtualClock};
@@ -120,11 +120,11 @@ fn an_out_word_is_two_holding_registers_written_together() {
     assert_eq!(writes[0][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0x20, 0x21, 0, 9]);
     assert_eq!(writes[1][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0, 0, 0, 0], "and normal running at the end");
     assert_eq!(writes.len(), 2, "a word that stands is not written again");
-    assert_eq!(process_data_word(true, writes[0], WordOrder::HighFirst), Some(Carried::Out(0x2021_0009)));
-    assert_eq!(process_data_word(true, writes[0], WordOrder::LowFirst), Some(Carried::Out(0x0009_2021)));
+    assert_eq!(word_in_frame(true, writes[0], WordOrder::HighFirst), Some(Carried::Out(0x2021_0009)));
+    assert_eq!(word_in_frame(true, writes[0], WordOrder::LowFirst), Some(Carried::Out(0x0009_2021)));
     let input = registers(&requests[0], 0xC200_00FF);
-    assert_eq!(process_data_word(false, &input, WordOrder::HighFirst), Some(Carried::In(0xC200_00FF)));
-    assert_eq!(process_data_word(true, &requests[0], WordOrder::HighFirst), None);
+    assert_eq!(word_in_frame(false, &input, WordOrder::HighFirst), Some(Carried::In(0xC200_00FF)));
+    assert_eq!(word_in_frame(true, &requests[0], WordOrder::HighFirst), None);
 }
 
 /// Every request has its own number: a reply to an earlier one is ignored, even if it is the only answer.

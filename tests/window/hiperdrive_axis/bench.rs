@@ -184,7 +184,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
         // The last step writes nothing that is saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
-        assert_eq!(own.invalidated_text(), None, "{hindrance:?} of {number}");
+        assert_eq!(own.invalidated_step(), None, "{hindrance:?} of {number}");
         if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }

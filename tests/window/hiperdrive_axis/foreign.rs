@@ -27,10 +27,10 @@ fn set_by_another(desk: &Desk) {
 #[test]
 fn a_reference_changed_by_another_master_is_detected() {
     let mut desk = other_mode_text();
-    assert_eq!(axis(&desk).invalidated_text(), None);
+    assert_eq!(axis(&desk).invalidated_step(), None);
     set_by_another(&desk);
     desk.until("it is noticed", |studio| {
-        studio.hiperdrive().unwrap().axis().unwrap().invalidated_text() == Some(AxisStep::Reference)
+        studio.hiperdrive().unwrap().axis().unwrap().invalidated_step() == Some(AxisStep::Reference)
     });
     assert_eq!(number(&desk, 198), 128, "the parameter says nothing of it");
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
@@ -56,7 +56,7 @@ fn a_position_change_while_disconnected_is_reported() {
         let own = studio.hiperdrive().unwrap();
         words::unexplained_change_text(own.axis().unwrap(), &own.seen(own.drive())).is_some()
     });
-    assert_eq!(axis(&desk).invalidated_text(), None);
+    assert_eq!(axis(&desk).invalidated_step(), None);
     let told = words::unexplained_change_text(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
         told.starts_with("The position changed by -0.")

@@ -30,7 +30,7 @@ impl ClockDrift {
     /// Returns the local time at `own_ns` of the adapter's clock. It is at most `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: SampleTime) -> SampleTime {
         let most = i128::from(latest.nanoseconds()) - own_ns;
-        let lead = self.minimum_lead(own_ns, most);
+        let lead = self.minimum_offset_ns(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
         let ahead = match self.ahead_ns {
@@ -46,7 +46,7 @@ impl ClockDrift {
     }
 
     /// Returns the minimum offset of the present and the previous section in nanoseconds.
-    fn minimum_lead(&mut self, own_ns: i128, most: i128) -> i128 {
+    fn minimum_offset_ns(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {
             Some((least, before)) if fits => (least.min(most), before),

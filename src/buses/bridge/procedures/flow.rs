@@ -71,7 +71,7 @@ impl Streamed {
         }
     }
 
-    const fn contains_samples(self, data: &StreamData) -> bool {
+    const fn matches_stream(self, data: &StreamData) -> bool {
         matches!(
             (self, data),
             (Streamed::Ssi { .. }, StreamData::Ssi(_))
@@ -190,7 +190,7 @@ impl SampleStream {
     /// Returns the samples of a packet, or `None` if the packet contains no samples of this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
-            Ok(Message::Data(data)) if self.streamed.contains_samples(&data) => data,
+            Ok(Message::Data(data)) if self.streamed.matches_stream(&data) => data,
             // The packet is a late reply or the end of an earlier stream.
             Ok(_) => return Ok(None),
             Err(cause) => return Err(AdapterError::Data { cause }),

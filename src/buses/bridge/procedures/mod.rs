@@ -22,7 +22,7 @@ use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
 pub use power::SupplyAfterSession;
-pub(crate) use power::warn_of_supply;
+pub(crate) use power::log_supply_failure;
 pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
 
 /// BiSS time-out in microseconds. An encoder needs 18 µs to notice the end of a frame. See manual, table 3.
@@ -146,8 +146,8 @@ impl AdapterState {
     }
 
     /// Returns whether the end of the session must switch the supply off.
-    pub(crate) fn switches_supply_off(&self) -> bool {
-        self.power.should_switch_off()
+    pub(crate) fn must_switch_supply_off(&self) -> bool {
+        self.power.must_switch_off()
     }
 
     /// Returns whether the adapter has sent any bytes, including damaged ones.
@@ -218,7 +218,7 @@ impl Adapter<'_, '_> {
     /// # Errors
     /// Returns an error if the adapter does not switch the supply off.
     pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
-        if self.adapter.switches_supply_off() { self.switch_off() } else { Ok(()) }
+        if self.adapter.must_switch_supply_off() { self.switch_off() } else { Ok(()) }
     }
 
     fn switch_off(&mut self) -> Result<(), Failure> {

@@ -32,7 +32,7 @@ pub(super) struct Power {
 
 impl Power {
     /// Returns whether the end of the session must switch the supply off.
-    pub(super) fn should_switch_off(self) -> bool {
+    pub(super) fn must_switch_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {
             SupplyAfterSession::AsFound => self.given && !found,
@@ -43,7 +43,7 @@ impl Power {
 }
 
 /// Logs that the supply could not be switched off. A session that has ended cannot return the error.
-pub(crate) fn warn_of_supply(left: Result<(), impl std::fmt::Display>) {
+pub(crate) fn log_supply_failure(left: Result<(), impl std::fmt::Display>) {
     if let Err(error) = left {
         tracing::warn!("the encoder's supply could not be switched off: {error}");
     }
@@ -70,7 +70,7 @@ mod tests {
             (Off, None, false, false),
         ];
         for (after, found, given, off) in cases {
-            assert_eq!(Power { after, found, given }.should_switch_off(), off, "{after:?} {found:?} {given}");
+            assert_eq!(Power { after, found, given }.must_switch_off(), off, "{after:?} {found:?} {given}");
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
             assert_eq!(SupplyAfterSession::WORDS.read(word), after);

@@ -10,7 +10,7 @@ use fastrand::Rng;
 
 use super::attached::{AttachedDevice, BissDevice};
 use super::bus::Bus;
-use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
+use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, nearest_available_clock};
 use super::config::{Config, Shaft, Shared};
 use super::stream::{ClockedStream, Kind, SampledStream};
 use super::uart::Uart;
@@ -234,7 +234,8 @@ impl Adapter {
             Request::Hello => Ok(Reply::Hello(self.hello())),
             Request::Supply { on, millivolt } => self.supply(on, millivolt),
             Request::SsiConfig { clocks, clock_hz, pause_us, .. } => {
-                let actual = actual_clock(clock_hz).filter(|_| (1..=64).contains(&clocks)).ok_or(OUT_OF_RANGE)?;
+                let actual =
+                    nearest_available_clock(clock_hz).filter(|_| (1..=64).contains(&clocks)).ok_or(OUT_OF_RANGE)?;
                 self.ssi = Some(SsiSetting { clock_hz: actual, clocks, pause_us });
                 Ok(Reply::SsiConfig { clock_hz: actual })
             }
@@ -249,7 +250,7 @@ impl Adapter {
             }
             Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {
                 let bits = data_bits.checked_add(crc_bits).filter(|bits| (1..=64).contains(bits) && data_bits > 0);
-                let (bits, clock_hz) = bits.zip(actual_clock(clock_hz)).ok_or(OUT_OF_RANGE)?;
+                let (bits, clock_hz) = bits.zip(nearest_available_clock(clock_hz)).ok_or(OUT_OF_RANGE)?;
                 self.biss = Some(BissSetting { clock_hz, bits, timeout_us });
                 Ok(Reply::BissConfig { clock_hz })
             }
@@ -360,7 +361,7 @@ impl Adapter {
             return Err(OUT_OF_RANGE);
         }
         let now = self.now;
-        let device = self.bus.answering_device(now).filter(|_| slave == 0).ok_or(SILENT)?;
+        let device = self.bus.readable_device(now).filter(|_| slave == 0).ok_or(SILENT)?;
         if let Some(value) = value {
             let accepted = device.write_register(now, address, value);
             if !device.has_power() {

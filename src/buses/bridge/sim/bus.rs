@@ -63,7 +63,7 @@ impl Bus {
     }
 
     /// Returns the device if its registers can be read at `now`.
-    pub(super) fn answering_device(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
+    pub(super) fn readable_device(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
         let is_good = self.line == EncoderWiring::Good;
         self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
         self.biss.as_mut()
@@ -76,7 +76,7 @@ impl Bus {
             (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, low_bits_mask(bits)),
             (EncoderWiring::Open, _) | (EncoderWiring::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
             (EncoderWiring::Good, Some((frame, own))) => {
-                (BissStatus::OK, self.corrupt_frame(clock_out_bits(frame, own, bits), bits))
+                (BissStatus::OK, self.corrupt_frame(first_bits_on_line(frame, own, bits), bits))
             }
         }
     }
@@ -89,7 +89,7 @@ impl Bus {
             (EncoderWiring::Low, _, _) => 0,
             (EncoderWiring::Good, Some(place), Some(ssi)) => {
                 let (word, own) = ssi.word(at, place);
-                self.corrupt_frame(clock_out_bits(word, own, bits), bits)
+                self.corrupt_frame(first_bits_on_line(word, own, bits), bits)
             }
             _ => low_bits_mask(bits),
         }
@@ -102,7 +102,7 @@ impl Bus {
 }
 
 /// Returns the first `wanted` bits of a frame with `bits` bits. After the end of the frame, the line is low.
-fn clock_out_bits(frame: u64, bits: u8, wanted: u8) -> u64 {
+fn first_bits_on_line(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };
     shifted.unwrap_or(0)

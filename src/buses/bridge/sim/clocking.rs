@@ -48,7 +48,7 @@ impl SsiSetting {
 
 /// Returns the fastest available clock that does not exceed the requested one. The result is `None` if the request is
 /// below the slowest clock.
-pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
+pub(super) fn nearest_available_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);
     (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))
 }

@@ -29,7 +29,7 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     for captured in parse_captured(words)? {
         match captured {
             Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
-            Captured::Word(written, raw) => explained.push(position::explain_word(raw, written)),
+            Captured::Word(written, raw) => explained.push(position::explain_position_word(raw, written)),
             Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut requested)),
         }
     }
@@ -48,7 +48,7 @@ fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
         (false, word) => word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H'])),
     };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
-        words.iter().try_for_each(|word| ensure_no_argument(word))?;
+        words.iter().try_for_each(|word| refuse_odd_digits(word))?;
         return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
     }
     let one = |word: &String| match digits(word) {
@@ -56,7 +56,7 @@ fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
         (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
             .map(|raw| Captured::Bits(word.clone(), raw))
             .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
-        _ => ensure_no_argument(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
+        _ => refuse_odd_digits(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
     };
     words.iter().map(one).collect()
 }
@@ -73,7 +73,7 @@ fn position_word(word: &str) -> Result<u64> {
 }
 
 /// Refuses an argument with an odd number of digits, which cannot be bytes. It may be a position word without its mark.
-fn ensure_no_argument(word: &str) -> Result<()> {
+fn refuse_odd_digits(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
         return Ok(());

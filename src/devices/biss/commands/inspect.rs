@@ -54,7 +54,7 @@ fn manufacturer_text(identity: &Identity) -> String {
 
 /// Reads the temperature in degrees Celsius, if the encoder has a register for it.
 fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> {
-    let Some(register) = identity.description.with_role(Role::Temperature) else { return Ok(None) };
+    let Some(register) = identity.description.register_with_role(Role::Temperature) else { return Ok(None) };
     let Some(range) = RegisterRange::new(register.address, register.width) else { return Ok(None) };
     Ok(words::quantity(register, &registers(runner, range)?))
 }

@@ -24,7 +24,7 @@ use crate::result_of;
 pub(super) fn save(common: &CommonArgs, output: &Output, save: &SaveArgs) -> Result {
     let profile = saved(common, BissJob::Save)?;
     let banks = profile.banks().count();
-    let (mode, unsaved) = (profile.recorded.device_mode, words::saved_unsaved(&profile));
+    let (mode, unsaved) = (profile.recorded.device_mode, words::unsaved_profile_warning(&profile));
     save_profile(&save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
         output.remark(&words.terminal_text());

@@ -70,7 +70,7 @@ impl Planned for Prepared {
             mounting: Vec::new(),
             data: touched.filter(|image| image.all().next().is_some()).collect(),
         };
-        profile.mark_mounting_values();
+        profile.mark_mounting_dependent_values();
         let mut document = backup_of(Body::new(profile));
         let note = document.note.get_or_insert_default();
         for (address, value) in &base.registers {

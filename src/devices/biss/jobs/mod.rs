@@ -19,7 +19,7 @@ pub use job::{
 };
 pub use open::{check, open};
 
-use crate::buses::bridge::procedures::warn_of_supply;
+use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::biss::procedures::check::Wear;
 use crate::devices::biss::procedures::{
     self, Error, Identity, Master, ReadStep, Sample, Station, Unsaved, identify, procedure, read_position,
@@ -150,7 +150,7 @@ impl Device for Biss {
                 let first = area.first;
                 let total = area.banks().count() as u64;
                 let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
-                let banks = procedures::read_area_verified(&mut self.master(context), &area, report)?;
+                let banks = procedures::read_area_at_standstill(&mut self.master(context), &area, report)?;
                 BissOutput::Area { banks, unsaved: self.unsaved(context)? }
             }
             BissJob::Save | BissJob::SaveToCompare => {
@@ -216,7 +216,7 @@ impl Device for Biss {
     }
 
     fn leave(&mut self, context: &mut SessionContext) {
-        warn_of_supply(self.master(context).leave_supply());
+        log_supply_failure(self.master(context).leave_supply());
     }
 }
 

@@ -47,7 +47,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = transport(url)?;
     let is_virtual = url.scheme == LinkScheme::Sim;
     if is_virtual {
-        check_virtual(&url.query, way)?;
+        check_virtual_parameters(&url.query, way)?;
     } else {
         let mut known = way.parameters();
         known.extend((url.scheme == LinkScheme::Replay).then_some(BRIDGE));
@@ -79,7 +79,7 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
 }
 
 /// Refuses parameters that neither the line nor the virtual device has, and names those that require an adapter.
-fn check_virtual(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
+fn check_virtual_parameters(query: &UrlQuery, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
         let device = if way == Transport::Adapter { bridge::keys(attachable_kinds()) } else { Config::KEYS.to_vec() };

@@ -6,8 +6,8 @@ use super::{Biss, Change, JobError, JobStep, Prepared, device_key};
 use crate::devices::biss::procedures::write::{read_bank, read_state};
 use crate::devices::biss::procedures::{Error, Identity, Master, ensure_standstill, identify, write};
 use crate::devices::biss::profile::{
-    Base, BissPlan, RegisterKind, RegisterRange, Restore, banks_needed, check_allowed, other_type, place, plan_edits,
-    plan_filter, plan_mounting, plan_preset, plan_restore,
+    Base, BissPlan, RegisterKind, RegisterRange, Restore, check_allowed, other_type, place, plan_edits, plan_filter,
+    plan_mounting, plan_preset, plan_restore, required_banks,
 };
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::worker::commit::cycles_seen;
@@ -28,7 +28,7 @@ pub(super) fn prepare(
             // This can be checked before the banks are read.
             check_allowed(profile, &identity.profile(), *options)?;
             let areas: Vec<Area> = description.areas().to_vec();
-            let state = state(&mut master, &identity, &banks_needed(profile, &areas), tell)?;
+            let state = state(&mut master, &identity, &required_banks(profile, &areas), tell)?;
             plan_restore(profile, &state, *options)?
         }
         Change::Write(edits) => restore_from_plan(plan_register_edits(&mut master, &identity, edits)?),
@@ -42,7 +42,7 @@ pub(super) fn prepare(
             // A refusal is reported before anything else is read.
             run.check(*motor)?;
             let areas: Vec<Area> = description.areas().to_vec();
-            let banks = run.data.as_ref().map(|profile| banks_needed(profile, &areas)).unwrap_or_default();
+            let banks = run.data.as_ref().map(|profile| required_banks(profile, &areas)).unwrap_or_default();
             let state = state(&mut master, &identity, &banks, tell)?;
             restore_from_plan(plan_mounting(&description, &state, run, *motor)?)
         }

@@ -31,11 +31,11 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
         return Ok(reading);
     }
     master.station().flags = None;
-    with_flags(master, reading)
+    add_error_flags(master, reading)
 }
 
 /// Adds the last known flags to the position. One of the registers is read first if it is due.
-pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
+pub(super) fn add_error_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {
         None => Flags {
@@ -57,7 +57,8 @@ pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> R
 /// Returns whether a bit of the register is set, or `None` if the encoder has no such register.
 fn is_set(master: &mut Master<'_>, role: Role) -> Result<Option<bool>, Error> {
     let (description, firmware) = (master.station().description.clone(), master.station().firmware.unwrap_or_default());
-    let register = description.as_ref().and_then(|own| own.with_role(role)).filter(|own| firmware >= own.since);
+    let register =
+        description.as_ref().and_then(|own| own.register_with_role(role)).filter(|own| firmware >= own.since);
     let Some(register) = register else { return Ok(None) };
     match master.read_consecutive(register.address, register.width.into()) {
         Ok(bytes) => Ok(Some(bytes.iter().any(|byte| *byte != 0))),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::error::to_register_array;
 use super::registers::Registers;
-use super::widths::find_widths;
+use super::widths::find_frame_layout;
 use super::{Error, Master, Station, Transport};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol::Hello;
@@ -94,15 +94,15 @@ impl Identity {
 
     /// Returns the width of the multiturn in bits, if known.
     pub fn multiturn_bits(&self) -> Option<u8> {
-        self.is_source_known().then_some(self.layout.multiturn_bits())
+        self.is_layout_source_known().then_some(self.layout.multiturn_bits())
     }
 
     /// Returns the width of the singleturn in bits, if known.
     pub fn singleturn_bits(&self) -> Option<u8> {
-        self.is_source_known().then_some(self.layout.singleturn_bits())
+        self.is_layout_source_known().then_some(self.layout.singleturn_bits())
     }
 
-    fn is_source_known(&self) -> bool {
+    fn is_layout_source_known(&self) -> bool {
         self.source.is_known()
     }
 }
@@ -115,23 +115,25 @@ const ENCODER_BANK: usize = 0x14;
 /// # Errors
 /// Returns an error if the exchange fails.
 pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identity, Error> {
-    identify_with(master, types, &mut Registers::default())
+    identify_and_record(master, types, &mut Registers::default())
 }
 
 /// Identifies the encoder like [`identify`], and stores everything that was read in `registers`.
-pub(super) fn identify_with(
+pub(super) fn identify_and_record(
     master: &mut Master<'_>,
     types: &Descriptions,
     registers: &mut Registers,
 ) -> Result<Identity, Error> {
-    let kind = read_kind(master, registers)?;
+    let kind = read_type_identity(master, registers)?;
     let description = types.find(&kind).cloned().map(Arc::new).ok_or_else(|| Error::NoDescription(kind.clone()))?;
-    registers.read_roles(master, &description, None, &[Role::SerialNumber, Role::Firmware])?;
-    let serial_bytes =
-        description.with_role(Role::SerialNumber).and_then(|register| registers.bytes(register)).unwrap_or_default();
+    registers.read_registers_with_roles(master, &description, None, &[Role::SerialNumber, Role::Firmware])?;
+    let serial_bytes = description
+        .register_with_role(Role::SerialNumber)
+        .and_then(|register| registers.bytes(register))
+        .unwrap_or_default();
     let serial_number =
         registers.number(&description, Role::SerialNumber).map(|number| number.to_string()).unwrap_or_default();
-    let firmware = firmware_of(&description, registers);
+    let firmware = firmware_from_registers(&description, registers);
     let data_sheet = read_data_sheet(master, kind.profile, registers)?;
     let sheet_layout = data_sheet.as_ref().and_then(|sheet| sheet.layout.clone().ok());
     let station: &mut Station = master.station();
@@ -176,7 +178,7 @@ fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
         Ok(_) | Err(Error::Damaged { .. }) => return Ok(FrameSource::Assumed),
         Err(error) => return Err(error),
     }
-    match find_widths(master) {
+    match find_frame_layout(master) {
         Ok(layout) => {
             master.station().layout = Some(layout);
             Ok(FrameSource::Checksum)
@@ -186,7 +188,7 @@ fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     }
 }
 
-fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
+fn read_type_identity(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
     let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
     let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
     let profile: [u8; 2] = to_register_array(RegisterAddress::PROFILE, profile)?;
@@ -208,8 +210,8 @@ fn closest_mismatch(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
         .find_map(|near| near.check(kind).err())
 }
 
-fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmware> {
-    let bytes = registers.bytes(description.with_role(Role::Firmware)?)?;
+fn firmware_from_registers(description: &Description, registers: &Registers) -> Option<Firmware> {
+    let bytes = registers.bytes(description.register_with_role(Role::Firmware)?)?;
     match bytes.as_slice() {
         [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
         _ => None,
@@ -222,13 +224,13 @@ fn read_data_sheet(
     profile: ProfileId,
     registers: &mut Registers,
 ) -> Result<Option<DataSheet>, Error> {
-    if !profile.is_standard_encoder() {
+    if !profile.is_standard_encoder_profile() {
         return Ok(None);
     }
     let first = registers.read(master, RegisterAddress::EDS_BANK, 1)?.first().copied().unwrap_or(0);
-    let Some(common) = read_sheet(master, EdsBank::Common, first, registers)? else { return Ok(None) };
+    let Some(common) = read_data_sheet_bank(master, EdsBank::Common, first, registers)? else { return Ok(None) };
     let second = common.bytes.get(ENCODER_BANK).copied().unwrap_or(0);
-    let Some(encoder) = read_sheet(master, EdsBank::Encoder, second, registers)? else { return Ok(None) };
+    let Some(encoder) = read_data_sheet_bank(master, EdsBank::Encoder, second, registers)? else { return Ok(None) };
     let layout = match (&common.eds, &encoder.eds) {
         (Ok(common), Ok(encoder)) => eds_layout(common, encoder),
         (Err(error), _) | (_, Err(error)) => Err(*error),
@@ -237,7 +239,7 @@ fn read_data_sheet(
 }
 
 /// Reads a data sheet, or returns `None` if the bank does not exist.
-fn read_sheet(
+fn read_data_sheet_bank(
     master: &mut Master<'_>,
     which: EdsBank,
     bank: u8,

@@ -125,7 +125,9 @@ impl<'a> Master<'a> {
         self.ensure_ready()?;
         let requested = RequestedItem::Read(address);
         match self.read_confirmed(requested, |master| master.read_once(address)) {
-            Err(Error::NoReply { .. }) if self.is_silent_only_at(address)? => Err(Error::NoSuchRegister { address }),
+            Err(Error::NoReply { .. }) if self.is_only_silent_register(address)? => {
+                Err(Error::NoSuchRegister { address })
+            }
             Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
             result => result,
         }
@@ -204,7 +206,7 @@ impl<'a> Master<'a> {
         }
         self.ensure_ready()?;
         match self.ask(RequestedItem::Position, |master| master.read_bus_position_once()) {
-            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.retry_frames(failed),
+            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.recheck_frame_widths(failed),
             result => result,
         }
     }
@@ -241,7 +243,7 @@ impl<'a> Master<'a> {
 
     fn probe_byte_order(&mut self) -> Result<(), Error> {
         let requested = RequestedItem::Read(requested_register(Request::PROBE_REGISTER));
-        let answer = self.read_confirmed(requested, |master| master.probe_once())?;
+        let answer = self.read_confirmed(requested, |master| master.probe_byte_order_once())?;
         let order = byte_order_from_reply(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);
         Ok(())
@@ -303,8 +305,8 @@ impl<'a> Master<'a> {
             ExchangeError::Damage(_) | ExchangeError::NoFrame(_) => quality.damaged += 1,
         }
         let longest = match self.station.transport {
-            Transport::ConfigPin => self.longest_pin_exchange(),
-            Transport::Adapter => self.longest_bus_exchange(),
+            Transport::ConfigPin => self.max_pin_exchange_duration(),
+            Transport::Adapter => self.max_bus_exchange_duration(),
         };
         if !self.line.may_retry(&mut self.station.line, tries, longest) {
             return Err(failed);
@@ -324,7 +326,7 @@ impl<'a> Master<'a> {
 
     /// Returns whether only the given register does not reply. Another register is read repeatedly for comparison. The
     /// check is skipped if the encoder may be silent for long.
-    fn is_silent_only_at(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+    fn is_only_silent_register(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);
         }

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::error::to_register_array;
-use super::identify::identify_with;
+use super::identify::identify_and_record;
 use super::registers::Registers;
 use super::survey::read_survey;
 use super::write::unsaved_mode;
@@ -111,7 +111,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
 ///
 /// # Errors
 /// Returns [`Error::Moving`] if the shaft moves. Returns other errors if a reading fails.
-pub fn read_area_verified(
+pub fn read_area_at_standstill(
     master: &mut Master<'_>,
     area: &Area,
     progress: &mut dyn FnMut(u8),
@@ -134,7 +134,7 @@ pub fn save(
 ) -> Result<BissProfile, Error> {
     read_reliably(master, |master| {
         let mut registers = Registers::default();
-        let identity = identify_with(master, types, &mut registers)?;
+        let identity = identify_and_record(master, types, &mut registers)?;
         let description = identity.description.clone();
         let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == Unsaved::Refused);
         let before = unsaved_mode(master, &description)?;
@@ -197,7 +197,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceM
         mounting: Vec::new(),
         data,
     };
-    profile.mark_mounting_values();
+    profile.mark_mounting_dependent_values();
     profile
 }
 

@@ -29,7 +29,7 @@ pub use frames::{Frame, FrameReadingError, FrameRun, frames};
 pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};
 pub use master::Master;
 pub use memory::{
-    ReadStep, Unsaved, ensure_standstill, profile_of, read_area, read_area_verified, read_registers, save,
+    ReadStep, Unsaved, ensure_standstill, profile_of, read_area, read_area_at_standstill, read_registers, save,
 };
 pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched_value};
 pub use registers::Registers;

@@ -1,6 +1,6 @@
 //! Positions for display and plotting, and watched registers.
 
-use super::flags::with_flags;
+use super::flags::add_error_flags;
 use super::{Damage, Error, FrameRun, Master};
 use crate::bits::Word;
 use crate::devices::biss::profile::RegisterRange;
@@ -118,7 +118,7 @@ pub struct WatchedReading {
 pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     match master.position() {
         Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
-        Ok(reading) => with_flags(master, reading).map(Sample::Position),
+        Ok(reading) => add_error_flags(master, reading).map(Sample::Position),
         Err(Error::Damaged { cause: Damage::Frame(_), .. }) => {
             Ok(Sample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
         }

@@ -25,12 +25,12 @@ impl Registers {
     }
 
     pub fn number(&self, description: &Description, role: Role) -> Option<u64> {
-        let register = description.with_role(role)?;
+        let register = description.register_with_role(role)?;
         register.number(&self.bytes(register)?)
     }
 
     pub fn quantity(&self, description: &Description, role: Role) -> Option<f64> {
-        let register = description.with_role(role)?;
+        let register = description.register_with_role(role)?;
         match register.decode(&self.bytes(register)?)? {
             Decoded::Scaled(value) => Some(value),
             Decoded::Number(value) | Decoded::Hex(value) => Some(value as f64),
@@ -73,7 +73,7 @@ impl Registers {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub(super) fn read_described(
+    pub(super) fn read_described_registers(
         &mut self,
         master: &mut Master<'_>,
         description: &Description,
@@ -101,14 +101,14 @@ impl Registers {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub(super) fn read_roles(
+    pub(super) fn read_registers_with_roles(
         &mut self,
         master: &mut Master<'_>,
         description: &Description,
         firmware: Option<Firmware>,
         roles: &[Role],
     ) -> Result<(), Error> {
-        for register in roles.iter().filter_map(|role| description.with_role(*role)) {
+        for register in roles.iter().filter_map(|role| description.register_with_role(*role)) {
             if !has(register, firmware) {
                 continue;
             }
@@ -153,9 +153,9 @@ mod tests {
     #[test]
     fn registers_missing_in_the_firmware_are_not_read() {
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
-        let errors = kit.with_role(Role::Errors).unwrap();
+        let errors = kit.register_with_role(Role::Errors).unwrap();
         assert!(has(errors, Some(Firmware::new(1, 6, 0))));
         assert!(!has(errors, Some(Firmware::new(1, 5, 9))) && !has(errors, None));
-        assert!(has(kit.with_role(Role::Mode).unwrap(), None));
+        assert!(has(kit.register_with_role(Role::Mode).unwrap(), None));
     }
 }

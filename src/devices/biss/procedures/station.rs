@@ -255,11 +255,11 @@ impl Station {
             return true;
         }
         let Some(description) = &self.description else { return false };
-        description.access(address) == Some(Access::Rw) && !self.is_command(address)
+        description.access(address) == Some(Access::Rw) && !self.is_command_register(address)
     }
 
     /// Returns whether writing the given register is a command that runs a procedure or saves something.
-    pub(super) fn is_command(&self, address: RegisterAddress) -> bool {
+    pub(super) fn is_command_register(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
             let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());
             saves || description.procedures().iter().any(|procedure| procedure.command == address)

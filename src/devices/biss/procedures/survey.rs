@@ -1,6 +1,6 @@
 //! The status of an encoder, and a survey of everything else that can be displayed.
 
-use super::identify::identify_with;
+use super::identify::identify_and_record;
 use super::registers::Registers;
 use super::{Error, Identity, Master, PositionReading};
 use crate::devices::biss::protocol::{
@@ -66,8 +66,8 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     let description = master.description()?;
     let firmware = master.station().firmware;
     let mut registers = Registers::default();
-    registers.read_roles(master, &description, firmware, &STATUS)?;
-    let position = position_if_available(master)?;
+    registers.read_registers_with_roles(master, &description, firmware, &STATUS)?;
+    let position = read_position_if_available(master)?;
     Ok(status_of(&description, &registers, position))
 }
 
@@ -81,7 +81,7 @@ pub fn survey(
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
 ) -> Result<Survey, Error> {
     let mut registers = Registers::default();
-    let identity = identify_with(master, types, &mut registers)?;
+    let identity = identify_and_record(master, types, &mut registers)?;
     read_survey(master, identity, registers, progress)
 }
 
@@ -93,8 +93,8 @@ pub(super) fn read_survey(
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
 ) -> Result<Survey, Error> {
     let description = identity.description.clone();
-    let missing = registers.read_described(master, &description, identity.firmware, progress)?;
-    let position = position_if_available(master)?;
+    let missing = registers.read_described_registers(master, &description, identity.firmware, progress)?;
+    let position = read_position_if_available(master)?;
     let results = |number| wiegand(&description, &registers, number);
     Ok(Survey {
         status: status_of(&description, &registers, position),
@@ -110,7 +110,7 @@ pub(super) fn read_survey(
 }
 
 /// Reads the position. Returns `None` if the encoder has no readable frame, so that the survey can continue.
-fn position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
+fn read_position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),
         Err(Error::TooWide { .. } | Error::WrongWidths { .. } | Error::Damaged { .. }) => Ok(None),
@@ -132,7 +132,7 @@ fn status_of(description: &Description, registers: &Registers, position: Option<
 }
 
 fn bits(description: &Description, registers: &Registers, role: Role) -> Option<FlagRegister> {
-    let register = description.with_role(role)?;
+    let register = description.register_with_role(role)?;
     let bytes = registers.bytes(register)?;
     let raw = register.number(&bytes)?;
     let set = match register.decode(&bytes)? {

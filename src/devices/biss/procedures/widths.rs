@@ -20,7 +20,7 @@ const MOST: u8 = 32;
 /// # Errors
 /// Returns [`Error::WidthsUnknown`] if no length fits or the shaft stands still. Returns other errors if the exchange
 /// fails.
-pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
+pub(super) fn find_frame_layout(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);
     while frames.len() < FRAMES {

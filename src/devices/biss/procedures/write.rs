@@ -145,7 +145,7 @@ impl Write for EncoderWrite<'_, '_> {
     fn end_state(&mut self, cause: &Failure) -> EndState {
         let mut standing = self.guide.standing().clone();
         if matches!(cause, Failure::Device(error) if error.is_lost()) {
-            standing.may_have_lost_power();
+            standing.record_possible_power_loss();
         }
         EndState { at: self.at, standing: (!standing.is_in_operation()).then_some(standing) }
     }
@@ -184,7 +184,7 @@ fn count(done: &mut Written, op: &Op, outcome: Outcome) {
 fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> {
     let kind = &identity.kind;
     let direct = |address| RegisterAddress::direct(address).unwrap_or(RegisterAddress::BANK_SELECT);
-    let serial = identity.description.with_role(Role::SerialNumber).map(|register| register.address);
+    let serial = identity.description.register_with_role(Role::SerialNumber).map(|register| register.address);
     let mut wanted = vec![
         (direct(0x42), kind.profile.word().to_be_bytes().to_vec()),
         (direct(0x78), kind.device_id.to_vec()),
@@ -262,7 +262,7 @@ pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
 /// Reads the active filter, or returns `None` if the firmware offers no choice.
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<PositionFilter>, Error> {
     let firmware = master.station().firmware;
-    let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
+    let Some(register) = description.register_with_role(Role::Filter) else { return Ok(None) };
     if !has(description, firmware, ProcedureKind::FilterSelection) {
         return Ok(None);
     }

@@ -3,10 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::restore::{check_preset, store};
+use super::restore::{check_preset_width, store};
 use super::{
     Bank, Base, BissPlan, BissProfile, DeviceState, Op, PlanError, PresetParts, RegisterChange, RegisterRange,
-    plan_data,
+    plan_data_areas,
 };
 use crate::devices::biss::protocol::{
     Area, Description, Firmware, PositionFilter, PresetValue, Procedure, ProcedureKind, RegisterAddress,
@@ -167,7 +167,7 @@ pub fn plan_edits(
 
 /// Returns the number of persistent writes that a value needs. It is at most one for a register without a description.
 fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
-    description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
+    description.at(address).map_or(1, |register| u8::from(register.costs_write_cycle(value)))
 }
 
 /// Plans to select a filter. The plan is empty if the filter is already active.
@@ -203,7 +203,7 @@ pub fn plan_preset(
         return Err(PlanError::FirmwareTooOld { kind, needed: PRESET_PARTS_SINCE, found });
     }
     let to = value.unwrap_or(from);
-    check_preset(to, &device.identity)?;
+    check_preset_width(to, &device.identity)?;
     let mut ops = Vec::new();
     if to != from {
         ops.push(Op::StorePreset { from, to });
@@ -243,7 +243,7 @@ pub fn plan_mounting(
         plan.ops.extend(preset.ops);
     }
     if let Some(profile) = &run.data {
-        let data = plan_data(profile, device)?.plan;
+        let data = plan_data_areas(profile, device)?.plan;
         plan.base.banks = data.base.banks;
         plan.ops.extend(data.ops);
     }

@@ -27,5 +27,6 @@ pub use record::{
     Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
 };
 pub use restore::{
-    DeviceState, PlanError, Restore, RestoreOptions, banks_needed, check_allowed, check_device, plan_data, plan_restore,
+    DeviceState, PlanError, Restore, RestoreOptions, check_allowed, check_device, plan_data_areas, plan_restore,
+    required_banks,
 };

@@ -146,7 +146,7 @@ impl BissProfile {
     pub const FILTER: &'static str = "0x6E";
 
     /// Marks the preset value and the calibration as valid only on this motor, unless they are already marked.
-    pub fn mark_mounting_values(&mut self) {
+    pub fn mark_mounting_dependent_values(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
         // An encoder with a preset value is a kit encoder, which also has a calibration.
         let calibration = preset.map(|_| MountingItem::Calibration);
@@ -158,7 +158,7 @@ impl BissProfile {
     }
 
     /// Returns whether the value of a register is only valid for one encoder on one motor.
-    pub fn is_mounting_value(&self, address: RegisterAddress) -> bool {
+    pub fn depends_on_mounting(&self, address: RegisterAddress) -> bool {
         self.mounting.iter().any(|mark| match mark.item {
             MountingItem::Registers(range) => range.contains(address),
             MountingItem::Calibration => false,
@@ -211,7 +211,7 @@ impl Bank {
     }
 
     /// Returns the byte that is in every register, or `None` if the registers differ.
-    fn common_byte(&self) -> Option<u8> {
+    fn uniform_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)
     }
@@ -234,11 +234,11 @@ impl DataImage {
     /// empty banks are omitted.
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
-        let count = |byte| banks.iter().filter(|bank| bank.common_byte() == Some(byte)).count();
+        let count = |byte| banks.iter().filter(|bank| bank.uniform_byte() == Some(byte)).count();
         // These are the contents of memory that was never written or was erased.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
-        let holds = |bank: &Bank| empty.is_none() || bank.common_byte() != empty;
+        let holds = |bank: &Bank| empty.is_none() || bank.uniform_byte() != empty;
         DataImage {
             name: area.name.english().to_owned(),
             first: area.first,

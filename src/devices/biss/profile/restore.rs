@@ -18,7 +18,7 @@ pub struct DeviceState {
     pub preset: Option<PresetValue>,
     /// Data areas of the encoder.
     pub areas: Vec<Area>,
-    /// Banks that were read. They include at least those returned by [`banks_needed`].
+    /// Banks that were read. They include at least those returned by [`required_banks`].
     pub banks: Vec<Bank>,
 }
 
@@ -111,7 +111,7 @@ pub enum PlanError {
 }
 
 /// Returns the banks that must be read before a restore of the given profile can be planned.
-pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
+pub fn required_banks(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
     let there = |bank: &u8| areas.iter().any(|area| area.contains(*bank));
     profile.banks().map(|bank| bank.number).filter(there).collect()
 }
@@ -140,7 +140,7 @@ pub fn plan_restore(
 ///
 /// # Errors
 /// See [`PlanError`].
-pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
+pub fn plan_data_areas(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
     let mut planner = Planner::new(profile, device, Mounting::Own);
     planner.data()?;
     Ok(planner.finish())
@@ -167,7 +167,7 @@ pub fn check_allowed(
     if let Some(error) = other_type(&profile.identity, device).filter(|_| !options.allow_other_type) {
         return Err(error.into());
     }
-    if options.allow_other_device || is_same_number(profile, device) {
+    if options.allow_other_device || has_same_serial_number(profile, device) {
         return Ok(());
     }
     Err(PlanError::OtherDevice {
@@ -177,10 +177,10 @@ pub fn check_allowed(
 }
 
 fn is_same_device(profile: &BissProfile, device: &ProfileIdentity) -> bool {
-    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
+    has_same_serial_number(profile, device) && other_type(&profile.identity, device).is_none()
 }
 
-fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
+fn has_same_serial_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
     !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 
@@ -188,7 +188,7 @@ fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
 ///
 /// # Errors
 /// Returns [`PlanError::PresetTooWide`] if it does not.
-pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Result<(), PlanError> {
+pub(super) fn check_preset_width(value: PresetValue, identity: &ProfileIdentity) -> Result<(), PlanError> {
     let parts = [
         ("singleturn", value.singleturn(), identity.singleturn_bits),
         ("multiturn", value.multiturn(), identity.multiturn_bits),
@@ -276,10 +276,10 @@ impl<'a> Planner<'a> {
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
             if old == new {
                 self.unchanged += 1;
-            } else if self.mounting == Mounting::Leave && self.profile.is_mounting_value(address) {
+            } else if self.mounting == Mounting::Leave && self.profile.depends_on_mounting(address) {
                 self.left.push(address);
             } else {
-                if self.mounting == Mounting::Write && self.profile.is_mounting_value(address) {
+                if self.mounting == Mounting::Write && self.profile.depends_on_mounting(address) {
                     self.mounting_written.push(address);
                 }
                 changes.push(RegisterChange { address, old, new });
@@ -310,7 +310,7 @@ impl<'a> Planner<'a> {
             (Some(to), Some(from)) if to == from => self.unchanged += to.emit().len() as u64,
             (Some(_), Some(_)) if self.mounting == Mounting::Leave => self.left.extend(preset_addresses()),
             (Some(to), Some(from)) => {
-                check_preset(to, &self.device.identity)?;
+                check_preset_width(to, &self.device.identity)?;
                 if self.mounting == Mounting::Write {
                     self.mounting_written.extend(preset_addresses());
                 }

@@ -125,13 +125,13 @@ impl Request {
     fn data(&self, index: usize) -> u16 {
         match &self.kind {
             RequestKind::Read { .. } => 0,
-            RequestKind::Write { values } => values.get(index).map_or(0, |value| with_crc(*value)),
+            RequestKind::Write { values } => values.get(index).map_or(0, |value| append_crc4(*value)),
         }
     }
 }
 
 /// Appends the CRC4 to a value and returns the resulting twelve bits.
-fn with_crc(value: u8) -> u16 {
+fn append_crc4(value: u8) -> u16 {
     let value = u16::from(value);
     value << 4 | u16::from(super::crc::crc4(value, 8))
 }

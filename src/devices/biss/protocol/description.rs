@@ -161,7 +161,7 @@ impl Description {
     }
 
     /// Returns the register with the given role, if any.
-    pub fn with_role(&self, role: Role) -> Option<&Register> {
+    pub fn register_with_role(&self, role: Role) -> Option<&Register> {
         self.registers.iter().find(|register| register.role == Some(role))
     }
 

@@ -234,7 +234,7 @@ impl ProfileId {
 
     /// Returns whether bits 15 to 13 are 011, which denotes the standard encoder profile BP3. Only the data sheet of
     /// that profile can be decoded.
-    pub const fn is_standard_encoder(self) -> bool {
+    pub const fn is_standard_encoder_profile(self) -> bool {
         self.0 >> 13 == 0b011
     }
 }
@@ -283,8 +283,11 @@ mod tests {
         assert_eq!(DeviceMode::new(0x09).to_string(), "0x09 unknown mode");
         assert_eq!(DeviceMode::PRESET.to_string(), "0x07 preset");
         assert!((0..=255).all(|byte| PositionFilter::from_byte(byte).byte() == byte));
-        assert!(ProfileId::new(0x6129).is_standard_encoder());
-        assert!(!ProfileId::new(0x4129).is_standard_encoder() && !ProfileId::new(0xE129).is_standard_encoder());
+        assert!(ProfileId::new(0x6129).is_standard_encoder_profile());
+        assert!(
+            !ProfileId::new(0x4129).is_standard_encoder_profile()
+                && !ProfileId::new(0xE129).is_standard_encoder_profile()
+        );
     }
 
     #[test]

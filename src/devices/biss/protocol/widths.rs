@@ -49,7 +49,7 @@ mod tests {
     }
 
     /// Returns the first 64 bits on the line, consisting of a `frame` of `bits` bits followed by zeros.
-    fn clock_out_bits(frame: u64, bits: u8) -> u64 {
+    fn first_bits_on_line(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
 
@@ -57,7 +57,7 @@ mod tests {
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
         let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };
-        (0..count).map(|at| clock_out_bits(layout.emit(&reading(at)), layout.bits())).collect()
+        (0..count).map(|at| first_bits_on_line(layout.emit(&reading(at)), layout.bits())).collect()
     }
 
     #[test]

@@ -208,7 +208,7 @@ impl Encoder {
         let offset = address.address();
         let value = match address.bank() {
             None => self.direct(offset),
-            Some(0x00) => self.special_register(offset),
+            Some(0x00) => self.bank_0_register(offset),
             Some(0x01) => self.preset_register(offset),
             Some(bank @ (0x02 | 0x03)) => {
                 let [common, encoder] = &self.eds;
@@ -216,7 +216,7 @@ impl Encoder {
                 eds.emit().get(usize::from(offset)).copied().unwrap_or(0)
             }
             Some(bank) if bank <= Self::MAX_BANK => {
-                let (area, begin) = Area::containing_bank(bank)?;
+                let (area, begin) = Area::area_of_bank(bank)?;
                 let at = begin + usize::from(offset);
                 self.data.byte(area, at).or_else(|| self.area(area).get(at).copied())?
             }
@@ -260,7 +260,7 @@ impl Encoder {
             (Some(0x01), 0x02..=0x07) if self.mode == DeviceMode::PRESET => {
                 self.preset.enter(usize::from(offset - 2), value)
             }
-            (Some(bank), _) => Area::containing_bank(bank)
+            (Some(bank), _) => Area::area_of_bank(bank)
                 .is_some_and(|(area, begin)| self.data.enter(area, begin + usize::from(offset), value)),
             _ => false,
         };
@@ -337,11 +337,11 @@ impl Encoder {
                     place.iter_mut().zip(bytes.into_iter().take(count)).for_each(|(old, new)| *old = new);
                 });
             }
-            Then::SaveFilter(filter) => self.store_and_restart(now, |flash| flash.filter = filter),
-            Then::SavePreset(preset) => self.store_and_restart(now, |flash| flash.preset = preset),
+            Then::SaveFilter(filter) => self.write_flash_and_restart(now, |flash| flash.filter = filter),
+            Then::SavePreset(preset) => self.write_flash_and_restart(now, |flash| flash.preset = preset),
             Then::Preset { singleturn, multiturn } => {
                 let preset = self.flash.preset;
-                self.store_and_restart(now, |_| {});
+                self.write_flash_and_restart(now, |_| {});
                 if self.power != Power::Off {
                     let (own_singleturn, own_multiturn) = (preset.singleturn(), preset.multiturn());
                     self.shaft.preset(now, singleturn.then_some(own_singleturn), multiturn.then_some(own_multiturn));
@@ -362,7 +362,7 @@ impl Encoder {
         }
     }
 
-    fn store_and_restart(&mut self, now: Moment, change: impl FnOnce(&mut Flash)) {
+    fn write_flash_and_restart(&mut self, now: Moment, change: impl FnOnce(&mut Flash)) {
         self.store(|flash, whole| {
             if whole {
                 change(flash);

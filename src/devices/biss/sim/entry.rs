@@ -15,7 +15,7 @@ pub(super) enum Area {
 impl Area {
     /// Returns the area of a bank, and the offset of the bank in that area. Returns `None` if the bank does not belong
     /// to an area.
-    pub(super) fn containing_bank(bank: u8) -> Option<(Area, usize)> {
+    pub(super) fn area_of_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
             0x04..=0x23 => Some((Area::Motor, begin(0x04))),

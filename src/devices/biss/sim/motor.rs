@@ -28,7 +28,7 @@ impl Drive {
     }
 
     /// Reverses the motor, if configured. Called when a procedure waits for the opposite direction.
-    pub(super) fn reverse_motor(&self) {
+    pub(super) fn reverse_if_configured(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());
         }

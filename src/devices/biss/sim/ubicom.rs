@@ -96,7 +96,7 @@ impl UbicomPort {
         self.heard = self.receiver.is_waiting().then_some(at);
     }
 
-    fn end_frame(&mut self, at: Moment) {
+    fn handle_line_silence(&mut self, at: Moment) {
         self.heard = None;
         while let Some(frame) = self.receiver.handle_silence() {
             self.take(at, &frame);
@@ -176,7 +176,7 @@ impl VirtualLine for UbicomPort {
         match event {
             Event::EncoderAnswers => self.answer(at),
             Event::EncoderHears => self.handle_input(),
-            Event::FrameEnds => self.end_frame(at),
+            Event::FrameEnds => self.handle_line_silence(at),
             Event::HostReceives => {
                 let byte = self.to_host.pop().map(|(_, byte)| byte);
                 self.wires.inbox.extend(byte);

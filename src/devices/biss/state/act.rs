@@ -50,7 +50,7 @@ impl Encoder {
             BissAction::Revert { start, count } => self.memory.revert_range(start, count),
             BissAction::Plan(change) => self.plan(*change, services),
             BissAction::Answer(task, answer) => self.answer(task, answer),
-            BissAction::CloseGuide => self.close_guide(),
+            BissAction::CloseGuide => self.close_procedure(),
             BissAction::LeadBack => self.submit(BissJob::LeadBack, services),
             BissAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
@@ -95,14 +95,14 @@ impl Encoder {
 
     /// Returns whether a newly visible bank should be read. This requires that the bank has not been read, nothing is
     /// running, no stream would be interrupted, and no earlier attempt failed.
-    pub fn should_read_group(&self, group: &Group) -> bool {
+    pub fn should_read_bank(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
     /// Returns the part of an area that can be shown. This is the whole area for an encoder, and the part that the file
     /// contains for a profile.
-    pub fn visible_part(&self, area: &Area) -> Option<Area> {
+    pub fn visible_area_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 
@@ -128,7 +128,7 @@ impl Encoder {
     /// Saves a newly read profile to the file for which it was requested.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
-        let remarks = explained::saved_unsaved(&profile).into_iter().collect();
+        let remarks = explained::unsaved_profile_warning(&profile).into_iter().collect();
         self.session.save_read_values(Body::new(profile), edits, remarks, services);
     }
 }

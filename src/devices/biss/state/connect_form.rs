@@ -3,7 +3,9 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, for_adapter, host_and_port, split_target};
+use crate::app::connect::target::{
+    checked, entered, for_adapter, host_and_port, network_address_of_adapter, split_target,
+};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
@@ -91,7 +93,7 @@ impl FormModel for BissForm {
         let target = url.target.as_str();
         let network = match url.scheme {
             LinkScheme::Tcp => Some(target),
-            LinkScheme::Bridge => adapter_in_network(target),
+            LinkScheme::Bridge => network_address_of_adapter(target),
             _ => None,
         };
         form.kind = match url.scheme {
@@ -121,7 +123,7 @@ impl FormModel for BissForm {
     }
 
     fn example(&self) -> &'static str {
-        if self.is_on_the_bus() { "bridge:/dev/ttyUSB0" } else { "serial:/dev/ttyUSB0" }
+        if self.uses_bus() { "bridge:/dev/ttyUSB0" } else { "serial:/dev/ttyUSB0" }
     }
 }
 
@@ -133,7 +135,7 @@ impl BissForm {
             return self.leave_supply;
         }
         match name {
-            "bridge" if self.leads_to_pin_or_bus() => {
+            "bridge" if self.supports_pin_and_bus() => {
                 self.behind_adapter = value == BRIDGE.1;
                 self.behind_adapter
             }
@@ -149,7 +151,7 @@ impl BissForm {
         is_taken
     }
 
-    pub fn of_the_virtual() -> Vec<Entry> {
+    pub fn virtual_device_entries() -> Vec<Entry> {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
 
@@ -168,18 +170,18 @@ impl BissForm {
     }
 
     fn entries(&self) -> Vec<Entry> {
-        let own = if self.kind == BissLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        let own = if self.kind == BissLinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
         let (frame, line) = Self::common_entries();
         [own, Self::bus_entries(), PinParameters::entries(), frame, line].concat()
     }
 
     /// Returns whether the encoder is connected by its bus. The adapter may be real or virtual.
-    pub fn is_on_the_bus(&self) -> bool {
-        self.kind == BissLinkKind::Bus || (self.leads_to_pin_or_bus() && self.behind_adapter)
+    pub fn uses_bus(&self) -> bool {
+        self.kind == BissLinkKind::Bus || (self.supports_pin_and_bus() && self.behind_adapter)
     }
 
     /// Returns whether the link may connect to either the configuration pin or the bus.
-    pub fn leads_to_pin_or_bus(&self) -> bool {
+    pub fn supports_pin_and_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
 
@@ -197,13 +199,13 @@ impl BissForm {
 
     fn parameters(&self) -> Parameters {
         let mut parameters = Parameters::default();
-        if self.leads_to_pin_or_bus() && self.behind_adapter {
+        if self.supports_pin_and_bus() && self.behind_adapter {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.kind == BissLinkKind::Virtual {
-            parameters.typed(&Self::of_the_virtual(), &self.typed);
+            parameters.typed(&Self::virtual_device_entries(), &self.typed);
         }
-        if self.is_on_the_bus() {
+        if self.uses_bus() {
             parameters.typed(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfterSession::LEFT_ON.0, SupplyAfterSession::LEFT_ON.1);
@@ -229,7 +231,7 @@ impl BissForm {
     /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped. Unknown
     /// parameters are kept, because they are refused later with an error that names them.
     fn has_parameter(&self, name: &str) -> bool {
-        let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
+        let kind = if self.uses_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);
         let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(attachable_kinds()).contains(&name));
         let of_the_virtual = self.kind == BissLinkKind::Virtual && (encoder || (adapter && self.behind_adapter));

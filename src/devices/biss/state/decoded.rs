@@ -44,7 +44,7 @@ impl Encoder {
                 group.and_then(|group| group.name.as_ref()).map(explained::name)
             }
             (Role::Profile, [high, low]) => {
-                let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder();
+                let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder_profile();
                 Some(TEXTS.text(if is_standard { "registers.standard" } else { "registers.other_profile" }))
             }
             (Role::Password, [byte]) => {
@@ -77,7 +77,7 @@ impl Encoder {
         let field = bank.fields().iter().find(|field| field.offset == offset)?;
         let mut own = [0; 64];
         own.get_mut(usize::from(offset)..usize::from(offset) + bytes.len())?.copy_from_slice(bytes);
-        words::non_numeric_text(field.value(&own))
+        words::explained_value_text(field.value(&own))
     }
 }
 

@@ -81,7 +81,7 @@ impl Encoder {
     }
 
     /// Returns the profile with its edits, or `None` if this is an encoder.
-    pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
+    pub(crate) fn edited_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
         for (at, byte) in self.memory.iter() {
             profile.put(at, byte);

@@ -128,7 +128,7 @@ impl SessionEvents for Encoder {
                 self.committed(*committed, services);
             }
             BissOutput::LedBack(mode) => {
-                self.mark_restored();
+                self.mark_returned_to_operation();
                 let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
@@ -139,7 +139,7 @@ impl SessionEvents for Encoder {
     }
 
     /// Returns whether an error means that neither the encoder nor the adapter responds.
-    fn is_silence(&self, error: &JobError) -> bool {
+    fn means_no_response(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),
             JobError::Interrupted { interrupted, .. } => interrupted.cause.is_lost(),
@@ -156,7 +156,7 @@ impl SessionEvents for Encoder {
 
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
-        let stands_there = self.interrupt_guide(&how, texts) || self.handle_interrupted_write(how, texts);
+        let stands_there = self.end_interrupted_procedure(&how, texts) || self.handle_interrupted_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }

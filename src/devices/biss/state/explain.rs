@@ -15,7 +15,8 @@ pub use check::check;
 pub use damage::damage_text;
 pub use entry::entry;
 pub use guide::{
-    advice_text, blocker_text, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_requirements,
+    advice_text, blocker_text, calibration_requirements_text, mode, outcome, procedure, report, step, task,
+    wiegand_requirements_text,
 };
 pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
@@ -145,17 +146,17 @@ pub fn unsaved(mode: DeviceMode) -> Text {
 
 /// Returns a warning if a profile that was just saved may contain values that were never saved in the encoder. Returns
 /// `None` if the encoder was in operation.
-pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
+pub fn unsaved_profile_warning(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved)
 }
 
 /// Returns the message for a profile that was read in a device mode, or `None` if the encoder was in operation.
 pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
-    profile.recorded.device_mode.map(profile_unsaved_in)
+    profile.recorded.device_mode.map(unsaved_profile_text_for_mode)
 }
 
 /// Returns the message for a profile that was read in the given device mode.
-pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
+pub fn unsaved_profile_text_for_mode(mode: DeviceMode) -> Text {
     in_mode("biss.profile_unsaved", mode)
 }
 

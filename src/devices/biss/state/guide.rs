@@ -109,7 +109,7 @@ impl Guide {
                     Some(End::Done(_)) => Reached::Done,
                     Some(End::Failed { cancelled: true, .. }) if is_own => Reached::Cancelled,
                     Some(End::Failed { .. }) if is_own => Reached::Failed,
-                    Some(End::Failed { .. }) if self.was_restored(number, step) => Reached::Done,
+                    Some(End::Failed { .. }) if self.was_returned_to_operation(number, step) => Reached::Done,
                     _ if is_own && self.demand().is_some() => Reached::Waits,
                     _ if is_own => Reached::Runs,
                     _ if passed && is_skipped => Reached::Skipped,
@@ -149,7 +149,7 @@ impl Guide {
     }
 
     /// Returns whether the given step belongs to a return to operation that was completed after an interruption.
-    fn was_restored(&self, op: usize, step: ProcedureStep) -> bool {
+    fn was_returned_to_operation(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
         step == ProcedureStep::LeadBack && was_reported && in_operation

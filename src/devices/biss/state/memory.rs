@@ -132,7 +132,7 @@ impl Memory {
     /// Discards the edits of `count` bytes from `start` onward.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
-        self.undo_matching(|at| range.contains(&at.global()));
+        self.revert_matching(|at| range.contains(&at.global()));
     }
 
     /// Returns the runs of edited bytes. Runs do not cross bank boundaries.

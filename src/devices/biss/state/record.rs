@@ -239,7 +239,7 @@ fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning 
     if !is_split_known {
         return Meaning::for_steps(range);
     }
-    Meaning::for_turns(range, f64::from(singleturn).exp2())
+    Meaning::for_steps_per_turn(range, f64::from(singleturn).exp2())
 }
 
 fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
@@ -325,7 +325,7 @@ mod tests {
     fn a_register_without_a_value_reports_the_reason() {
         let descriptions = Descriptions::built_in();
         let kit = descriptions.named("POSITAL IXARC kit encoder").unwrap();
-        let register = kit.with_role(Role::Temperature).unwrap().clone();
+        let register = kit.register_with_role(Role::Temperature).unwrap().clone();
         let address = register.address;
         let mut record = Record::default();
         record.watch(std::slice::from_ref(&register));

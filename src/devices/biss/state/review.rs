@@ -53,7 +53,7 @@ impl Reviewable for Biss {
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
             warnings.push(Text::new("review.commutation"));
         }
-        warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
+        warnings.extend(prepared.unsaved.map(words::unsaved_profile_text_for_mode));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
         warnings.extend(review::skipped_texts(
             TEXTS.text("biss_review.missing"),

@@ -108,7 +108,7 @@ impl Group {
 impl RegisterEntry<'_> {
     /// Returns whether the value differs from the factory default. Returns `false` if no default is known or the
     /// register was not read.
-    pub fn differs_from_delivery(&self) -> bool {
+    pub fn differs_from_factory_default(&self) -> bool {
         let default = &self.row.register.default;
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }

@@ -86,7 +86,7 @@ pub fn eds_value_text(value: EdsValue) -> Text {
 }
 
 /// Returns the meaning of a data sheet field. Returns `None` if the raw number needs no explanation.
-pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
+pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
         EdsValue::Ticks(_) => Some(TEXTS.text("eds.no_unit")),
@@ -95,7 +95,7 @@ pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
 }
 
 /// Returns the name of a data sheet field as used in the manual.
-pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
+pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::banked(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))

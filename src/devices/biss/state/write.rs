@@ -35,21 +35,21 @@ impl Encoder {
         }
     }
 
-    pub(super) fn close_guide(&mut self) {
+    pub(super) fn close_procedure(&mut self) {
         if self.guide.as_ref().is_some_and(|guide| !guide.is_running()) {
             self.guide = None;
         }
     }
 
     /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
-    pub(super) fn mark_restored(&mut self) {
+    pub(super) fn mark_returned_to_operation(&mut self) {
         if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
     }
 
     /// Ends the display of a guided procedure that was interrupted, and returns whether a procedure was running.
-    pub(super) fn interrupt_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
+    pub(super) fn end_interrupted_procedure(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
             EarlyEnd::Lost => None,
@@ -58,7 +58,7 @@ impl Encoder {
             return false;
         }
         if error.is_some_and(JobInterruption::has_begun) {
-            self.rereads_after_write();
+            self.schedule_rereads();
         }
         let Some(guide) = &mut self.guide else { return false };
         let (before, may_lead_back) = match error {
@@ -118,7 +118,7 @@ impl HasMemory for Encoder {
         }
     }
 
-    fn rereads_after_write(&mut self) {
+    fn schedule_rereads(&mut self) {
         let ops: &[Op] = match (&self.guide, self.session.review.as_ref().map(|review| &review.state)) {
             (Some(guide), _) if guide.is_running() => guide.ops(),
             (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,
@@ -134,7 +134,7 @@ impl HasMemory for Encoder {
         }
     }
 
-    fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
+    fn log_write_start(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         self.log_operations(what, prepared, services);
     }
 
@@ -152,8 +152,8 @@ impl HasProfile for Encoder {
         BissJob::Save
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        self.wanted_profile().map(Body::new)
+    fn edited_body(&self) -> Option<Body> {
+        self.edited_profile().map(Body::new)
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {
@@ -173,8 +173,10 @@ impl HasProfile for Encoder {
             return Some(Err(missing));
         }
         let profile = profile_of(survey, data, survey.status.unsaved_mode());
-        let remarks =
-            unsaved_edits_remark(self.memory.count()).into_iter().chain(words::saved_unsaved(&profile)).collect();
+        let remarks = unsaved_edits_remark(self.memory.count())
+            .into_iter()
+            .chain(words::unsaved_profile_warning(&profile))
+            .collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

@@ -56,14 +56,14 @@ impl TypedConnectForm for BissConnectForm {
             }
             BissLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
-                reached_ui(ui, theme, form);
+                connection_point_ui(ui, theme, form);
             }
         }
-        if form.is_on_the_bus() {
+        if form.uses_bus() {
             typed(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
         }
         if form.kind != BissLinkKind::Replay && expandable_ui(ui, theme, more) {
-            if !form.is_on_the_bus() {
+            if !form.uses_bus() {
                 let (baud, others) = BissForm::pin_entries();
                 for own in baud {
                     let word = say(theme, own.label);
@@ -89,7 +89,7 @@ impl TypedConnectForm for BissConnectForm {
                 entry_row(ui, theme, say, frame, &mut form.typed);
             });
             paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
-            if form.is_on_the_bus() {
+            if form.uses_bus() {
                 leave_supply(ui, theme, &mut form.leave_supply);
             }
             typed(ui, theme, say, line, &mut form.typed);
@@ -97,7 +97,7 @@ impl TypedConnectForm for BissConnectForm {
     }
 }
 
-fn reached_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
+fn connection_point_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
@@ -106,6 +106,6 @@ fn reached_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
 }
 
 fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
-    reached_ui(ui, theme, form);
-    typed(ui, theme, say, BissForm::of_the_virtual(), &mut form.typed);
+    connection_point_ui(ui, theme, form);
+    typed(ui, theme, say, BissForm::virtual_device_entries(), &mut form.typed);
 }

@@ -35,7 +35,7 @@ pub(super) fn page_ui(
         edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
     super::messages_ui(ui, theme, encoder, actions);
-    let shown = encoder.visible_part(area);
+    let shown = encoder.visible_area_part(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
             let word = theme.words(&words::name(&own.name));
@@ -60,7 +60,7 @@ pub(super) fn page_ui(
     });
     ui.add_space(theme.space.inside);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
-        Some(((read, wanted), own)) => bytes_ui(ui, theme, encoder, &own, (&read, &wanted), view, actions),
+        Some(((read, wanted), own)) => area_bytes_ui(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
             empty_placeholder(ui, theme, &say(theme, "data.not_in_profile"), None);
         }
@@ -73,7 +73,7 @@ pub(super) fn page_ui(
     }
 }
 
-fn bytes_ui(
+fn area_bytes_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

@@ -59,7 +59,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         } else if let Some(identity) = encoder.profile_identity() {
             ui.label(theme.value(&identity.description));
             ui.add_space(theme.space.inside);
-            recorded_ui(ui, theme, encoder, identity);
+            profile_identity_ui(ui, theme, encoder, identity);
         } else {
             empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
         }
@@ -103,7 +103,7 @@ fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     }
 }
 
-fn recorded_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
+fn profile_identity_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
     row(ui, theme, &theme.say("encoder_card.serial"), theme.monospace(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();

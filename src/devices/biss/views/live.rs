@@ -67,7 +67,8 @@ pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions:
         ui.label(theme.heading(&word));
         paragraph(ui, theme.caption(say(theme, "live.watch_registers")));
         let usual = [Role::Temperature, Role::Errors, Role::Warnings, Role::Mode];
-        let usual: Vec<Register> = usual.iter().filter_map(|role| description.with_role(*role).cloned()).collect();
+        let usual: Vec<Register> =
+            usual.iter().filter_map(|role| description.register_with_role(*role).cloned()).collect();
         let more = watched.iter().filter(|own| usual.iter().all(|other| other.address != own.address)).cloned();
         for register in usual.iter().cloned().chain(more) {
             let mut on = watched.iter().any(|own| own.address == register.address);

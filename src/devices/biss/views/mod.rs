@@ -58,33 +58,33 @@ pub(crate) struct BissUiState {
 fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        unsaved_ui(ui, theme, encoder, actions);
-        refusal_ui(ui, theme, encoder, actions);
+        unsaved_warning_ui(ui, theme, encoder, actions);
+        read_refusal_ui(ui, theme, encoder, actions);
     });
 }
 
-fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn read_refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
         paragraph(ui, theme.words(why));
     });
-    motor::turning_ui(ui, theme, encoder, actions);
+    motor::motor_running_note_ui(ui, theme, encoder, actions);
 }
 
-fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn unsaved_warning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = encoder.unsaved() else { return };
     ui.horizontal_top(|ui| {
         ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
         paragraph(ui, theme.words(&why));
     });
     if encoder.profile().is_none() {
-        restore_ui(ui, theme, encoder, actions);
+        return_to_operation_ui(ui, theme, encoder, actions);
     }
     ui.add_space(theme.space.inside);
 }
 
-fn restore_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn return_to_operation_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
         actions.push(Action::device(encoder.session.id, Biss::LeadBack));

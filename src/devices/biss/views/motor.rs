@@ -28,7 +28,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Mot
 
 /// Draws a note that the virtual motor is still turning, with a stop button. A real motor can only be stopped by its
 /// operator.
-pub(super) fn turning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn motor_running_note_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(motor) = &encoder.motor else { return };
     if motor.rpm() == 0.0 {
         return;

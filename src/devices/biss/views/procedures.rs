@@ -105,7 +105,7 @@ fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Ve
         let mode = explained::mode(status.mode.unwrap_or_default());
         let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
-        super::restore_ui(ui, theme, encoder, actions);
+        super::return_to_operation_ui(ui, theme, encoder, actions);
     });
     theme.gap(ui);
 }
@@ -133,8 +133,14 @@ fn mounting_ui(
         }
         ui.add_space(theme.space.between);
         ui.label(say(theme, "mounting_card.what"));
-        choice_ui(ui, theme, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
-        choice_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_requirements());
+        procedure_checkbox_ui(
+            ui,
+            theme,
+            own.calibrate,
+            "mounting_card.calibrate",
+            &explained::calibration_requirements_text(),
+        );
+        procedure_checkbox_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_requirements_text());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 theme.gap(ui);
@@ -142,9 +148,9 @@ fn mounting_ui(
             });
         });
         ui.checkbox(own.with_preset, say(theme, "mounting_card.preset"));
-        data_ui(ui, theme, studio, own.data);
+        data_profile_choice_ui(ui, theme, studio, own.data);
         ui.add_space(theme.space.between);
-        let wish = requested_run(encoder, own);
+        let wish = requested_procedures(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
         if button_with_reason(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
@@ -157,7 +163,7 @@ fn mounting_ui(
     });
 }
 
-fn choice_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
+fn procedure_checkbox_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
         theme.gap(ui);
@@ -166,7 +172,7 @@ fn choice_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words:
 }
 
 /// Returns the requested procedures, or the reason why they cannot be reviewed yet.
-fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps, Text> {
+fn requested_procedures(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
         None if turns => return Err(TEXTS.text("mounting_card.no_motor")),
@@ -187,7 +193,7 @@ fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingSteps,
     Ok(MountingSteps { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
-fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
+fn data_profile_choice_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()
         .iter()

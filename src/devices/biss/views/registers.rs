@@ -55,7 +55,7 @@ pub(super) fn page_ui(
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(egui::vec2(BANKS, height), egui::Layout::top_down(egui::Align::Min), |ui| {
             ui.set_min_width(BANKS);
-            banks_ui(ui, theme, encoder, &groups, view);
+            bank_list_ui(ui, theme, encoder, &groups, view);
         });
         ui.vertical(|ui| table(ui, theme, encoder, &groups, height, view, actions));
     });
@@ -78,12 +78,12 @@ fn head_ui(
             }
         }
         if let Some(own) = encoder.table.groups().get(at) {
-            let word = theme.words(&read_label(own.bank));
+            let word = theme.words(&read_button_label(own.bank));
             if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
         }
-        watching_ui(ui, theme, encoder, view, actions);
+        watch_selection_ui(ui, theme, encoder, view, actions);
         if let Some(problem) = view.table.problem(theme) {
             let words = format!("{} {problem}", icons::WARNING_CIRCLE);
             ui.add(egui::Label::new(RichText::new(words).color(theme.palette.bad)).truncate());
@@ -95,14 +95,20 @@ fn head_ui(
     });
 }
 
-fn read_label(bank: Option<u8>) -> Text {
+fn read_button_label(bank: Option<u8>) -> Text {
     match bank {
         None => TEXTS.text("registers.read_direct"),
         Some(bank) => TEXTS.text("registers.read_bank").with("bank", format!("0x{bank:02X}")),
     }
 }
 
-fn watching_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
+fn watch_selection_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &RegistersUiState,
+    actions: &mut Vec<Action>,
+) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
     let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
@@ -131,7 +137,7 @@ fn watching_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUi
     }
 }
 
-fn banks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
+fn bank_list_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
     let selected = view.table.group();
     ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -186,7 +192,7 @@ fn table(
     }
     // Visible registers are read once automatically when nothing else is running.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
-    let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.should_read_group(own);
+    let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.should_read_bank(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
         actions.push(Action::device(encoder.session.id, Biss::SeeBank(own.bank)));
     }
@@ -221,7 +227,7 @@ fn register_row(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, els
         }
         .to_owned(),
         default: crate::bits::hex(&register.default),
-        differs: shown.differs_from_delivery(),
+        differs: shown.differs_from_factory_default(),
         changed: shown.has_changed,
         edited: shown.is_edited,
         cost: (!register.saves.is_empty()).then(|| say(theme, "registers.cost")),

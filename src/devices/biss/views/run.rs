@@ -180,14 +180,14 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
             .collect();
         lines.iter().for_each(|(severity, words)| line_ui(ui, theme, *severity, words));
         if encoder.motor.is_some() {
-            motor::turning_ui(ui, theme, encoder, actions);
+            motor::motor_running_note_ui(ui, theme, encoder, actions);
         } else if ops.iter().any(Op::turns) {
             line_ui(ui, theme, Severity::Note, &say(theme, "guide.stop_motor"));
         }
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
-                super::restore_ui(ui, theme, encoder, actions);
+                super::return_to_operation_ui(ui, theme, encoder, actions);
             }
             if !lines.is_empty() && button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), say(theme, "guide.report"));

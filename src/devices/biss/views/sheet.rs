@@ -15,17 +15,19 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         theme,
         (),
         |ui, ()| {
-            folding_card(ui, theme, TEXTS.text("sheet_card.common"), |ui| sheet_ui(ui, theme, EdsBank::Common, &common))
+            folding_card(ui, theme, TEXTS.text("sheet_card.common"), |ui| {
+                data_sheet_bank_ui(ui, theme, EdsBank::Common, &common)
+            })
         },
         |ui, ()| {
             folding_card(ui, theme, TEXTS.text("sheet_card.encoder"), |ui| {
-                sheet_ui(ui, theme, EdsBank::Encoder, &encoder)
+                data_sheet_bank_ui(ui, theme, EdsBank::Encoder, &encoder)
             })
         },
     );
 }
 
-fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsError>) {
+fn data_sheet_bank_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsError>) {
     let eds = match sheet {
         Ok(eds) => eds,
         Err(why) => {
@@ -42,7 +44,7 @@ fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsEr
             let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_min_width(room);
-                paragraph(ui, theme.label(theme.words(&words::eds_name(bank, field))));
+                paragraph(ui, theme.label(theme.words(&words::eds_field_name(bank, field))));
             });
             paragraph(ui, theme.words(&words::eds_value_text(value)));
         });

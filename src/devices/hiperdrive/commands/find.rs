@@ -27,7 +27,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output) -> Result {
         discover(&mut shout, &*clock, &CancelToken::default()).map_err(|error| failed(&words::device(&error)))?;
     let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =
         found.into_iter().partition(DiscoveredDevice::is_hiperdrive);
-    let list: Vec<Json> = drives.iter().map(json_of).collect();
+    let list: Vec<Json> = drives.iter().map(discovered_device_json).collect();
     let text: String = drives.iter().map(discovered_device_text).collect();
     output.show(&json!({"devices": list, "others": others.len()}), &text)?;
     if !drives.is_empty() {
@@ -70,17 +70,17 @@ fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     Ok(found)
 }
 
-fn link_of(found: &DiscoveredDevice) -> String {
+fn discovered_device_link(found: &DiscoveredDevice) -> String {
     match found.port {
         EXPLICIT_PORT => format!("enip:{}", found.address),
         port => format!("enip:{}:{port}", found.address),
     }
 }
 
-fn json_of(found: &DiscoveredDevice) -> Json {
+fn discovered_device_json(found: &DiscoveredDevice) -> Json {
     let identity = &found.identity.identity;
     json!({
-        "link": link_of(found),
+        "link": discovered_device_link(found),
         "address": found.address.to_string(),
         "port": found.port,
         "product_name": identity.product_name,
@@ -91,5 +91,5 @@ fn json_of(found: &DiscoveredDevice) -> Json {
 
 fn discovered_device_text(found: &DiscoveredDevice) -> String {
     let identity = &found.identity.identity;
-    format!("{}  {}, serial number {}\n", link_of(found), identity.product_name, identity.serial_number)
+    format!("{}  {}, serial number {}\n", discovered_device_link(found), identity.product_name, identity.serial_number)
 }

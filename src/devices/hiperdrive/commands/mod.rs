@@ -45,7 +45,7 @@ impl DeviceCommands for HiperdriveCommands {
             CommandId::Read => {
                 let items =
                     "items: parameter numbers, such as 17 or 158; for drive 2 of a hub, 258, or 158 with --drive 2";
-                return Some(format!("{items}.\n\n{}", listed_parameters()));
+                return Some(format!("{items}.\n\n{}", parameter_list_help()));
             }
             CommandId::Write => {
                 "items: writable parameters, numbered as for read; the value is saved if the drive can store it. 101 to 104 move \
@@ -124,7 +124,7 @@ impl CliCommand for MoveCommand {
 }
 
 /// Returns the help text that lists all parameters with their numbers, one per line.
-fn listed_parameters() -> String {
+fn parameter_list_help() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):
 "

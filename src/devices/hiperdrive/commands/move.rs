@@ -24,7 +24,7 @@ use crate::devices::hiperdrive::jobs::{DriveSnapshot, HiperdriveJob, HiperdriveO
 use crate::devices::hiperdrive::procedures::dead_man::{
     Ended, MotionRequest, Permit, Phase, Refusal, SpeedTorque, TargetState,
 };
-use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionRules};
+use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
 use crate::devices::hiperdrive::state::PositionUnit;
 use crate::devices::hiperdrive::state::explain as words;
@@ -115,7 +115,7 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
             values.push((base, value));
         }
     }
-    let rules = MotionRules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
+    let rules = MotionLimitParameters::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
     // The parameters have just been read.
     let now = Moment::START;
     let limits = DriveLimits::of(rules, (identity.topology, variant), now);

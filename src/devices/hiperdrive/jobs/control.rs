@@ -9,7 +9,7 @@ use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Moti
 use crate::buses::ethernet_ip::protocol::ForwardClose;
 use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
 use crate::devices::hiperdrive::procedures::{
-    DriveLimits, Error, GROUPS, Identity, MotionRules, Survey, Temperature, TemperatureReading, identify,
+    DriveLimits, Error, GROUPS, Identity, MotionLimitParameters, Survey, Temperature, TemperatureReading, identify,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterNumber, PkwError, Value};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
@@ -86,7 +86,7 @@ impl CyclicControl {
                 Value::Number(value) => Some(*value),
                 Value::Text(_) => None,
             };
-            self.limit(&survey.identity, drive.number, MotionRules::by(read), [began; GROUPS]);
+            self.limit(&survey.identity, drive.number, MotionLimitParameters::by(read), [began; GROUPS]);
         }
     }
 
@@ -95,7 +95,13 @@ impl CyclicControl {
     }
 
     /// Publishes a drive's limits, derived from its parameters, with the times at which these were read.
-    pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: MotionRules, times: [Moment; GROUPS]) {
+    pub(super) fn limit(
+        &self,
+        identity: &Identity,
+        drive: DriveNumber,
+        rules: MotionLimitParameters,
+        times: [Moment; GROUPS],
+    ) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
     }
@@ -197,7 +203,7 @@ impl Hiperdrive {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
             // These values are from before the plan. A changed scale is detected by comparison with them.
-            let rules = MotionRules::by(|base| commit.prepared.image.for_drive(drive.number, base));
+            let rules = MotionLimitParameters::by(|base| commit.prepared.image.for_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {
                 limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);

@@ -121,7 +121,7 @@ impl CyclicRunner {
         motion: &Motion,
     ) -> Self {
         let drives = Drives::new(opened, drives, motion.open(), clock.now());
-        motion.publish(&drives);
+        motion.publish_drive_states(&drives);
         let (motion, commands) = (motion.clone(), Arc::default());
         CyclicRunner { drives, port, clock, motion, commands, packet: Vec::new() }
     }
@@ -149,12 +149,12 @@ impl CyclicRunner {
         self.apply_commands();
         self.drives.watch_parameters(&self.motion.watched_parameters());
         let now = self.clock.now();
-        let packet = self.motion.with_intent(|intent, permit| self.drives.poll(now, intent, permit));
+        let packet = self.motion.use_motion_intent(|intent, permit| self.drives.poll(now, intent, permit));
         let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));
         if let Err(error) = sent {
             return self.is_gone(error.into());
         }
-        self.motion.publish(&self.drives);
+        self.motion.publish_drive_states(&self.drives);
         !self.drives.is_finished()
     }
 
@@ -170,7 +170,7 @@ impl CyclicRunner {
 
     fn is_gone(&mut self, why: ConnectionLoss) -> bool {
         self.drives.connection_lost(self.clock.now(), why);
-        self.motion.publish(&self.drives);
+        self.motion.publish_drive_states(&self.drives);
         false
     }
 }

@@ -6,7 +6,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::session_watch::SessionWatch;
+use super::session_watch::ReplyMonitor;
 use crate::devices::hiperdrive::procedures::cyclic::{
     ConnectionLoss, Drives, LinkStatistics, ParameterReading, ParameterReadings,
 };
@@ -35,7 +35,7 @@ struct Cell {
     experts: BTreeSet<DriveNumber>,
     /// Parameters to read through the parameter words, with the time of the latest request for each.
     watched: BTreeMap<ParameterNumber, Moment>,
-    session: SessionWatch,
+    session: ReplyMonitor,
     punctual: bool,
     view: MotionSnapshot,
     /// Whether the program is shutting down. No motion is allowed then.
@@ -90,7 +90,7 @@ impl Motion {
             limits: BTreeMap::new(),
             experts: BTreeSet::new(),
             watched: BTreeMap::new(),
-            session: SessionWatch::default(),
+            session: ReplyMonitor::default(),
             punctual: false,
             view: MotionSnapshot::default(),
             is_shutting_down: false,
@@ -124,7 +124,7 @@ impl Motion {
         self.intend(drive, MotionRequest::Stop);
     }
 
-    pub fn is_latest(&self, number: u64) -> bool {
+    pub fn is_latest_action(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
 
@@ -222,14 +222,17 @@ impl Motion {
     }
 
     /// Passes the current request to the closure that builds the next packet.
-    pub(super) fn with_intent<T>(&self, make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+    pub(super) fn use_motion_intent<T>(
+        &self,
+        make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T,
+    ) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
         make(&cell.intent, &|drive| cell.permitted(drive, now))
     }
 
     /// Records a request or a reply of the explicit messages.
-    pub(super) fn with_session(&self, note: impl FnOnce(&mut SessionWatch)) {
+    pub(super) fn update_session_watch(&self, note: impl FnOnce(&mut ReplyMonitor)) {
         note(&mut self.lock().session);
     }
 
@@ -239,7 +242,7 @@ impl Motion {
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
     }
 
-    pub(super) fn publish(&self, drives: &Drives) {
+    pub(super) fn publish_drive_states(&self, drives: &Drives) {
         let of = |man: &DeadMan| DriveSnapshot {
             number: man.drive(),
             actual: man.actual(),
@@ -341,7 +344,7 @@ mod tests {
     fn stale_intents_are_not_repeated() {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
-        let is_stale = || motion.with_intent(|intent, _| intent.is_stale(clock.now()));
+        let is_stale = || motion.use_motion_intent(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
         motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
         for _ in 0..3 {

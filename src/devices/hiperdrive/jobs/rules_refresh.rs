@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::session_watch::REQUEST;
 use super::{DeviceMessage, Hiperdrive};
-use crate::devices::hiperdrive::procedures::{Error, GROUPS, Identity, read_rule, read_rules};
+use crate::devices::hiperdrive::procedures::{Error, GROUPS, Identity, read_rule_group, read_rules};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
 use crate::worker::SessionContext;
@@ -80,7 +80,7 @@ impl Hiperdrive {
         let turn = if self.control.motion().is_motion_active() { TURN_IN_MOTION } else { TURN };
         for group in due(times, context.clock.now(), turn) {
             let now = context.clock.now();
-            rules = read_rule(&mut self.master(context), drive, rules, group)?;
+            rules = read_rule_group(&mut self.master(context), drive, rules, group)?;
             if let Some(at) = times.get_mut(group) {
                 *at = now;
             }

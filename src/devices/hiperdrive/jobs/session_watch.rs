@@ -30,7 +30,7 @@ const LOOK: Duration = Duration::from_millis(10);
 const MOST_PATIENCE: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct SessionWatch {
+pub(super) struct ReplyMonitor {
     /// Time at which the oldest unanswered request was sent.
     requested: Option<Moment>,
     /// Time at which the line was last checked and nothing had arrived.
@@ -41,7 +41,7 @@ pub(super) struct SessionWatch {
     broken: bool,
 }
 
-impl SessionWatch {
+impl ReplyMonitor {
     pub(super) const fn ask(&mut self, now: Moment) {
         if self.requested.is_none() {
             self.requested = Some(now);
@@ -89,7 +89,7 @@ impl MonitoredLink {
 impl ByteLink for MonitoredLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let now = self.clock.now();
-        self.motion.with_session(|session| session.ask(now));
+        self.motion.update_session_watch(|session| session.ask(now));
         self.wire.send(bytes)
     }
 
@@ -103,7 +103,7 @@ impl ByteLink for MonitoredLink {
             if into.len() > before {
                 break;
             }
-            self.motion.with_session(|session| session.look(now));
+            self.motion.update_session_watch(|session| session.look(now));
             // If the clock does not advance, no more bytes will arrive.
             if now >= until || now <= began {
                 return Ok(());
@@ -112,11 +112,11 @@ impl ByteLink for MonitoredLink {
         self.frames.push(into.get(before..).unwrap_or_default());
         loop {
             match self.frames.next_frame() {
-                Ok(Some(_)) => self.motion.with_session(|session| session.answer(now)),
+                Ok(Some(_)) => self.motion.update_session_watch(|session| session.answer(now)),
                 Ok(None) => return Ok(()),
                 Err(_) => {
                     self.frames = Receiver::default();
-                    self.motion.with_session(SessionWatch::abort_session);
+                    self.motion.update_session_watch(ReplyMonitor::abort_session);
                 }
             }
         }
@@ -149,7 +149,7 @@ mod tests {
     /// Issue 21.13: 130 ms without a reply are too long, counted from the first unanswered request.
     #[test]
     fn silence_counts_from_the_first_unanswered_request() {
-        let mut watch = SessionWatch::default();
+        let mut watch = ReplyMonitor::default();
         assert!(!watch.is_silent(at(10_000)), "nothing was asked");
         watch.ask(at(100));
         watch.ask(at(180));
@@ -198,7 +198,7 @@ mod tests {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
         let locked = || {
-            let locks = motion.with_intent(|_, permit| permit(DriveNumber::FIRST).locks);
+            let locks = motion.use_motion_intent(|_, permit| permit(DriveNumber::FIRST).locks);
             assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
             locks.contains(&Lock::NoAnswer)
         };
@@ -228,7 +228,7 @@ mod tests {
     /// A device that takes 300 ms for each reply is allowed 600 ms, and less again after it has become faster.
     #[test]
     fn a_slow_device_gets_a_longer_timeout() {
-        let mut watch = SessionWatch::default();
+        let mut watch = ReplyMonitor::default();
         watch.ask(at(0));
         watch.answer(at(300));
         watch.ask(at(1000));
@@ -244,7 +244,7 @@ mod tests {
         watch.look(at(12_090 + 131));
         assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
         // A presence test takes eight seconds on a hub, and does not count for later requests.
-        let mut watch = SessionWatch::default();
+        let mut watch = ReplyMonitor::default();
         watch.ask(at(0));
         watch.answer(at(8000));
         watch.ask(at(9000));

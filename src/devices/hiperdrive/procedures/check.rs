@@ -327,7 +327,7 @@ fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict,
             if let Some((family, steps)) = family.zip(travel.steps(StepLimit::Position)) {
                 let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
                 findings.extend(beyond.map(|limit| {
-                    let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.most_turns());
+                    let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.max_turns());
                     (Verdict::Bad, CheckFinding::BeyondTravel { limit, turns, most })
                 }));
             }

@@ -132,7 +132,7 @@ impl DeadMan {
                 self.run_guarded(self.setpoint(actual), actual)
             }
             None => {
-                self.drop_void_state(now, intent);
+                self.discard_void_request(now, intent);
                 NONE
             }
         };
@@ -181,7 +181,7 @@ impl DeadMan {
 
     /// Returns whether every level of the stop sequence has failed. The connection must then be closed, so that the
     /// watchdog of the drives stops them.
-    pub const fn gives_up(&self) -> bool {
+    pub const fn has_exhausted_stop_levels(&self) -> bool {
         matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }
 
@@ -201,7 +201,7 @@ impl DeadMan {
     }
 
     /// Handles missing position reports. Motion is stopped, and no motion may start.
-    pub fn contact_lost(&mut self, now: Moment) {
+    pub fn handle_contact_loss(&mut self, now: Moment) {
         self.is_out_of_contact = true;
         if self.stage.has_motion() {
             self.stop(now, Ended::Deaf);
@@ -222,7 +222,7 @@ impl DeadMan {
 
     /// Marks a request as spent if it can no longer start a motion. This is a rest or a stop, a request for another
     /// drive, or one that was not refreshed in time. Earlier requests are spent as well.
-    fn drop_void_state(&mut self, now: Moment, intent: &MotionIntent) {
+    fn discard_void_request(&mut self, now: Moment, intent: &MotionIntent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
         if intent.number <= self.spent || !(intent.drive != self.drive || rests || stale) {
@@ -243,7 +243,7 @@ impl DeadMan {
 
     /// Starts a new action if one is requested and the last action has ended.
     fn take(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
-        self.drop_void_state(now, intent);
+        self.discard_void_request(now, intent);
         // A step counts from the present position.
         let has_arrived = self.first.is_some_and(|first| now.since(first) >= ARRIVAL_TIME);
         let has_place = has_arrived || !matches!(intent.request, MotionRequest::Step { .. });

@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 use super::dead_man::{Lock, Permit};
-use super::rules::{GROUPS, MotionRules};
+use super::rules::{GROUPS, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
 };
@@ -16,7 +16,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
-    rules: MotionRules,
+    rules: MotionLimitParameters,
     /// Whether the scale and limits have factory values, as far as the drive family is known.
     is_factory: bool,
     /// Whether the scale has changed since the user confirmed the limits.
@@ -48,7 +48,7 @@ pub(super) fn stops_on_timeout(timeout: i64) -> bool {
 
 impl DriveLimits {
     /// Creates the limits of a drive whose parameters were all read at the given time.
-    pub fn of(rules: MotionRules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
+    pub fn of(rules: MotionLimitParameters, (topology, variant): (Topology, Variant), at: Moment) -> Self {
         let mut limits = DriveLimits::default();
         limits.take(rules, (topology, variant), [at; GROUPS]);
         limits
@@ -56,7 +56,12 @@ impl DriveLimits {
 
     /// Adopts parameter readings. `times` contains the time at which the reading of each group began. If the scale has
     /// changed, the limits denote other positions and must be confirmed. Readings older than a doubt do not clear it.
-    pub fn take(&mut self, rules: MotionRules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
+    pub fn take(
+        &mut self,
+        rules: MotionLimitParameters,
+        (topology, variant): (Topology, Variant),
+        times: [Moment; GROUPS],
+    ) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.has_factory_settings(topology, variant);
         self.rules = rules;
@@ -64,7 +69,7 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    pub const fn rules(&self) -> MotionRules {
+    pub const fn rules(&self) -> MotionLimitParameters {
         self.rules
     }
 
@@ -83,7 +88,7 @@ impl DriveLimits {
     /// Discards the parameter readings. Unconfirmed limits remain unconfirmed.
     pub fn forget(&mut self) {
         // The scale is kept, so that a change can be detected.
-        let rules = MotionRules { scale: self.rules.scale, ..MotionRules::default() };
+        let rules = MotionLimitParameters { scale: self.rules.scale, ..MotionLimitParameters::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
@@ -137,7 +142,7 @@ impl DriveLimits {
 
     /// Returns the reasons why motion is locked, the most important first.
     pub fn locks(&self) -> Vec<Lock> {
-        let MotionRules { requested, timeout, .. } = self.rules;
+        let MotionLimitParameters { requested, timeout, .. } = self.rules;
         // An invalid scale or range counts as not read.
         let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
@@ -171,7 +176,7 @@ impl DriveLimits {
     }
 }
 
-impl MotionRules {
+impl MotionLimitParameters {
     fn has_factory_settings(&self, topology: Topology, variant: Variant) -> bool {
         let factory = |number| {
             let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
@@ -201,8 +206,8 @@ mod tests {
         })
     }
 
-    fn rules(changed: &[(u16, Option<i64>)]) -> MotionRules {
-        MotionRules::by(|number| {
+    fn rules(changed: &[(u16, Option<i64>)]) -> MotionLimitParameters {
+        MotionLimitParameters::by(|number| {
             let own = changed.iter().find(|(own, _)| *own == number);
             own.map_or_else(|| factory(number), |(_, value)| *value)
         })

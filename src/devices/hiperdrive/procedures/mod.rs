@@ -29,7 +29,7 @@ pub use identify::{
 pub use limits::{DisplayedLimits, DriveLimits};
 pub use master::{Master, Opened};
 pub use network::{Network, network, settings};
-pub use rules::{GROUPS, MotionRules, read_rule, read_rules};
+pub use rules::{GROUPS, MotionLimitParameters, read_rule_group, read_rules};
 pub use save::{read_state, save};
 pub use station::{LinkParameters, Station};
 pub use temperature::{Sample, Temperature, TemperatureReading, temperature};

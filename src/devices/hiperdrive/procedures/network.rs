@@ -35,12 +35,12 @@ impl Network {
 /// Returns an error if the exchange fails.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(own(12)?)?;
-    let control = none_if_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+    let control = optional_if_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
     let interface =
-        none_if_refused(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+        optional_if_refused(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
     let (class, number) = MAC;
     let mac =
-        none_if_refused(master.attribute(RequestedItem::Mac, class, number))?.and_then(|data| data.try_into().ok());
+        optional_if_refused(master.attribute(RequestedItem::Mac, class, number))?.and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
 
@@ -66,7 +66,7 @@ fn attribute<T>(
 }
 
 /// Returns the value, or `None` if the request was refused.
-fn none_if_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
+fn optional_if_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(value) => Ok(Some(value)),
         Err(Error::Refused { .. }) => Ok(None),

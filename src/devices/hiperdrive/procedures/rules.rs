@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 
 /// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MotionRules {
+pub struct MotionLimitParameters {
     /// Request of the drive by the bus, parameter 152.
     pub requested: Option<i64>,
     /// Numerator and denominator of the position scale, parameters 154 and 156.
@@ -22,10 +22,10 @@ pub struct MotionRules {
     pub reference: Option<i64>,
 }
 
-impl MotionRules {
+impl MotionLimitParameters {
     /// Creates the rules from parameters. `read` is called with the parameter numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
-        MotionRules {
+        MotionLimitParameters {
             requested: read(REQUESTED),
             scale: read(NUMERATOR).zip(read(DENOMINATOR)),
             limits: read(LOWER).zip(read(UPPER)),
@@ -39,7 +39,7 @@ impl MotionRules {
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionRules, Error> {
+pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionLimitParameters, Error> {
     let mut values = Vec::new();
     for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
         match master.read_number(of(base, drive)?) {
@@ -48,7 +48,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionR
             Err(error) => return Err(error),
         }
     }
-    Ok(MotionRules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
+    Ok(MotionLimitParameters::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
 }
 
 /// Number of groups in which a drive's limit parameters are read again. Related parameters are read together.
@@ -58,21 +58,21 @@ pub const GROUPS: usize = 4;
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn read_rule(
+pub fn read_rule_group(
     master: &mut Master<'_>,
     drive: DriveNumber,
-    known: MotionRules,
+    known: MotionLimitParameters,
     group: usize,
-) -> Result<MotionRules, Error> {
+) -> Result<MotionLimitParameters, Error> {
     let mut read = |base| match master.read_number(of(base, drive)?) {
         Ok(value) => Ok(Some(value)),
         Err(error) if error.is_unavailable() => Ok(None),
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {
-        0 => MotionRules { requested: read(REQUESTED)?, ..known },
-        1 => MotionRules { timeout: read(TIMEOUT)?, ..known },
-        2 => MotionRules { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
-        _ => MotionRules { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
+        0 => MotionLimitParameters { requested: read(REQUESTED)?, ..known },
+        1 => MotionLimitParameters { timeout: read(TIMEOUT)?, ..known },
+        2 => MotionLimitParameters { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
+        _ => MotionLimitParameters { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
     })
 }

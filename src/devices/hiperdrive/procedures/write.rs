@@ -80,7 +80,7 @@ impl Write for DeviceWrite<'_, '_> {
     }
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
-        if !is_within_a_place(&confirmed.plan().ops, done.ops) {
+        if !interrupts_scale_or_limits(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
         self.master.run_uncancellable(|master| perform(master, op, done))?;
@@ -110,7 +110,7 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 
 /// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
 /// there, because the same limits denote other positions under another scale.
-fn is_within_a_place(ops: &[Op], at: usize) -> bool {
+fn interrupts_scale_or_limits(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
         _ => None,

@@ -159,12 +159,12 @@ impl Op {
                 Service::Reset => "47 = -4: presence test and reset of the drives".to_owned(),
                 Service::Acknowledge(drive) => format!("drive {}: fault acknowledged", drive.get()),
             },
-            Op::Network { from, to } => format!("network: {} → {}", network_note(from), network_note(to)),
+            Op::Network { from, to } => format!("network: {} → {}", network_change_note(from), network_change_note(to)),
         }
     }
 }
 
-fn network_note(settings: &NetworkSettings) -> String {
+fn network_change_note(settings: &NetworkSettings) -> String {
     let NetworkSettings { source, interface } = settings;
     let source = match source {
         AddressSource::Stored => "stored".to_owned(),

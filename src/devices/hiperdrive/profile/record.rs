@@ -70,12 +70,12 @@ impl HiperdriveProfile {
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
-        profile.mark_mounting_values();
+        profile.mark_mounting_dependent_values();
         profile
     }
 
     /// Marks the reference of each drive (198), since it depends on how the drive is mounted. Existing marks are kept.
-    pub fn mark_mounting_values(&mut self) {
+    pub fn mark_mounting_dependent_values(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
             if !self.is_marked(item) {
@@ -87,7 +87,7 @@ impl HiperdriveProfile {
 
     /// Returns whether an item depends on how the drive is mounted. It does if it is marked or is the reference of a
     /// drive.
-    pub fn is_mounting_value(&self, item: Item) -> bool {
+    pub fn depends_on_mounting(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }
 
@@ -108,7 +108,7 @@ impl HiperdriveProfile {
 
 impl ProfileIdentity {
     /// Returns whether nothing is known about the adapter or hub itself.
-    pub fn has_no_device(&self) -> bool {
+    pub fn is_device_unknown(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }
 }

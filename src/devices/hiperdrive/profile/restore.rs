@@ -52,9 +52,9 @@ pub fn plan_restore(
         match device.image.get(number) {
             None => missing.push(item.to_string()),
             Some(from) if from == to => unchanged += 1,
-            Some(_) if is_kept_on_device(profile, &device.identity, item, options) => mounting_left.push(item),
+            Some(_) if is_unchanged_on_device(profile, &device.identity, item, options) => mounting_left.push(item),
             Some(_) => {
-                if is_from_different_mounting(profile, &device.identity, item) {
+                if depends_on_other_mounting(profile, &device.identity, item) {
                     mounting_written.push(item);
                 }
                 wanted.values.insert(number, to);
@@ -110,18 +110,18 @@ fn check_allowed(
     Ok(())
 }
 
-fn is_kept_on_device(
+fn is_unchanged_on_device(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,
     item: Item,
     options: RestoreOptions,
 ) -> bool {
-    item.0.base() == REFERENCE || !options.with_mounting && is_from_different_mounting(profile, device, item)
+    item.0.base() == REFERENCE || !options.with_mounting && depends_on_other_mounting(profile, device, item)
 }
 
 /// Returns whether an item depends on the mounting of another device or drive.
-fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
-    profile.is_mounting_value(item) && !is_same_place(profile, device, item)
+fn depends_on_other_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    profile.depends_on_mounting(item) && !is_same_place(profile, device, item)
 }
 
 /// Returns whether the profile was read from this device and the parameter from this drive.

@@ -42,7 +42,7 @@ impl Profile for HiperdriveProfile {
 
     fn write(&self, writer: &mut Writer) {
         // A profile made by hand belongs to no particular device.
-        if !self.identity.has_no_device() {
+        if !self.identity.is_device_unknown() {
             self.identity.write(writer);
         }
         MountingMark::write_all(

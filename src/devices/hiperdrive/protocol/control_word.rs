@@ -155,12 +155,12 @@ impl ControlWord {
 
     /// Returns the control word that prepares a job without starting one: 0439h or 0479h. Bit 6 has the level that the
     /// drive has acknowledged.
-    pub const fn hold_present_state(status: StatusWord) -> Self {
+    pub const fn without_job_start(status: StatusWord) -> Self {
         ControlWord::position_mode(status.has(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
-    pub const fn for_start(status: StatusWord) -> Self {
+    pub const fn with_job_start(status: StatusWord) -> Self {
         ControlWord::position_mode(!status.has(StatusBit::SetpointAcknowledged))
     }
 

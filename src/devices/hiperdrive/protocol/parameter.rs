@@ -140,7 +140,7 @@ impl DriveNumber {
 impl ParameterRow {
     /// Returns whether the adapter or hub stores the parameter. The values −1 and −2 of parameter 47 change only such
     /// parameters (manual, 47).
-    pub const fn is_kept_by_device(&self) -> bool {
+    pub const fn is_stored_by_device(&self) -> bool {
         self.saved && self.kept_by_device
     }
 }

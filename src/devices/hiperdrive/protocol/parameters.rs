@@ -69,7 +69,7 @@ const fn stores(value: i64) -> SlowValue {
     SlowValue { value, adapter: STORES, hub: STORES }
 }
 
-const fn all_drives(value: i64) -> SlowValue {
+const fn slow_for_all_drives(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
@@ -79,7 +79,8 @@ const fn one_drive(value: i64) -> SlowValue {
 
 /// Slow values of parameter 47. The manual states no time for −3, −2 and −1. The time for −4 is used instead, since all
 /// of them send all parameters to all drives over RS-485 (`D`).
-const SAVE_AND_RESET: &[SlowValue] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
+const SAVE_AND_RESET: &[SlowValue] =
+    &[slow_for_all_drives(-4), slow_for_all_drives(-3), slow_for_all_drives(-2), slow_for_all_drives(-1), stores(1)];
 /// Slow values of parameter 152. A change from 0 to 1 resets the drive. The time is derived (`D`).
 const REQUEST: &[SlowValue] = &[one_drive(1)];
 /// Slow values of parameter 199. The time is derived (`D`).

@@ -20,10 +20,10 @@ const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (Status
 const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
 const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
-/// Steps from off to enabled, followed by [`ControlWord::hold_present_state`].
+/// Steps from off to enabled, followed by [`ControlWord::without_job_start`].
 pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
-/// Steps from a fault to enabled, followed by [`ControlWord::hold_present_state`]. Bit 0 stays set during the
+/// Steps from a fault to enabled, followed by [`ControlWord::without_job_start`]. Bit 0 stays set during the
 /// acknowledgement, so its falling edge remains available for the switch-on lock.
 pub const ACKNOWLEDGE: [Step; 5] = [
     step(ControlWord::ACKNOWLEDGE, &[]),

@@ -166,7 +166,7 @@ impl SpeedScale {
 
 impl Family {
     /// Returns the maximum number of turns in either direction.
-    pub const fn most_turns(self) -> i32 {
+    pub const fn max_turns(self) -> i32 {
         match self {
             Family::Short => 512,
             Family::Long => 16000,

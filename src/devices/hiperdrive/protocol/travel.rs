@@ -28,7 +28,7 @@ impl Travel {
 
     /// Returns the maximum number of whole steps in either direction, or `None` if the turns or the scale are unknown.
     pub fn steps(self, reach: StepLimit) -> Option<i64> {
-        let turns = self.family?.most_turns();
+        let turns = self.family?.max_turns();
         Some(self.scale?.integer_steps(match reach {
             StepLimit::Position => turns,
             StepLimit::Step => 2 * turns,

@@ -39,10 +39,10 @@ fn published_control_words_match() {
         (0x0409, ControlWord::ENABLED),
         (0x0481, ControlWord::ACKNOWLEDGE),
         // ZSW12 is clear in 2A37 and set in 3E37: an equal bit 6 holds, the opposite starts.
-        (0x0439, ControlWord::hold_present_state(status(0x2A37))),
-        (0x0479, ControlWord::for_start(status(0x2A37))),
-        (0x0479, ControlWord::hold_present_state(status(0x3E37))),
-        (0x0439, ControlWord::for_start(status(0x3E37))),
+        (0x0439, ControlWord::without_job_start(status(0x2A37))),
+        (0x0479, ControlWord::with_job_start(status(0x2A37))),
+        (0x0479, ControlWord::without_job_start(status(0x3E37))),
+        (0x0439, ControlWord::with_job_start(status(0x3E37))),
         (0x1419, ControlWord::speed_mode(Clockwise, RangeEnd)),
         (0x1459, ControlWord::running(Clockwise, RangeEnd)),
         (0x1409, ControlWord::speed_mode(Counterclockwise, RangeEnd)),
@@ -352,8 +352,8 @@ proptest! {
         let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
         let before = word(from & !0xE806);
         for control in [
-            ControlWord::hold_present_state(says),
-            ControlWord::for_start(says),
+            ControlWord::without_job_start(says),
+            ControlWord::with_job_start(says),
             ControlWord::speed_mode(direction, end),
             ControlWord::running(direction, end),
             before.with_stop(),
@@ -362,7 +362,7 @@ proptest! {
             prop_assert!(!control.has(C::JogOne) && !control.has(C::JogTwo));
         }
         prop_assert_eq!(before.with_stop().motion_start(before, says), None);
-        prop_assert_eq!(ControlWord::hold_present_state(says).motion_start(before, says), None);
+        prop_assert_eq!(ControlWord::without_job_start(says).motion_start(before, says), None);
         prop_assert_eq!(ControlWord::READY.motion_start(before, says), None);
     }
 

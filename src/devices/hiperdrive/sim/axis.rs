@@ -113,7 +113,7 @@ impl Axis {
         };
         self.speed += (aim - self.speed).clamp(-gain, gain);
         let next = self.place + self.speed * TICK_S;
-        if let Some(held) = blocking_wall(load, next) {
+        if let Some(held) = blocking_obstacle(load, next) {
             (self.place, self.speed) = (held.0, 0.0);
             let arrived =
                 wanted == AxisSetpoint::Rest || matches!(wanted, AxisSetpoint::Place { at, .. } if at == self.place);
@@ -132,7 +132,7 @@ impl Axis {
 }
 
 /// Returns the obstacle beyond which a position lies. The flag tells whether it is the upper obstacle.
-fn blocking_wall(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
+fn blocking_obstacle(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
 }

@@ -79,7 +79,7 @@ impl Memory {
 }
 
 fn copy_device_parameters(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
-    let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_kept_by_device());
+    let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_stored_by_device());
     to.extend(from.iter().filter(|(number, _)| own(number)));
 }
 

@@ -46,14 +46,14 @@ pub struct Station {
     /// Next answer, with the time at which it appears.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
-    plate: NamePlate,
+    plate: StationIdentity,
     store: Store,
     hindered: ActiveWriteFault,
 }
 
 /// Identity data that are not part of a [`StationConfig`].
 #[derive(Clone, Debug)]
-struct NamePlate {
+struct StationIdentity {
     name: String,
     switch: u8,
     supply_tenths: u16,
@@ -99,7 +99,7 @@ impl Station {
             .map(|place| place.map(|(variant, load)| Drive::new(variant, setup.topology, load)))
             .collect();
         let memory = Memory::new(setup.topology, Family::Short, |row| row.number < 100);
-        let plate = NamePlate { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
+        let plate = StationIdentity { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
         Station {
             setup,
             drives,
@@ -120,7 +120,7 @@ impl Station {
         let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
         let setup = StationConfig { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
-        station.plate = NamePlate {
+        station.plate = StationIdentity {
             name: config.name.clone(),
             switch: config.switch,
             supply_tenths: config.supply_in_tenths_of_volt(),
@@ -132,7 +132,7 @@ impl Station {
             config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED, i64::from(*requested)));
             config.speed.iter().for_each(|speed| drive.memory.preset(MAXIMUM_SPEED, i64::from(*speed)));
         }
-        station.turn_s3(Moment::START, config.s3);
+        station.set_s3(Moment::START, config.s3);
         station
     }
 
@@ -220,7 +220,7 @@ impl Station {
     }
 
     /// Sets switch S3. Nothing can be moved over the bus unless it is at 0.
-    pub fn turn_s3(&mut self, now: Moment, position: u8) {
+    pub fn set_s3(&mut self, now: Moment, position: u8) {
         self.advance(now);
         self.present().for_each(|drive| drive.set_motion_allowed(position == 0));
     }

@@ -90,7 +90,7 @@ impl Unit {
             Motor::Stop => return self.moves.stop(),
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
-            Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
+            Motor::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
             Motor::FreeOutward(direction) => return self.enable_outward(drive, direction, services),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
@@ -154,7 +154,7 @@ impl Unit {
     /// Handles a profile that was read in order to be saved to a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.handle_scale_change(&profile.image);
-        self.staged.refresh_some(&profile.image);
+        self.staged.refresh_partially(&profile.image);
         let edits = self.is_dirty().then(|| self.staged.count());
         self.session.save_read_values(Body::new(profile), edits, Vec::new(), services);
     }

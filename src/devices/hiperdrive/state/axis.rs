@@ -28,7 +28,7 @@ mod tests;
 pub use act::{AxisAction, AxisButton, DriveRequest};
 pub use drive_facts::DriveFacts;
 pub use entries::{Entries, Preview, ReferencePosition};
-pub use report::{Device, end_lines, report};
+pub use report::{Device, report, write_outcome_lines};
 pub use supply::{Power, RestartEvidence};
 pub use test_targets::{Outcome, TestTarget, Travel};
 
@@ -218,7 +218,7 @@ impl Axis {
     }
 
     /// Returns the facts known when the set-up ended, or the present facts while it is running.
-    pub fn as_seen<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
+    pub fn facts_to_show<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
 
@@ -262,7 +262,7 @@ impl Axis {
 
     /// Returns the earliest step whose result the drive no longer has, if it is before the current step. That step and
     /// all later steps must be repeated.
-    pub fn invalidated_text(&self) -> Option<AxisStep> {
+    pub fn invalidated_step(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }
 
@@ -272,7 +272,7 @@ impl Axis {
             AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => {
                 Reached::Failed
             }
-            _ if self.invalidated_text() == Some(step) => Reached::Failed,
+            _ if self.invalidated_step() == Some(step) => Reached::Failed,
             _ if is_shown => Reached::Now,
             _ if self.chain.is_skipped(step) => Reached::Skipped,
             _ if self.chain.holds(step) => Reached::Done,

@@ -115,7 +115,7 @@ impl HiperdriveForm {
 
     /// Returns the entries of the virtual device. An adapter has a single drive, so it has no entry for the plugged
     /// ports.
-    pub fn of_the_virtual(&self) -> Vec<Entry> {
+    pub fn virtual_device_entries(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()
     }

@@ -112,7 +112,7 @@ impl Unit {
         self.moves.stop();
         // The last data of the drives, including those not yet taken, are from before the loss. The present state is
         // not known.
-        self.take_samples_and_frames();
+        self.fetch_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
         services.log.settle(RULES, Some(&self.session.name()));
@@ -264,8 +264,8 @@ impl SessionEvents for Unit {
         }
     }
 
-    fn is_silence(&self, error: &JobError) -> bool {
-        words::is_silence(error)
+    fn means_no_response(&self, error: &JobError) -> bool {
+        words::means_no_response(error)
     }
 
     fn forget_requests(&mut self) {

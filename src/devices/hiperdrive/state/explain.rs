@@ -46,7 +46,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
 }
 
 /// Returns whether the error means that the link is open but no device replies.
-pub fn is_silence(error: &JobError) -> bool {
+pub fn means_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 

@@ -9,7 +9,7 @@ use crate::app::recorder::Recorder;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{Phase, SessionEvents};
 use crate::app::{
-    ActionContext, DeviceMemory, DeviceModel, DriveMemory, EditStep, MotionControl, Recording, Tab, Text,
+    ActionContext, DeviceMemory, DeviceModel, EditStep, MotionControl, Recording, StoredDriveData, Tab, Text,
 };
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
@@ -101,7 +101,7 @@ impl DeviceModel for Unit {
         Some(self)
     }
 
-    fn drive_memory(&mut self) -> Option<&mut dyn DriveMemory> {
+    fn drive_memory(&mut self) -> Option<&mut dyn StoredDriveData> {
         Some(self)
     }
 }

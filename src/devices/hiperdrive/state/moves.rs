@@ -109,7 +109,7 @@ impl DriveMotion {
         self.limits_changed.clear();
         (self.jogs, self.jobs) = (BTreeMap::new(), BTreeMap::new());
         for drive in std::mem::take(&mut self.experts) {
-            self.set_expert(drive, false);
+            self.set_endless_allowed(drive, false);
         }
     }
 
@@ -118,7 +118,7 @@ impl DriveMotion {
     pub(super) fn send_heartbeat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
-            && motion.is_latest(act.number)
+            && motion.is_latest_action(act.number)
             && !self.has_ended(act.number, act.drive)
         {
             motion.refresh();
@@ -136,23 +136,23 @@ impl DriveMotion {
                 self.limits_changed.insert(*drive);
             }
         }
-        let replaced = self.endless_run.is_some_and(|(_, number)| !motion.is_latest(number));
+        let replaced = self.endless_run.is_some_and(|(_, number)| !motion.is_latest_action(number));
         (self.looked, self.view, self.limits) = (at, view, limits);
         if let Some((drive, number)) = self.endless_run
             && (replaced || self.has_ended(number, drive))
         {
             self.endless_run = None;
-            self.set_expert(drive, false);
+            self.set_endless_allowed(drive, false);
         }
     }
 
     /// Returns the drives whose limits this program or another master has changed since the last query.
-    pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
+    pub(super) fn take_changed_limits(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.limits_changed)
     }
 
     /// Returns whether the cyclic connection has been opened since the last query.
-    pub(super) fn take_control_taken(&mut self) -> bool {
+    pub(super) fn take_control_opened(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
 
@@ -198,7 +198,7 @@ impl DriveMotion {
     pub(super) fn hold(&self) {
         if let (Some(motion), Some(act)) = (&self.motion, self.act)
             && act.kind == Kind::Held
-            && motion.is_latest(act.number)
+            && motion.is_latest_action(act.number)
         {
             motion.refresh();
         }
@@ -207,18 +207,18 @@ impl DriveMotion {
     /// Ends the jog when its button is released or no longer visible. The drive stops immediately, not at the next
     /// update.
     pub(crate) fn release(&mut self) {
-        self.stop_matching(|kind| kind == Kind::Held);
+        self.stop_motion_of_kind(|kind| kind == Kind::Held);
     }
 
     /// Ends an action that lasts until it is stopped: a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
-        self.stop_matching(|kind| matches!(kind, Kind::Held | Kind::Run));
+        self.stop_motion_of_kind(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
 
-    fn stop_matching(&mut self, which: impl FnOnce(Kind) -> bool) {
+    fn stop_motion_of_kind(&mut self, which: impl FnOnce(Kind) -> bool) {
         let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
-        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
+        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest_action(act.number)) {
             motion.intend(act.drive, MotionRequest::Stop);
         }
         // The end of the action is still to be reported, but the action is no longer refreshed.
@@ -282,7 +282,7 @@ impl DriveMotion {
         self.jobs.insert(drive, effort);
     }
 
-    pub(super) fn set_expert(&mut self, drive: DriveNumber, expert: bool) {
+    pub(super) fn set_endless_allowed(&mut self, drive: DriveNumber, expert: bool) {
         if expert {
             self.experts.insert(drive);
         } else {
@@ -363,7 +363,7 @@ impl DriveMotion {
 
     pub fn is_held(&self) -> bool {
         let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
-        held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
+        held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest_action(act.number)))
     }
 
     /// Returns the action number and direction of a held jog button of a drive.
@@ -390,7 +390,7 @@ impl DriveMotion {
     /// Returns whether an action that must be refreshed is running.
     pub fn is_motion_active(&self) -> bool {
         let own = |act: &Act| {
-            let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
+            let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest_action(act.number));
             self.view.open && is_latest && !self.has_ended(act.number, act.drive)
         };
         self.act.as_ref().is_some_and(own)
@@ -437,7 +437,7 @@ impl DriveMotion {
         Some(SpeedTorque { speed: own.sent.speed, torque: own.sent.torque })
     }
 
-    pub fn is_expert(&self, drive: DriveNumber) -> bool {
+    pub fn allows_endless_run(&self, drive: DriveNumber) -> bool {
         self.experts.contains(&drive)
     }
 }

@@ -58,7 +58,7 @@ impl Form {
 
     /// Returns whether addresses can be entered, which requires the stored source. With any other source a server
     /// assigns the addresses.
-    pub fn has_addresses(&self) -> bool {
+    pub fn are_addresses_editable(&self) -> bool {
         self.source == AddressSource::Stored
     }
 
@@ -67,7 +67,7 @@ impl Form {
     /// # Errors
     /// Returns the reason if an entry is invalid.
     pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
-        if !self.has_addresses() {
+        if !self.are_addresses_editable() {
             return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
         }
         let [first, second] = &self.name_servers;

@@ -97,7 +97,7 @@ impl Record {
 
 /// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
 fn meaning(ruler: Ruler) -> Meaning {
-    let mut meaning = Meaning::for_turns(None, ruler.scale.steps_per_turn());
+    let mut meaning = Meaning::for_steps_per_turn(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.of(1, PositionUnit::Millimetres) {
         let linear = Meaning::for_millimetres(millimetres).scales;
         for (own, linear) in meaning.scales.iter_mut().zip(linear) {

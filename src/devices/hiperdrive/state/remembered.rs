@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::ruler::PositionUnit;
 use super::unit::Unit;
-use crate::app::{DriveMemory, RememberedDrives, SettingsReadState};
+use crate::app::{RememberedDrives, SettingsReadState, StoredDriveData};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
 /// Values last exchanged between the session of a device and the settings.
@@ -19,14 +19,14 @@ pub(super) struct ExchangedValues {
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 
-impl DriveMemory for Unit {
+impl StoredDriveData for Unit {
     fn storage_name(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
         Some(format!("{kind}{} {}", own.category, own.serial_number))
     }
 
-    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
+    fn sync_remembered_drives(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
         let before = match self.exchanged.take() {
             Some(before) => before,
             None => self.apply_remembered(kept),
@@ -49,7 +49,7 @@ impl DriveMemory for Unit {
                 next.set_unconfirmed(drive, false);
             }
         }
-        let elsewhere = kept.newly_marked(&before.kept);
+        let elsewhere = kept.newly_marked_drives(&before.kept);
         elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.require_confirmation(drive));
         self.exchanged = Some(ExchangedValues { kept: next.clone(), ..self.remembered_values() });
         (next != *kept).then_some(next)
@@ -57,7 +57,7 @@ impl DriveMemory for Unit {
 
     fn lock_marked_drives(&mut self, found: &RememberedDrives) {
         let Some(before) = &mut self.exchanged else { return };
-        for drive in found.newly_marked(&before.kept).into_iter().filter_map(DriveNumber::new) {
+        for drive in found.newly_marked_drives(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.require_confirmation(drive);
             // The mark was not set in this session.
             before.unconfirmed.insert(drive);

@@ -27,7 +27,7 @@ impl Unit {
     /// # Errors
     /// Returns the reason if the connection cannot be opened.
     pub fn check_can_take_control(&self) -> Result<(), Text> {
-        match self.session.not_ready_reason() {
+        match self.session.plan_obstacle() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
@@ -86,7 +86,7 @@ impl Unit {
     ///
     /// # Errors
     /// Returns the reason if an endless run cannot be enabled.
-    pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+    pub fn check_can_allow_endless(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
@@ -106,7 +106,7 @@ impl Unit {
             MotionRequest::Move { target, .. } => Some(target),
             _ => None,
         };
-        self.may_stop_other_drive(drive, request)?;
+        self.check_may_end_motion(drive, request)?;
         match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
             _ if request.moves() => self.may_move(drive)?,
@@ -120,7 +120,7 @@ impl Unit {
 
     /// Checks that a request may end the present motion. A stop and a jog of the same drive may. Other requests must
     /// not end the motion of another drive, or replace a step or move before its end.
-    fn may_stop_other_drive(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
+    fn check_may_end_motion(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
                 Err(TEXTS.text("hd_refused.other_moves").with("drive", mover.get()))

@@ -141,7 +141,7 @@ impl Unit {
     fn travel(&self, number: ParameterNumber) -> Travel {
         number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
             family: self.family(drive),
-            scale: Some(self.requested_ruler(drive).scale),
+            scale: Some(self.edited_ruler(drive).scale),
         })
     }
 
@@ -155,7 +155,7 @@ impl Unit {
         match (number.base(), drive) {
             // Positions are shown in the edited scale.
             (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
-                let ruler = self.requested_ruler(drive);
+                let ruler = self.edited_ruler(drive);
                 let measure = if ruler.pitch.is_some() { PositionUnit::Millimetres } else { PositionUnit::Turns };
                 let place = ruler.of(*value, measure)?;
                 let text = TEXTS.text("hd_entry.place").with_number(
@@ -166,7 +166,7 @@ impl Unit {
                 Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
             (NUMERATOR | DENOMINATOR, Some(drive)) => {
-                let steps = self.requested_ruler(drive).scale.steps_per_turn();
+                let steps = self.edited_ruler(drive).scale.steps_per_turn();
                 Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
             }
             (SPEED, Some(drive)) => {

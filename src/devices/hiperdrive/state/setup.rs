@@ -32,7 +32,7 @@ impl Unit {
     /// # Errors
     /// Returns the reason if the drive cannot be set up.
     pub fn check_can_set_up(&self) -> Result<(), Text> {
-        match self.session.not_ready_reason() {
+        match self.session.plan_obstacle() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.survey.is_none() || self.number(self.drive(), NUMERATOR).is_none() => {
@@ -48,7 +48,7 @@ impl Unit {
     /// # Errors
     /// Returns the reason if no change can be planned.
     pub fn check_can_plan(&self) -> Result<(), Text> {
-        self.session.not_ready_reason().map_or(Ok(()), Err)
+        self.session.plan_obstacle().map_or(Ok(()), Err)
     }
 
     pub fn seen(&self, drive: DriveNumber) -> DriveFacts {

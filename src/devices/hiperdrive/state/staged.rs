@@ -18,7 +18,7 @@ pub use edit::{Edit, EditError, LimitsPolicy};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{SteppedEdits, SteppedParts};
+use crate::app::{EditHistoryParts, SteppedEdits};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
@@ -106,7 +106,7 @@ impl Staged {
     }
 
     /// Adopts a reading of some parameters and keeps the others. Has no effect before a full reading.
-    pub fn refresh_some(&mut self, read: &Image) {
+    pub fn refresh_partially(&mut self, read: &Image) {
         if let Some(base) = &self.base {
             self.refresh(base.with(read));
         }
@@ -233,7 +233,7 @@ impl SteppedEdits for Staged {
         &self.history
     }
 
-    fn parts(&mut self) -> Option<SteppedParts<'_, Image>> {
+    fn parts(&mut self) -> Option<EditHistoryParts<'_, Image>> {
         Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }

@@ -66,10 +66,10 @@ impl Unit {
     /// Reads everything again when control is taken, or if the limits that the worker reads under control differ from
     /// the table of parameters.
     pub(super) fn handle_limit_change(&mut self) {
-        if self.moves.take_control_taken() {
+        if self.moves.take_control_opened() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
         }
-        for drive in self.moves.take_limits_changed() {
+        for drive in self.moves.take_changed_limits() {
             if self.has_different_limits(drive) {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
@@ -109,11 +109,11 @@ impl Unit {
     /// # Errors
     /// Returns the reason if the limits cannot be confirmed.
     pub fn check_can_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
-        self.limits_to_confirm_now(drive).map(|_| ())
+        self.displayed_limits_to_confirm(drive).map(|_| ())
     }
 
     /// Returns the displayed limits of a drive, as they would be confirmed.
-    fn limits_to_confirm_now(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
+    fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
@@ -122,10 +122,10 @@ impl Unit {
     /// Confirms the displayed limits. Returns whether this took effect. Otherwise a message is reported.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // The limits are taken as shown, before another update. The user has not seen later changes.
-        let shown = self.limits_to_confirm_now(drive);
+        let shown = self.displayed_limits_to_confirm(drive);
         self.moves.look();
         self.handle_limit_change();
-        let counts = self.limits_to_confirm_now(drive).and(shown).and_then(|seen| {
+        let counts = self.displayed_limits_to_confirm(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
             counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
         });

@@ -109,7 +109,7 @@ impl Unit {
     }
 
     /// Returns the edited profile if the session is that of a profile.
-    pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
+    pub(crate) fn edited_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
     }
@@ -229,7 +229,7 @@ impl Unit {
         Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
-    pub fn requested_ruler(&self, drive: DriveNumber) -> Ruler {
+    pub fn edited_ruler(&self, drive: DriveNumber) -> Ruler {
         let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
         Ruler { scale, pitch: self.pitch(drive) }
     }

@@ -85,8 +85,8 @@ impl HasProfile for Unit {
         HiperdriveJob::Save
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Some(Body::new(self.wanted_profile()?))
+    fn edited_body(&self) -> Option<Body> {
+        Some(Body::new(self.edited_profile()?))
     }
 
     fn remarks(&self) -> Vec<Text> {

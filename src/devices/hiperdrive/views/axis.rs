@@ -13,7 +13,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, Reached, end_lines, words,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, Reached, words, write_outcome_lines,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
@@ -91,7 +91,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         if goes_on {
             step_ui(ui, theme, &shown, actions);
         } else {
-            card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list_ui(ui, theme, &shown));
+            card(ui, theme, TEXTS.text("hd_axis.title"), |ui| step_list_ui(ui, theme, &shown));
         }
         theme.gap(ui);
         notes_ui(ui, theme);
@@ -102,7 +102,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         theme,
         (0.36, BESIDE),
         actions,
-        |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list_ui(ui, theme, &shown)),
+        |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| step_list_ui(ui, theme, &shown)),
         |ui, actions| {
             if goes_on {
                 step_ui(ui, theme, &shown, actions);
@@ -141,7 +141,7 @@ fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
+fn step_list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.step_status(step);
         let state = match reached {
@@ -154,7 +154,7 @@ fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
         let has_result = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
             (AxisStep::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| has_result),
+            _ => words::found(shown.axis, step, shown.axis.facts_to_show(shown.seen)).filter(|_| has_result),
         };
         Line {
             title: theme.words(&words::title(step)),
@@ -205,7 +205,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 /// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
 fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
-    let fallen = axis.invalidated_text().map(words::invalidated_text);
+    let fallen = axis.invalidated_step().map(words::invalidated_step);
     if let Some(why) = words::fault(seen) {
         line(ui, theme, Severity::Error, &why);
     }
@@ -267,7 +267,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
             shown.push(actions, Run::Cancel);
         }
         let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
-        at_the_right_ui(ui, |ui| {
+        right_aligned_ui(ui, |ui| {
             if primary_button(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
@@ -293,7 +293,7 @@ fn with_nonbreaking_spaces(words: String) -> String {
 
 /// Draws content as high as a button at the right end of a line. If there is no room beside other buttons, the content
 /// is below them.
-fn at_the_right_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+fn right_aligned_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY { rest } else { ui.available_width() };
     let size = egui::vec2(width.max(0.0), ui.spacing().interact_size.y);
@@ -318,20 +318,20 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, end: End, actions: 
             {
                 ui.ctx().copy_text(report);
             }
-            recall_ui(ui, theme, shown, actions);
+            write_back_button_ui(ui, theme, shown, actions);
         });
         ui.add_space(theme.space.inside);
         if end == End::Cancelled {
             line(ui, theme, Severity::Note, &TEXTS.text("hd_axis.stands"));
         }
         let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
-        for text in end_lines(axis, shown.seen) {
+        for text in write_outcome_lines(axis, shown.seen) {
             line(ui, theme, weight, &text);
         }
     });
 }
 
-fn recall_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
+fn write_back_button_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let word = say(theme, "hd_axis.recall");
     shown.button(ui, theme, AxisButton::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button_with_reason, message_label, name, paragraph};
-use crate::ui::stop_debounce::{counts_as_stop, goes_down, press_time};
+use crate::ui::stop_debounce::{goes_down, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
 /// Size of the STOP button, wide enough for a flat hand.
@@ -73,7 +73,7 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let pressed = goes_down(ui, &response);
     if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
-        counts_as_stop(ui.ctx(), studio.is_turned_by_hand(), press_time(ui, pressed));
+        register_stop_press(ui.ctx(), studio.is_turned_by_hand(), press_time(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }

@@ -44,7 +44,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
                     (&mut form.host, "192.168.1.10"),
                     (&mut form.tcp_port, "44818"),
                 );
-                interval_ui(ui, theme, form);
+                setpoint_interval_ui(ui, theme, form);
                 ui.add_space(theme.space.inside);
                 let finder = dialog.finder::<DiscoveryFinder>();
                 discovery(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
@@ -53,7 +53,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
         }
         if form.kind != HiperdriveLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == HiperdriveLinkKind::Virtual {
-                interval_ui(ui, theme, form);
+                setpoint_interval_ui(ui, theme, form);
             }
             let word = say(theme, "connect.byte_order");
             entry(ui, theme, &word, |ui| {
@@ -76,11 +76,11 @@ fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
         ];
         choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(theme, id))));
     });
-    let own = form.of_the_virtual();
+    let own = form.virtual_device_entries();
     typed(ui, theme, say, own, &mut form.typed);
 }
 
-fn interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
+fn setpoint_interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     let (interval, _) = HiperdriveForm::link_entries();
     typed(ui, theme, say, interval, &mut form.typed);
 }

@@ -42,7 +42,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
     );
     if !is_profile {
         theme.gap(ui);
-        services_ui(ui, theme, unit, actions);
+        service_buttons_ui(ui, theme, unit, actions);
     }
 }
 
@@ -114,7 +114,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-fn services_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn service_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
             if enabled_button(ui, unit.session.is_ready(), "", &theme.words(&explain::service(service))).clicked() {

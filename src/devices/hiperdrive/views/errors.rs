@@ -81,7 +81,7 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
                 ui,
                 theme,
                 &say(theme, name),
-                theme.monospace(format!("0x{word:04X}  {}", say(theme, com_status_id(word)))),
+                theme.monospace(format!("0x{word:04X}  {}", say(theme, drive_word_text_id(word)))),
             );
         }
         row(ui, theme, &say(theme, "hd_health.faults"), theme.monospace(status.faults.to_string()));
@@ -96,7 +96,7 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
 }
 
 /// Returns the meaning of a value of parameters 116 to 118 (reference 4).
-const fn com_status_id(word: u16) -> &'static str {
+const fn drive_word_text_id(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",
         0xFFFF => "hd_health.no_answer",

@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, empty_placeholder, folding_card, paragraph, row};
 use crate::ui::widgets::series;
 
-pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
+pub(super) fn control_status_words_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
     folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
             empty_placeholder(ui, theme, &say(theme, "hd_words.nothing"), None);
@@ -58,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             row(ui, theme, &say(theme, id), theme.monospace(count.to_string()).color(ink));
         }
         row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.words(&explain::parameter_words(view)));
-        if let Some((least, greatest)) = link.intervals.range_us() {
+        if let Some((least, greatest)) = link.intervals.deviation_range_us() {
             let off =
                 TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
             row(ui, theme, &say(theme, "hd_link.jitter"), theme.monospace(theme.words(&off)));

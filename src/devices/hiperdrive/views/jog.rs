@@ -2,7 +2,7 @@
 
 use egui::{FontId, RichText, Ui, Vec2, vec2};
 
-use super::motion::{MotionUiState, effort_ui, length_ui, move_effort_text};
+use super::motion::{MotionUiState, effort_ui, move_effort_text, position_entry_ui};
 use super::travel::travel_ui;
 use crate::app::{Action, HoldEvent, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
@@ -28,8 +28,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
         let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
-        pads_ui(ui, theme, unit, allowed.is_ok(), actions);
-        pads_note_ui(ui, theme, unit, allowed.as_ref().err());
+        jog_buttons_ui(ui, theme, unit, allowed.is_ok(), actions);
+        jog_buttons_note_ui(ui, theme, unit, allowed.as_ref().err());
     });
 }
 
@@ -43,7 +43,7 @@ pub(super) fn step_card_ui(
 ) {
     folding_card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
         let parse = |text: &str, sign| forms::step(unit, text, unit.measure, sign);
-        length_ui(ui, theme, unit, ("hd_step.by", &mut view.step), |text| parse(text, 1).err(), actions);
+        position_entry_ui(ui, theme, unit, ("hd_step.by", &mut view.step), |text| parse(text, 1).err(), actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
                 let step = parse(&view.step, sign);
@@ -61,7 +61,7 @@ pub(super) fn step_card_ui(
 }
 
 /// Draws what the buttons do or why they are disabled. The height is constant, so nothing below moves.
-fn pads_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
+fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {
         let ways = [Direction::Counterclockwise, Direction::Clockwise];
@@ -87,7 +87,7 @@ fn pads_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>)
     });
 }
 
-pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
+pub(super) fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     ui.horizontal(|ui| {
         for (direction, word, label) in
@@ -106,13 +106,13 @@ pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, ac
             let has_ended = unit.moves.has_held_jog_ended();
             let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
             let press = Motor::JogPress { direction, repeated: false };
-            pad_ui(ui, theme, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
+            jog_button_ui(ui, theme, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
         }
     });
 }
 
 /// Draws a button that moves a drive while it is held; `press` starts the motion.
-pub(super) fn pad_ui(
+pub(super) fn jog_button_ui(
     ui: &mut Ui,
     theme: &Theme,
     (session, drive): (SessionId, DriveNumber),

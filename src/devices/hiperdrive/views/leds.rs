@@ -52,7 +52,7 @@ fn device_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
 
 fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.horizontal_top(|ui| {
-        lamp_ui(ui, theme, leds, lamp);
+        led_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
             let meaning = leds.meaning_of(lamp);
@@ -68,7 +68,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
 }
 
 /// Draws an LED. A click shows its next possible state.
-fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
+fn led_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let shown = theme.words(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());

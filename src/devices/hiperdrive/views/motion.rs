@@ -13,7 +13,7 @@ use crate::ui::controls::{
     button_with_reason, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
     options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
 };
-use crate::ui::stop_debounce::{counts_as_stop, goes_down, press_time};
+use crate::ui::stop_debounce::{goes_down, press_time, register_stop_press};
 
 use crate::ui::{Theme, icons};
 
@@ -83,7 +83,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
     theme.gap(ui);
-    figures::words_card_ui(ui, theme, unit, unit.drive());
+    figures::control_status_words_ui(ui, theme, unit, unit.drive());
 }
 
 fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
@@ -190,7 +190,7 @@ fn to_position_ui(
 ) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
     let parse = |text: &str| forms::target(unit, text, unit.measure);
-    length_ui(ui, theme, unit, ("hd_move.target", &mut view.target), |text| parse(text).err(), actions);
+    position_entry_ui(ui, theme, unit, ("hd_move.target", &mut view.target), |text| parse(text).err(), actions);
     let target = parse(&view.target);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(
@@ -215,14 +215,14 @@ fn to_position_ui(
                     button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // The button replaces the pause button. A hasty second click was meant for that one.
-                if response.clicked() && !counts_as_stop(ui.ctx(), false, press_time(ui, pressed)) {
+                if response.clicked() && !register_stop_press(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(MotionKind::Job { .. })));
                 if enabled_button(ui, on_its_way, icons::PAUSE, &say(theme, "hd_move.pause")).clicked() {
-                    counts_as_stop(ui.ctx(), true, ui.input(|input| input.time));
+                    register_stop_press(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);
                 }
             }
@@ -241,7 +241,7 @@ fn to_position_ui(
 /// Draws the controls for a run at a speed, to the end of the range or, for experts, without end.
 fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
-    let mut expert = unit.moves.is_expert(unit.drive());
+    let mut expert = unit.moves.allows_endless_run(unit.drive());
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
@@ -252,7 +252,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
         }
     });
     paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_run.words")));
-    let endless = unit.could_run_endlessly(unit.drive());
+    let endless = unit.check_can_allow_endless(unit.drive());
     // The option can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
         if ui.checkbox(&mut expert, say(theme, "hd_run.expert")).changed() {
@@ -294,7 +294,7 @@ pub(super) fn effort_ui(
         (typed, sent, unit.torque_text(effort.torque))
     };
     let note = |ui: &mut Ui, own: Percent, (typed, sent, beside): (Result<(), Text>, Option<Percent>, Option<Text>)| {
-        note_ui(ui, theme, &typed, sent.filter(|sent| *sent != own), beside);
+        percent_note_ui(ui, theme, &typed, sent.filter(|sent| *sent != own), beside);
         typed
     };
     let taken = if !presets.is_empty() && ui.available_width() >= ONE_ROW {
@@ -369,7 +369,7 @@ fn percent_ui(
 
 /// Draws the note next to a percentage. This is why it cannot be used, the value that a running motion started with, or
 /// `beside`.
-fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
+fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
         (Err(why), ..) => {
             ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad)).on_hover_text(theme.words(why));
@@ -392,7 +392,7 @@ pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> 
 }
 
 /// Draws the entry of a position or distance with its unit. The entry is marked if `problem` finds something in it.
-pub(super) fn length_ui(
+pub(super) fn position_entry_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,

@@ -103,7 +103,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
     ui.label(theme.label(word.as_str()));
     options(ui, &word, &mut form.source, named);
     ui.add_space(theme.space.inside);
-    let types = form.has_addresses();
+    let types = form.are_addresses_editable();
     let [first, second] = &mut form.name_servers;
     let [first_before, second_before] = &before.name_servers;
     for (id, own, was, is_needed) in [

@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui};
 
-use super::motion::length_ui;
+use super::motion::position_entry_ui;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
@@ -66,7 +66,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
                 }
             }
         });
-        length_ui(ui, theme, unit, ("hd_outside.place", &mut draft.place), |_| None, actions);
+        position_entry_ui(ui, theme, unit, ("hd_outside.place", &mut draft.place), |_| None, actions);
         if button_with_reason(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
             let change = forms::steps(unit, &draft.place, unit.measure)
                 .and_then(|position| unit.reference_change(drive, position));

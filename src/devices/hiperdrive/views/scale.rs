@@ -63,15 +63,15 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
             }
         });
         show_error_below(ui, theme, view.refused.as_ref());
-        becomes_ui(ui, theme, unit);
+        scale_effect_ui(ui, theme, unit);
         paragraph(ui, theme.caption(say(theme, "hd_scale.words")));
     });
 }
 
 /// Draws the effect of the edited scale on one turn and on the limits.
-fn becomes_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn scale_effect_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
-    let ruler = unit.requested_ruler(drive);
+    let ruler = unit.edited_ruler(drive);
     let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, PositionUnit::Steps.unit()));
     row(ui, theme, &say(theme, "hd_scale.turn"), theme.monospace(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };

@@ -64,6 +64,6 @@ pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Record
         created: Vec::new(),
         unknown_in_fields: Vec::new(),
     };
-    profile.mark_mounting_values();
+    profile.mark_mounting_dependent_values();
     profile
 }

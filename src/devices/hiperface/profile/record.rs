@@ -92,7 +92,7 @@ impl HiperfaceProfile {
     pub const COMMUTATION_BYTES: usize = 16;
 
     /// Marks all unmarked items that are recognised as mounting values.
-    pub fn mark_mounting_values(&mut self) {
+    pub fn mark_mounting_dependent_values(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };
             let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
@@ -112,7 +112,7 @@ impl HiperfaceProfile {
     }
 
     /// Returns whether a byte of a data field is a mounting value.
-    pub fn is_mounting_value(&self, field: u8, address: usize) -> bool {
+    pub fn depends_on_mounting(&self, field: u8, address: usize) -> bool {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }
 

@@ -121,7 +121,7 @@ impl LinkForm {
     }
 
     /// Returns the typed entries of the virtual encoder.
-    pub fn of_the_virtual() -> Vec<Entry> {
+    pub fn virtual_device_entries() -> Vec<Entry> {
         chosen(&Config::entries(), &["rpm", "fault"])
     }
 
@@ -131,7 +131,7 @@ impl LinkForm {
 
     /// Returns the typed parameters of the link and, if applicable, of the virtual encoder.
     fn entries(&self) -> Vec<Entry> {
-        let own = if self.kind == LinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        let own = if self.kind == LinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
         [own, Self::link_entries()].concat()
     }
 
@@ -171,7 +171,7 @@ impl LinkForm {
             if filled(&self.model).is_some_and(|model| model != usual.model) {
                 parameters.entry("model", &self.model);
             }
-            parameters.typed(&Self::of_the_virtual(), &self.typed);
+            parameters.typed(&Self::virtual_device_entries(), &self.typed);
         }
         if self.baud != usual.baud {
             parameters.set("baud", &self.baud.to_string());

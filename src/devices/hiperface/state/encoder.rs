@@ -102,12 +102,12 @@ impl Encoder {
     }
 
     /// Returns the edited profile, if the session edits a profile.
-    pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
+    pub(crate) fn edited_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
         // The edit may also be a commutation offset.
-        profile.mark_mounting_values();
+        profile.mark_mounting_dependent_values();
         Some(profile)
     }
 

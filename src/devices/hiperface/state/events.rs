@@ -234,7 +234,7 @@ impl SessionEvents for Encoder {
 
     /// Returns whether the link is open but the encoder does not reply, or only invalid bytes have been received since
     /// it was opened.
-    fn is_silence(&self, error: &JobError) -> bool {
+    fn means_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
             JobError::Interrupted { interrupted, .. } => &interrupted.cause,
@@ -288,7 +288,7 @@ impl SessionEvents for Encoder {
         self.session.save_to = None;
         let gone = Hiperface::connection_error(error);
         self.apply_completed_steps(error, services);
-        let silent = gone.is_none() && self.is_silence(error);
+        let silent = gone.is_none() && self.means_no_response(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
         if gone.is_none() && !silent && !garbled {
             self.session.answers();

@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::action::Opened;
-use crate::app::services::{Environment, JobState, Services};
+use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
@@ -15,7 +15,7 @@ impl DeviceModel for Encoder {
     type Action = HiperfaceAction;
     type Done = Infallible;
 
-    fn prepare(&self, world: &Environment) -> Prepare<Hiperface> {
+    fn prepare(&self, world: &StudioEnvironment) -> Prepare<Hiperface> {
         let codes = world.given.get::<AccessCodes>().cloned().unwrap_or_default();
         Box::new(move |session| codes.apply_codes(session.codes_mut()))
     }

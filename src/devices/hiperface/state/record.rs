@@ -84,7 +84,7 @@ fn meaning(geometry: Option<Geometry>) -> Meaning {
         }
         Some(rotary @ Geometry::Rotary { .. }) => {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
-            Meaning::for_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
+            Meaning::for_steps_per_turn(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
         // The whole word, which wraps at its end.
         None => Meaning::for_steps(Some(1 << 32)),

@@ -141,7 +141,7 @@ impl Finder for SearchFinder {
             SearchAction::Search(options) => {
                 self.asked = Some(options);
                 match context.link() {
-                    Ok(url) if may_have_other_master(&url) => context.confirm_other_master(&url),
+                    Ok(url) if may_have_other_master(&url) => context.ask_about_other_master_on_link(&url),
                     _ => self.confirmed(context),
                 }
             }

@@ -117,7 +117,7 @@ impl Staged {
     }
 
     pub fn revert_range(&mut self, range: FieldRange) {
-        self.undo_matching(|(field, address)| range.contains(field, address));
+        self.revert_matching(|(field, address)| range.contains(field, address));
     }
 
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {

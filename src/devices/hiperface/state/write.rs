@@ -70,7 +70,7 @@ impl HasMemory for Encoder {
     }
 
     /// Logs nothing, because the list of jobs shows the start.
-    fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
+    fn log_write_start(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
@@ -97,8 +97,8 @@ impl HasProfile for Encoder {
         HiperfaceJob::Save(SaveOptions::default())
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Some(Body::new(self.wanted_profile()?))
+    fn edited_body(&self) -> Option<Body> {
+        Some(Body::new(self.edited_profile()?))
     }
 
     fn last_read_profile(&self) -> Option<KnownProfile> {

@@ -78,7 +78,7 @@ fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
             model.clone_into(&mut form.model);
         }
     });
-    typed(ui, theme, say, LinkForm::of_the_virtual(), &mut form.typed);
+    typed(ui, theme, say, LinkForm::virtual_device_entries(), &mut form.typed);
 }
 
 fn line_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {

@@ -88,13 +88,13 @@ fn long_word_meanings(
     known: &WordContext,
 ) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
-        Some(Direction::In) => Ok(meaning::in_word_meanings(word, known)),
+        Some(Direction::In) => Ok(meaning::meanings_of_in_word(word, known)),
         Some(Direction::Out) => meaning::out_word_meanings(word, known),
         // The encoder may send any word. If it has no meaning as an OUT word, it can only be an IN word.
         None => Ok(meaning::out_word_meanings(word, known)
             .unwrap_or_else(|_| meaning::refused(word, known))
             .into_iter()
-            .chain(meaning::in_word_meanings(word, known))
+            .chain(meaning::meanings_of_in_word(word, known))
             .collect()),
     }
 }

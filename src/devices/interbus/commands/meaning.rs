@@ -99,7 +99,7 @@ fn wrong_mode_text(command: Command) -> String {
 
 /// Returns the meaning of an IN word in the known mode. Without a mode, it returns the meaning in every mode that
 /// allows the word.
-pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
+pub(super) fn meanings_of_in_word(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let meaning = |modes: &[EncoderMode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",
@@ -177,7 +177,7 @@ fn command_description(command: Command) -> (String, Option<u32>) {
 fn set(parameter: Parameter, value: Value) -> String {
     let row = parameter.row();
     let number = value.get();
-    let range = parameter.widest_range();
+    let range = parameter.range_with_any_gear();
     let meaning = match (parameter, number) {
         (Parameter::Direction, 3) => ", clockwise",
         (Parameter::Direction, 4) => ", counterclockwise",

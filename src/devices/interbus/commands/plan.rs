@@ -9,7 +9,7 @@ use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
-use crate::devices::interbus::profile::{InterbusPlan, Op, required_programs};
+use crate::devices::interbus::profile::{InterbusPlan, Op, programs_to_read};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
@@ -19,7 +19,7 @@ use crate::result_of;
 /// Plans a change. Nothing is written.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
-        Change::Restore { profile, .. } => required_programs(profile).len() == ProgramNumber::COUNT,
+        Change::Restore { profile, .. } => programs_to_read(profile).len() == ProgramNumber::COUNT,
         Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
         Change::Item(..) => false,
         Change::Preset { .. } | Change::Default => true,

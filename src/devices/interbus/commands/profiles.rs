@@ -16,7 +16,7 @@ use crate::cli::profiles::{
 use crate::cli::runner::unexpected_output;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
-use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, required_programs};
+use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_to_read};
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Body;
 
@@ -35,7 +35,7 @@ impl ProfileCommands for InterbusCommands {
         let profile = profile_to_restore::<InterbusProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let disturbs =
-            if required_programs(&profile).is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
+            if programs_to_read(&profile).is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
         disturbs.begin(common, output, Some(&restore.consent))?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
@@ -85,7 +85,7 @@ fn saved(common: &CommonArgs, output: &Output) -> Result<InterbusProfile> {
 }
 
 fn read_comparable_profile(common: &CommonArgs, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
-    let needed = required_programs(profile);
+    let needed = programs_to_read(profile);
     let mut runner = Runner::open(common)?;
     let disturbs = if needed.is_empty() { DisturbanceLevel::Reading } else { DisturbanceLevel::Programs };
     disturbs.begin(common, output, None)?;

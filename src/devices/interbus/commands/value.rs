@@ -31,7 +31,7 @@ pub(super) fn value(item: Item, text: &str) -> Result<ItemValue> {
 }
 
 fn limits(parameter: Parameter) -> (u32, u32) {
-    let range = parameter.widest_range();
+    let range = parameter.range_with_any_gear();
     (*range.start(), *range.end())
 }
 

@@ -52,24 +52,24 @@ fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
 }
 
 impl Journal for Notes {
-    fn has_excursions(&self) -> bool {
+    fn has_modes_to_restore(&self) -> bool {
         self.excursions().has_any(KIND)
     }
 
-    fn recorded_excursion(&self, serial_number: &str) -> Option<ModeSwitch> {
+    fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch> {
         let text = warn(self.excursions().load(KIND, &self.name(serial_number)))??;
         parse(&text)
     }
 
-    fn record_excursion(&mut self, serial_number: &str, excursion: &ModeSwitch) {
+    fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch) {
         warn(self.excursions().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
-    fn record_return(&mut self, serial_number: &str) {
+    fn record_mode_restored(&mut self, serial_number: &str) {
         warn(self.excursions().remove(KIND, &self.name(serial_number)));
     }
 
-    fn record_intent(&mut self, serial_number: &str, stores: u64) {
+    fn record_planned_stores(&mut self, serial_number: &str, stores: u64) {
         if !self.begun.contains_key(serial_number)
             && let Some(entry) = warn(self.intend(serial_number, stores))
         {

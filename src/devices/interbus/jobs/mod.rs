@@ -137,7 +137,7 @@ impl Device for Interbus {
                 Ok(Out::Saved(Box::new(save(master, programs, report)?)))
             }),
             InterbusJob::LeadBack => {
-                self.ask(context, tell, |master, _| Ok(Out::LedBack(master.end_leftover_operation()?)))
+                self.ask(context, tell, |master, _| Ok(Out::LedBack(master.end_foreign_operation()?)))
             }
         }
     }

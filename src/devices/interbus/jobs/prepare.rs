@@ -4,7 +4,7 @@ use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, Progre
 use crate::devices::interbus::procedures::{identify, read_state};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, Item, Restore, check_allowed, other_type, plan_default, plan_edits, plan_preset, plan_restore,
-    required_programs,
+    programs_to_read,
 };
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::worker::commit::cycles_seen;
@@ -30,11 +30,11 @@ pub(super) fn prepare(
         Change::Restore { profile, options } => {
             // The type can be checked before the programs are read.
             check_allowed(profile, &identity.profile(), *options)?;
-            device = state(&required_programs(profile))?;
+            device = state(&programs_to_read(profile))?;
             plan_restore(profile, &device, *options)?
         }
         Change::Write(wanted) => {
-            device = state(&affected_programs(wanted))?;
+            device = state(&programs_to_read_for(wanted))?;
             restore_from_plan(plan_edits(&device.image, wanted)?)
         }
         Change::Item(item, value) => {
@@ -78,7 +78,7 @@ pub(super) fn prepare(
 }
 
 /// Returns the programs that must be read for an image. Any program provides the window shift.
-fn affected_programs(wanted: &Image) -> Vec<ProgramNumber> {
+fn programs_to_read_for(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
     match wanted.shift {
         Some(_) if known.is_empty() => ProgramNumber::all().take(1).collect(),

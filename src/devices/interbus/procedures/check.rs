@@ -132,7 +132,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
         CheckStep::Gateway,
         vec![(Verdict::Good, CheckFinding::Replies { requested: LOOKS, slowest_ms })],
     );
-    let (order, fits) = match master.detect_word_order(word)? {
+    let (order, fits) = match master.swapped_word_order(word)? {
         Some(swapped) => ((Verdict::Bad, CheckFinding::OrderSwapped { input: word, swapped }), false),
         None => ((Verdict::Good, CheckFinding::OrderFits), true),
     };

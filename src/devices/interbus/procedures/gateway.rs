@@ -220,7 +220,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     if received.len() < SHORTEST || length != Ok(received.len()) {
         return broken(Damage::NoFrame { bytes: received.len() });
     }
-    let (number, unit, requested) = requested_item(sent, order)?;
+    let (number, unit, requested) = request_in_frame(sent, order)?;
     let (request, _) = request(requested, unit, number, order)?;
     match judge(&request, requested, received.to_vec()) {
         Err(ExchangeError::Damage(damage)) => broken(damage),
@@ -230,10 +230,10 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
 }
 
 /// Returns the number, the unit and the content of the request in a frame of the trace.
-fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
+fn request_in_frame(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
-    let requested = match (function, process_data_word(true, sent, order)) {
+    let requested = match (function, word_in_frame(true, sent, order)) {
         (4, _) => RequestedItem::Input { register },
         (3, _) => RequestedItem::Output { register },
         (_, Some(Carried::Out(word))) => RequestedItem::Write { register, word },
@@ -319,7 +319,7 @@ pub enum Carried {
 }
 
 /// Returns the process data word of a frame in the trace, or `None` if the frame contains none.
-pub fn process_data_word(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
+pub fn word_in_frame(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),
         (false, [4, 4, a, b, c, d]) => Some(Carried::In(word(order, [*a, *b, *c, *d]))),

@@ -131,7 +131,7 @@ pub fn read_programs(
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.run_guarded(|master| {
         master.go(mode)?;
-        master.keep_current_mode();
+        master.stay_in_current_mode();
         Ok(master.mode().unwrap_or(mode))
     })
 }
@@ -154,7 +154,7 @@ pub(super) fn read_identity(
         serial_number: serial.to_string(),
         steps,
         revolutions,
-        direction: direction_of(direction)?,
+        direction: direction_from_read_out(direction)?,
         software_version,
         mode,
         flags: Flags::new(Value::of_word(flags)),
@@ -229,7 +229,7 @@ pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Err
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOutNumber::new(number))?.get());
     let [steps, revolutions, direction] = [read(1)?, read(2)?, read(3)?];
     let [preset, zero_shift] = [read(4)?, read(5)?];
-    Ok(Parameters { steps, revolutions, direction: direction_of(direction)?, preset, zero_shift })
+    Ok(Parameters { steps, revolutions, direction: direction_from_read_out(direction)?, preset, zero_shift })
 }
 
 /// Reads all values that can be restored, including the given programs.
@@ -327,7 +327,7 @@ fn temperature_tenths(value: Value) -> i32 {
 
 /// Returns the direction for a read-out. It is the value of the parameter, or 0 or 1 as a flag. The manual calls the
 /// read-out a flag (`U`).
-pub(super) fn direction_of(code: u32) -> Result<Direction, ImplausibleValue> {
+pub(super) fn direction_from_read_out(code: u32) -> Result<Direction, ImplausibleValue> {
     let flag = match code {
         0 => Some(Direction::Clockwise),
         1 => Some(Direction::Counterclockwise),

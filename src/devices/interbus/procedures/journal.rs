@@ -15,19 +15,19 @@ pub struct ModeSwitch {
 /// Persistent record of mode switches and stores by serial number. Reading continues if a record cannot be saved.
 pub trait Journal {
     /// Returns whether there is an encoder that was not returned to its mode.
-    fn has_excursions(&self) -> bool;
+    fn has_modes_to_restore(&self) -> bool;
 
     /// Returns the mode switch from which an encoder was not returned, or `None` if there is no record.
-    fn recorded_excursion(&self, serial_number: &str) -> Option<ModeSwitch>;
+    fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch>;
 
     /// Records that the encoder is about to enter the last mode of the excursion.
-    fn record_excursion(&mut self, serial_number: &str, excursion: &ModeSwitch);
+    fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch);
 
     /// Records that the encoder is back in the mode before the switch.
-    fn record_return(&mut self, serial_number: &str);
+    fn record_mode_restored(&mut self, serial_number: &str);
 
     /// Records how many cam programs are about to be selected, since leaving a program may store it.
-    fn record_intent(&mut self, serial_number: &str, stores: u64);
+    fn record_planned_stores(&mut self, serial_number: &str, stores: u64);
 
     /// Records how many cam programs the encoder may have stored. It has no effect if no store was announced and none
     /// can have happened.

@@ -14,7 +14,7 @@ use stability::{CycleResult, LEAST_PATIENCE, StabilityTimer};
 use super::data::ProcessData;
 use super::error::{ExpectedWord, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
-use super::reading::{swap_words, unexplained_swapped_word};
+use super::reading::{swapped_position_word, swapped_word_if_unexplained};
 use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{
     Command, EncoderMode, Gear, ReadOutNumber, Reply, StartupMode, Value, WindowShift,
@@ -156,7 +156,7 @@ impl<'a> Master<'a> {
     /// Returns [`Error::UnknownReadOut`] if the value does not exist, and otherwise the same errors as
     /// [`set`](Self::set).
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
-        self.await_no_value()?;
+        self.wait_until_value_cleared()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
         self.until(command, ExpectedWord::Value, self.patience, |CycleResult { word, same, .. }| {
@@ -292,11 +292,11 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns an error if the exchange fails.
-    pub(super) fn detect_word_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
+    pub(super) fn swapped_word_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
         if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
             return Ok(None);
         }
-        Ok(unexplained_swapped_word(input))
+        Ok(swapped_word_if_unexplained(input))
     }
 
     /// Returns the most likely reason why the awaited word did not arrive.
@@ -307,7 +307,8 @@ impl<'a> Master<'a> {
             Err(error) => return error,
             Ok(_) => {}
         }
-        let suspected = if self.is.is_none() { unexplained_swapped_word(input) } else { swap_words(input) };
+        let suspected =
+            if self.is.is_none() { swapped_word_if_unexplained(input) } else { swapped_position_word(input) };
         if let Some(swapped) = suspected {
             return Error::WordOrder { input, swapped };
         }

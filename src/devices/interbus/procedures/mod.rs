@@ -22,7 +22,7 @@ pub mod write;
 
 pub use data::ProcessData;
 pub use error::{Damage, Error, Exception, ExpectedWord, ImplausibleValue, RequestedItem};
-pub use gateway::{Carried, Fault, Gateway, fault, process_data_word};
+pub use gateway::{Carried, Fault, Gateway, fault, word_in_frame};
 pub use handshake::{Handshake, LeftState, WordReply};
 pub use identify::{Identity, Status, Survey, identify, read_programs, read_single_value, read_status, select, survey};
 pub use journal::{Journal, ModeSwitch};

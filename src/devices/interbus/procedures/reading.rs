@@ -99,18 +99,18 @@ impl WordReading {
 }
 
 /// Returns the word with exchanged halves if only this is a valid position. The word as received must have stray bits.
-pub(super) fn swap_words(word: u32) -> Option<u32> {
+pub(super) fn swapped_position_word(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
     let runs = |word| matches!(Reply::parse(word), Reply::Run { stray: 0, .. });
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the word with exchanged halves if only this is a valid position. Unlike [`swap_words`], it also examines
+/// Returns the word with exchanged halves if only this is a valid position. Unlike [`swapped_position_word`], it also examines
 /// words that are not positions, except error words without data.
-pub(super) fn unexplained_swapped_word(word: u32) -> Option<u32> {
+pub(super) fn swapped_word_if_unexplained(word: u32) -> Option<u32> {
     match Reply::parse(word) {
-        Reply::Run { .. } => swap_words(word),
+        Reply::Run { .. } => swapped_position_word(word),
         Reply::Error(error) if error.data.get() == 0 => None,
         _ => Some(word.rotate_left(16)).filter(|other| matches!(Reply::parse(*other), Reply::Run { stray: 0, .. })),
     }
@@ -158,12 +158,15 @@ mod tests {
 
     #[test]
     fn swapped_words_are_detected() {
-        assert_eq!(swap_words(0x3456_0012), Some(0x0012_3456));
-        assert_eq!(swap_words(0x0012_3456), None);
+        assert_eq!(swapped_position_word(0x3456_0012), Some(0x0012_3456));
+        assert_eq!(swapped_position_word(0x0012_3456), None);
         // Stray bits in both orders prove nothing.
-        assert_eq!(swap_words(0x3456_3456), None);
+        assert_eq!(swapped_position_word(0x3456_3456), None);
         // 2DC6C0h; and parameters lost, which is not a position.
-        assert_eq!((swap_words(0xC6C0_002D), unexplained_swapped_word(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
-        assert_eq!(unexplained_swapped_word(0x8600_0000), None);
+        assert_eq!(
+            (swapped_position_word(0xC6C0_002D), swapped_word_if_unexplained(0xC6C0_002D)),
+            (None, Some(0x002D_C6C0))
+        );
+        assert_eq!(swapped_word_if_unexplained(0x8600_0000), None);
     }
 }

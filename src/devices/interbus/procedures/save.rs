@@ -1,6 +1,6 @@
 //! Reading of values that are saved, displayed as an item or required for a plan.
 
-use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
+use super::identify::{direction_from_read_out, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
 use super::{Error, Identity, Master, Survey};
 use crate::devices::interbus::profile::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
@@ -85,7 +85,7 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
         if let Some(parameter) = item.parameter() {
             let number = read_parameter(master, parameter)?;
             return Ok(match parameter {
-                Parameter::Direction => ItemValue::Direction(direction_of(number)?),
+                Parameter::Direction => ItemValue::Direction(direction_from_read_out(number)?),
                 _ => ItemValue::Number(number),
             });
         }

@@ -7,7 +7,9 @@ pub use crate::profile::Written;
 
 use super::error::ImplausibleValue;
 use super::handshake::LeftState;
-use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
+use super::identify::{
+    direction_from_read_out, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear,
+};
 use super::{Error, Identity, Master};
 use crate::devices::interbus::profile::{
     Base, CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange,
@@ -154,7 +156,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
-        Parameter::Direction => Ok(direction_of(value)?.code()),
+        Parameter::Direction => Ok(direction_from_read_out(value)?.code()),
         _ => Ok(value),
     }
 }
@@ -188,7 +190,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
         };
         match Reply::echo_of(command) {
             Reply::Busy { .. } => {
-                master.set_and_read_out(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
+                master.set_and_verify(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
             }
             _ => master.set(command)?,
         }

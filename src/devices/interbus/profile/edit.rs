@@ -21,7 +21,7 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     if !changes.is_empty() {
         plan.ops.push(Op::Parameterise(changes));
     }
-    check_kept_cams(device, wanted)?;
+    check_unchanged_cams_in_range(device, wanted)?;
     let mut programs = Vec::new();
     for (number, to) in wanted.known() {
         let item = Item::CamMask(number);
@@ -122,7 +122,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
 }
 
 /// Checks that no active cam remains beyond a shortened range.
-fn check_kept_cams(device: &Image, wanted: &Image) -> Result<(), PlanError> {
+fn check_unchanged_cams_in_range(device: &Image, wanted: &Image) -> Result<(), PlanError> {
     if wanted.parameters.steps >= device.parameters.steps {
         return Ok(());
     }

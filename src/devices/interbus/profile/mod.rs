@@ -27,7 +27,7 @@ pub use note::ChangeStep;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
 pub use record::{CamNames, InterbusProfile, MountingMark, ProfileIdentity, Recorded, UnknownEntries};
 pub use restore::{
-    DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, required_programs,
+    DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, programs_to_read,
 };
 pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
 pub use table::{

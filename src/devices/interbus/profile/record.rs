@@ -81,21 +81,21 @@ impl InterbusProfile {
             recorded,
             unknown: UnknownEntries::default(),
         };
-        profile.mark_mounting_values();
+        profile.mark_mounting_dependent_values();
         profile
     }
 
     /// Marks the preset and the zero shift, which depend on the mounting.
-    pub fn mark_mounting_values(&mut self) {
+    pub fn mark_mounting_dependent_values(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
-            if !self.is_mounting_value(item) {
+            if !self.depends_on_mounting(item) {
                 self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: Unknown::new() });
             }
         }
     }
 
     /// Returns whether an item is marked as a mounting value.
-    pub fn is_mounting_value(&self, item: Item) -> bool {
+    pub fn depends_on_mounting(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 

@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Content of the EEPROM. It contains at least the programs of [`required_programs`], and the window shift if there
+    /// Content of the EEPROM. It contains at least the programs of [`programs_to_read`], and the window shift if there
     /// are any.
     pub image: Image,
 }
@@ -21,7 +21,7 @@ pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
 /// together with a program. If the profile contains only the shift, the first program is read.
-pub fn required_programs(profile: &InterbusProfile) -> Vec<ProgramNumber> {
+pub fn programs_to_read(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
     match profile.image.shift {
@@ -51,7 +51,7 @@ pub fn plan_restore(
         };
         if to == from {
             unchanged += 1;
-        } else if is_other && profile.is_mounting_value(item) {
+        } else if is_other && profile.depends_on_mounting(item) {
             if options.with_mounting { &mut mounting_written } else { &mut mounting_left }.push(item);
         }
         wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
@@ -98,7 +98,7 @@ pub fn check_allowed(
         return Err(error.into());
     }
     let is_of_none = profile.identity.serial_number.is_empty();
-    if options.allow_other_device || is_of_none || is_same_number(profile, device) {
+    if options.allow_other_device || is_of_none || has_same_serial_number(profile, device) {
         return Ok(());
     }
     Err(PlanError::OtherDevice {
@@ -108,10 +108,10 @@ pub fn check_allowed(
 }
 
 fn is_same_device(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
-    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
+    has_same_serial_number(profile, device) && other_type(&profile.identity, device).is_none()
 }
 
-fn is_same_number(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
+fn has_same_serial_number(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
     !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 

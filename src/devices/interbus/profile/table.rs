@@ -235,11 +235,11 @@ impl CamTable {
 
     /// Returns the rows in which at least one edge was rounded.
     pub fn rounded(&self) -> impl Iterator<Item = &TableRow> {
-        self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
+        self.rows.iter().filter(|row| row.start.is_rounded() || row.stop.is_rounded())
     }
 
     /// Returns the largest rounding error of an edge in the unit of the scale.
-    pub fn most_off(&self) -> f64 {
+    pub fn max_rounding_error(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)
     }
@@ -254,7 +254,7 @@ impl TableRow {
 
 impl TableEdge {
     /// Returns whether the position was rounded.
-    pub fn is_off(self) -> bool {
+    pub fn is_rounded(self) -> bool {
         self.off.abs() > 1e-9 * self.requested.abs().max(1.0)
     }
 }

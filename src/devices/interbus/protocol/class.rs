@@ -56,7 +56,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
 }
 
 /// Returns the devices with an identification code. Several devices may share a code, and an unknown code yields none.
-pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
+pub fn devices_with_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
         .flat_map(|class| Interface::ALL.map(|interface| (class, interface)))

@@ -40,7 +40,7 @@ pub const GUARANTEED_STORES: u32 = 500;
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};
 pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};
-pub use class::{Class, Interface, Single, class_of_id, id_code};
+pub use class::{Class, Interface, Single, devices_with_id, id_code};
 pub use command::{Command, Refused};
 pub use compiled::CompiledPrograms;
 pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};

@@ -111,7 +111,7 @@ impl Parameter {
     }
 
     /// Returns the values that are valid with at least one gear.
-    pub const fn widest_range(self) -> RangeInclusive<u32> {
+    pub const fn range_with_any_gear(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
             Limit::StepsOfTurns => 1..=Value::MAX.get(),

@@ -251,8 +251,8 @@ fn classes_have_their_id_codes() {
         assert_eq!([Standard, OpticalFibre, Loop2].map(|interface| id_code(class, interface)), [54, 54, 178]);
     }
     assert_eq!([Standard, OpticalFibre, Loop2].map(|interface| id_code(Class::K3, interface)), [55, 55, 179]);
-    assert_eq!(class_of_id(0xB3).collect::<Vec<_>>(), [(Class::K3, Loop2)]);
-    assert_eq!((class_of_id(54).count(), class_of_id(0).count()), (4, 0));
+    assert_eq!(devices_with_id(0xB3).collect::<Vec<_>>(), [(Class::K3, Loop2)]);
+    assert_eq!((devices_with_id(54).count(), devices_with_id(0).count()), (4, 0));
     assert_eq!(Class::ALL.map(Class::bytes), [(2, 0), (4, 0), (4, 4)]);
     let (k1, k2) = (Single::parse_k1(0x1FFF), Single::parse_k2(0x0312_3456));
     assert_eq!(

@@ -75,7 +75,7 @@ impl Config {
     /// Returns an error with the key and the allowed values if a setting is invalid.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::EncoderOf("INTERBUS"), pairs)?;
-        config.fill_memory()?;
+        config.apply_memory_settings()?;
         Ok(config)
     }
 
@@ -86,7 +86,7 @@ impl Config {
 
     /// Stores the gear, the preset and the cams in the memory. If only steps or turns are given, the other is as large
     /// as possible.
-    fn fill_memory(&mut self) -> Result<(), ConfigError> {
+    fn apply_memory_settings(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {
             let range = Whole(Quantity::Turns, 1..=TURNS);
@@ -106,7 +106,7 @@ impl Config {
         }
         (memory.counterclockwise, memory.zero_shift) = (self.counterclockwise, self.zero_shift);
         if self.demonstration {
-            *memory = memory.clone().with_demonstration();
+            *memory = memory.clone().with_demonstration_programs();
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ pub struct Encoder {
     out: u32,
     content: InWordContent,
     /// Previous IN word, which is still returned for some time after a new OUT word.
-    old: StaleWord,
+    old: PreviousInWord,
     busy_until: Moment,
     busy: Duration,
     stale: u32,
@@ -80,7 +80,7 @@ enum InWordContent {
 /// Previous IN word after a change of the OUT word. It is returned for a number of cycles. Each reading counts as a
 /// cycle, and cycles also elapse with time.
 #[derive(Clone, Copy, Debug, Default)]
-struct StaleWord {
+struct PreviousInWord {
     word: u32,
     /// Remaining number of cycles for which the old word is returned.
     cycles: u32,
@@ -143,7 +143,7 @@ impl Encoder {
             power: true,
             out: 0,
             content: InWordContent::Live,
-            old: StaleWord::default(),
+            old: PreviousInWord::default(),
             busy_until: Moment::START,
             busy: config.busy,
             stale: config.stale,
@@ -213,7 +213,7 @@ impl Encoder {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
         (self.activity, self.unstored) = (Activity::Running, None);
-        (self.content, self.old) = (InWordContent::Live, StaleWord::default());
+        (self.content, self.old) = (InWordContent::Live, PreviousInWord::default());
     }
 
     /// Switches the power on again. The present OUT word takes effect as a new one.
@@ -232,10 +232,10 @@ impl Encoder {
         if word == before || !self.power || self.class != Class::K3 {
             return;
         }
-        self.old = StaleWord { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
+        self.old = PreviousInWord { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
             Ok(command) => self.apply_command(now, command, before),
-            Err(_) => self.note_unexpected_word(now, word),
+            Err(_) => self.handle_illegal_word(now, word),
         }
     }
 
@@ -272,7 +272,7 @@ impl Encoder {
             }
             Command::ReadOut(read_out) => self.read_out(now, read_out),
             Command::Cams(program) => self.select(now, program),
-            Command::Activate(mask) => self.set_cams(now, |program, _| program.activate(mask)),
+            Command::Activate(mask) => self.set_cams(now, |program, _| program.set_active_cams(mask)),
             Command::CamStart(cam, value) => self.set_cams(now, |program, gear| program.start(cam, value, gear)),
             Command::CamStop(cam, value) => self.set_cams(now, |program, gear| program.stop(cam, value, gear)),
             Command::Shift(shift) => {
@@ -287,7 +287,7 @@ impl Encoder {
 
     /// Handles a word without a meaning in the present mode. If it resembles a parameter, an edge, a shift or a
     /// read-out, it gets the corresponding error.
-    fn note_unexpected_word(&mut self, now: Moment, word: u32) {
+    fn handle_illegal_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
             (0b000, _) if Code::of_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
@@ -305,7 +305,7 @@ impl Encoder {
             Err(fault) => fault.word(),
         };
         self.unstored = taken.ok().or(self.unstored);
-        self.switch_activity(Activity::Setting, InWordContent::Word(word));
+        self.enter_activity(Activity::Setting, InWordContent::Word(word));
         self.busy_until = now + self.busy;
     }
 
@@ -332,7 +332,7 @@ impl Encoder {
     /// Handles the rising edge of the run command, which returns to operation.
     fn run(&mut self) {
         self.store();
-        self.switch_activity(Activity::Running, InWordContent::Live);
+        self.enter_activity(Activity::Running, InWordContent::Live);
     }
 
     fn store(&mut self) {
@@ -355,7 +355,7 @@ impl Encoder {
     }
 
     /// Switches to another activity immediately, without the word of a busy encoder.
-    const fn switch_activity(&mut self, activity: Activity, content: InWordContent) {
+    const fn enter_activity(&mut self, activity: Activity, content: InWordContent) {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
 
@@ -375,10 +375,10 @@ impl Encoder {
         }
         self.mode = program.map_or(StartupMode::K3, StartupMode::Cams);
         if program.is_some() && self.acknowledges_selection {
-            self.switch_activity(Activity::Setting, InWordContent::Word(self.out | ECHO));
+            self.enter_activity(Activity::Setting, InWordContent::Word(self.out | ECHO));
             self.busy_until = now + self.busy;
         } else {
-            self.switch_activity(Activity::Running, InWordContent::Live);
+            self.enter_activity(Activity::Running, InWordContent::Live);
         }
     }
 }

@@ -70,7 +70,7 @@ impl Memory {
 
     /// Adds cam programs for a demonstration. They contain a staircase, nested cams and cams that wrap around the end
     /// of the range. If the range allows it, the example of the manual is added, which is cam 3 from 15 to 213.
-    pub(super) fn with_demonstration(mut self) -> Self {
+    pub(super) fn with_demonstration_programs(mut self) -> Self {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
         let cam = |start: u32, stop: u32| {

@@ -32,7 +32,7 @@ impl Encoder {
             }
             InterbusAction::OpenTable(path) => self.open_table(path, services),
             InterbusAction::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
-            InterbusAction::TakeTable(take) => self.finish_import(take),
+            InterbusAction::TakeTable(take) => self.apply_or_discard_import(take),
             InterbusAction::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
                 let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));
@@ -43,7 +43,7 @@ impl Encoder {
             InterbusAction::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
             InterbusAction::SetScale(scale) => {
                 self.scale = scale;
-                self.reload_table();
+                self.reparse_import();
             }
             InterbusAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
@@ -74,7 +74,7 @@ impl Encoder {
     }
 
     /// Reads the next unread part of a virtual encoder. Returns `false` if everything has been read.
-    pub(super) fn read_next_part(&mut self, services: &mut Services) -> bool {
+    pub(super) fn read_next_unread_part(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;
         }

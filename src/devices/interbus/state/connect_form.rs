@@ -95,7 +95,7 @@ impl InterbusForm {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
 
-    pub fn of_the_virtual() -> Vec<Entry> {
+    pub fn virtual_device_entries() -> Vec<Entry> {
         Config::entries()
     }
 

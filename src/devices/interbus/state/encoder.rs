@@ -91,7 +91,7 @@ impl Encoder {
     }
 
     /// Returns the profile with the edits applied, or `None` if this is a connected encoder.
-    pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
+    pub(crate) fn edited_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
     }

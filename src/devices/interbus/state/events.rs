@@ -98,15 +98,15 @@ impl SessionEvents for Encoder {
                     let word = TEXTS.text("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
                     self.session.log_answer(vec![word], services);
                 }
-                self.record.observe_reading(reading);
-                self.read_next_part(services);
+                self.record.set_latest_reading(reading);
+                self.read_next_unread_part(services);
             }
             InterbusOutput::Surveyed(survey) => {
                 self.apply_survey(*survey, services);
                 let programs = std::mem::take(&mut self.read_after);
                 if !programs.is_empty() {
                     self.submit(InterbusJob::Programs(programs), services);
-                } else if !self.read_next_part(services) {
+                } else if !self.read_next_unread_part(services) {
                     self.refresh_word(services);
                 }
             }
@@ -135,8 +135,8 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn is_silence(&self, error: &JobError) -> bool {
-        words::is_silence(error)
+    fn means_no_response(&self, error: &JobError) -> bool {
+        words::means_no_response(error)
     }
 
     /// Discards the review and the confirmed standstill.
@@ -151,11 +151,11 @@ impl SessionEvents for Encoder {
 
     /// Submits a job. If the job disturbs the machine, it is only submitted at standstill.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
-        if job::disturbs_polling(&job) && !self.is_stopped() {
+        if job::requires_standstill(&job) && !self.is_stopped() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
             return false;
         }
-        if job::disturbs_polling(&job) && self.session.is_ready() {
+        if job::requires_standstill(&job) && self.session.is_ready() {
             self.handshake.clear();
         }
         self.session.submit(job, services)

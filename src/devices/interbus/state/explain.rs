@@ -40,7 +40,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
 }
 
 /// Returns whether the link is open but the gateway does not reply.
-pub fn is_silence(error: &JobError) -> bool {
+pub fn means_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 

@@ -128,7 +128,7 @@ pub fn scale_with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Tex
 fn within(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Text> {
     let range = match now.gear() {
         Ok(gear) => parameter.range(gear),
-        Err(_) => parameter.widest_range(),
+        Err(_) => parameter.range_with_any_gear(),
     };
     if range.contains(&value) && Value::new(value).is_some() {
         return Ok(value);

@@ -23,6 +23,6 @@ pub(super) fn words(job: &InterbusJob) -> Text {
 }
 
 /// Returns whether a job interrupts the position or switches outputs. The machine must stand still for such a job.
-pub(super) fn disturbs_polling(job: &InterbusJob) -> bool {
+pub(super) fn requires_standstill(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

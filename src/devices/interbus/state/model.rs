@@ -70,7 +70,7 @@ impl DeviceModel for Encoder {
     fn ask_where_to_save(&mut self, services: &mut Services) {
         // This is checked before the user enters a file name, since saving selects cam programs. Known values need no
         // reading.
-        if self.needs_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
+        if self.needs_standstill() && !self.is_stopped() && !self.saves_last_reading() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {
             self.session.ask_where_to_save(services);

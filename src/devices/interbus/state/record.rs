@@ -40,7 +40,7 @@ impl Record {
     }
 
     /// Sets the latest reading without recording it, since it may not contain a position.
-    pub(super) fn observe_reading(&mut self, reading: WordReading) {
+    pub(super) fn set_latest_reading(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
 
@@ -94,7 +94,9 @@ impl Record {
 
 fn meaning(gear: Option<Gear>) -> Meaning {
     match gear {
-        Some(gear) => Meaning::for_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),
+        Some(gear) => {
+            Meaning::for_steps_per_turn(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns()))
+        }
         None => Meaning::for_steps(None),
     }
 }

@@ -22,7 +22,7 @@ pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{SteppedEdits, SteppedParts};
+use crate::app::{EditHistoryParts, SteppedEdits};
 use crate::devices::interbus::profile::{CamNames, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
@@ -211,7 +211,7 @@ impl SteppedEdits for Staged {
         &self.history
     }
 
-    fn parts(&mut self) -> Option<SteppedParts<'_, EditedValues>> {
+    fn parts(&mut self) -> Option<EditHistoryParts<'_, EditedValues>> {
         Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }

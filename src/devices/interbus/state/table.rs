@@ -43,7 +43,7 @@ impl Encoder {
     }
 
     /// Parses the table again after the scale or the measuring range has changed.
-    pub(super) fn reload_table(&mut self) {
+    pub(super) fn reparse_import(&mut self) {
         let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
         let options = self.options(program);
         if let Some(import) = &mut self.import {
@@ -53,7 +53,7 @@ impl Encoder {
 
     /// Adds the imported table to the edits, or discards it. A table with problems is not added, since the cam of an
     /// omitted line would be switched off.
-    pub(super) fn finish_import(&mut self, take: bool) {
+    pub(super) fn apply_or_discard_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {
             return;

@@ -2,7 +2,7 @@
 
 use super::word_meaning::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};
-use crate::devices::interbus::procedures::{Carried, Fault, fault, process_data_word};
+use crate::devices::interbus::procedures::{Carried, Fault, fault, word_in_frame};
 use crate::devices::interbus::protocol::{Command, EncoderMode, ReadOutNumber, Reply, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
@@ -48,7 +48,7 @@ impl Meaning {
     /// Explains a reply. An error word is marked as an error that the encoder reports.
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let meaning = self.word_meaning_texts(Direction::Received, bytes);
-        let is_error = match process_data_word(false, bytes, self.order) {
+        let is_error = match word_in_frame(false, bytes, self.order) {
             Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
         };
@@ -56,7 +56,7 @@ impl Meaning {
     }
 
     fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
-        match process_data_word(direction == Direction::Sent, bytes, self.order) {
+        match word_in_frame(direction == Direction::Sent, bytes, self.order) {
             Some(Carried::Out(word)) => {
                 let command = self.command(word);
                 self.follow(command);

@@ -62,7 +62,7 @@ impl HasMemory for Encoder {
         InterbusJob::Commit(Box::new(agreed))
     }
 
-    fn rereads_after_write(&mut self) {
+    fn schedule_rereads(&mut self) {
         let programs = self.review().and_then(Review::plan_in_progress).and_then(|own| changed_programs(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }
@@ -80,8 +80,8 @@ impl HasProfile for Encoder {
         InterbusJob::Save { programs: true }
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Some(Body::new(self.wanted_profile()?))
+    fn edited_body(&self) -> Option<Body> {
+        Some(Body::new(self.edited_profile()?))
     }
 
     fn remarks(&self) -> Vec<Text> {

@@ -49,7 +49,7 @@ pub(super) fn page_ui(
     }
     ui.add_space(theme.space.between);
     let Some(chart) = Chart::of(&encoder.staged, program) else {
-        unread_ui(ui, theme, encoder, program, actions);
+        unread_program_ui(ui, theme, encoder, program, actions);
         return;
     };
     chart::card_ui(ui, theme, encoder, &chart, &mut view.chart, actions);
@@ -65,7 +65,7 @@ pub(super) fn page_ui(
     );
 }
 
-fn unread_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+fn unread_program_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;
         if encoder.staged.wanted().is_none() {

@@ -36,7 +36,7 @@ impl TypedConnectForm for InterbusConnectForm {
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            InterbusLinkKind::Virtual => typed(ui, theme, say, InterbusForm::of_the_virtual(), &mut form.typed),
+            InterbusLinkKind::Virtual => typed(ui, theme, say, InterbusForm::virtual_device_entries(), &mut form.typed),
             InterbusLinkKind::Gateway => {
                 place(
                     ui,
@@ -45,7 +45,7 @@ impl TypedConnectForm for InterbusConnectForm {
                     (&mut form.host, "192.168.1.10"),
                     (&mut form.tcp_port, "502"),
                 );
-                registers_ui(ui, theme, form);
+                register_addresses_ui(ui, theme, form);
             }
             InterbusLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
@@ -54,7 +54,7 @@ impl TypedConnectForm for InterbusConnectForm {
         }
         if form.kind != InterbusLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == InterbusLinkKind::Virtual {
-                registers_ui(ui, theme, form);
+                register_addresses_ui(ui, theme, form);
             }
             let (_, rest) = InterbusForm::link_entries();
             typed(ui, theme, say, rest, &mut form.typed);
@@ -62,7 +62,7 @@ impl TypedConnectForm for InterbusConnectForm {
     }
 }
 
-fn registers_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
+fn register_addresses_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::link_entries();
     typed(ui, theme, say, registers, &mut form.typed);
     order_ui(ui, theme, form);

@@ -23,7 +23,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (
             |ui| wiring_ui(ui, theme),
             |ui, actions| {
-                sends_ui(ui, theme, encoder, actions);
+                present_word_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
                     theme.gap(ui);
                     motor::card_ui(ui, theme, motor.rpm(), |rpm| {
@@ -89,7 +89,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn present_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {

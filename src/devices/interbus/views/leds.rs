@@ -23,10 +23,16 @@ const LAMP: f32 = 92.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     let none: Vec<Action> = Vec::new();
-    two_columns(ui, theme, (view, none), |ui, (view, _)| lamps_ui(ui, theme, view), |ui, _| codes(ui, theme));
+    two_columns(
+        ui,
+        theme,
+        (view, none),
+        |ui, (view, _)| output_indicators_ui(ui, theme, view),
+        |ui, _| codes(ui, theme),
+    );
 }
 
-fn lamps_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
+fn output_indicators_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     folding_card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
@@ -37,7 +43,7 @@ fn lamps_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
                 ("BA", &mut leds.ba, true),
                 ("RBDA", &mut leds.rbda, false),
             ] {
-                lamp_ui(ui, theme, word, lamp, blinks);
+                led_ui(ui, theme, word, lamp, blinks);
             }
         });
         ui.add_space(theme.space.inside);
@@ -52,7 +58,7 @@ fn lamps_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
 }
 
 /// Draws a clickable LED. Each click selects the next state, which is off, on or, if `blinks` is set, blinking.
-fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
+fn led_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {
         LedState::Off => ("ib_leds.off", palette.muted),

@@ -52,7 +52,7 @@ pub(super) fn page_ui(
             }
             preset_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            wear_ui(ui, theme, encoder);
+            eeprom_wear_ui(ui, theme, encoder);
         },
     );
     if !is_profile {
@@ -173,7 +173,7 @@ fn preset_ui(
     });
 }
 
-fn wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+fn eeprom_wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {
             paragraph(ui, theme.label(say(theme, "ib_wear.unknown")));

@@ -10,8 +10,8 @@ use super::profiles::{document, write};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Reads, Times, TooWideError, bit_table, c99, english, frame_picture, scl_source, settings_sheet, structured_text,
-    structured_text_32, timing_picture, to_linuxcnc,
+    ReadConditions, Times, TooWideError, bit_table, c99, english, frame_picture, scl_source, settings_sheet,
+    structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
@@ -37,7 +37,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
         SsiFormat::Timing => {
             // The default of each option comes from the profile.
             let own = chosen.profile.reads();
-            let reads = Reads {
+            let reads = ReadConditions {
                 clock_hz: clock.map_or(own.clock_hz, f64::from),
                 pause: pause.map_or(own.pause, |micros| Duration::from_micros(micros.into())),
                 cable_metres: cable.map(f64::from).or(own.cable_metres),
@@ -45,7 +45,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
                 ..own
             };
             let timing = match times {
-                Some(times) => times.reckon(&reads),
+                Some(times) => times.calculate_timing(&reads),
                 None => {
                     output.remark(&TEXTS.text("ssi_timing.general").terminal_text());
                     Times::of_any_encoder(&reads)

@@ -97,7 +97,7 @@ fn evidence_text(class: &Class) -> String {
 
 /// Returns the motion that would distinguish the remaining layouts, or `None` if the result is certain.
 fn next(search: &Search) -> Option<String> {
-    let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
+    let doubt = search.doubt.filter(|doubt| *doubt != protocol::SearchUncertainty::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal_text());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
     let open = open.map(|open| words::open(*open).terminal_text());

@@ -12,7 +12,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::ssi::jobs::families as read_families;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{
-    Descriptor, Families, Family, Layout, ResolvedFrame, Settings, SpecError, Times, from_linuxcnc,
+    Families, Family, FrameDescriptor, Layout, ResolvedFrame, Settings, SpecError, Times, from_linuxcnc,
 };
 use crate::devices::ssi::state::explain as words;
 use crate::store::Store;
@@ -32,7 +32,7 @@ pub(crate) fn choose(output: &Output, SsiLayoutArgs { spec }: &SsiLayoutArgs) ->
         let profile = SsiProfile::new(layout.descriptor().clone());
         return Ok(Chosen { profile, layout, times: None, title: spec.clone() });
     }
-    if let Some(frame) = Descriptor::parse(spec) {
+    if let Some(frame) = FrameDescriptor::parse(spec) {
         return choose_frame_layout(spec, frame);
     }
     let families = families(output)?;
@@ -59,7 +59,7 @@ fn is_file(spec: &str, families: &Families) -> bool {
     is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
 }
 
-fn choose_frame_layout(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
+fn choose_frame_layout(spec: &str, frame: std::result::Result<FrameDescriptor, SpecError>) -> Result<Chosen> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let profile = SsiProfile::new(layout.descriptor().clone());

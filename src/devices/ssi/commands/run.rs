@@ -10,7 +10,7 @@ use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs};
 use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{ClockSettings, Words};
-use crate::devices::ssi::protocol::Reads;
+use crate::devices::ssi::protocol::ReadConditions;
 use crate::devices::ssi::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
@@ -47,12 +47,12 @@ pub(super) fn begin(common: &CommonArgs, output: &Output, chosen: &Chosen) -> Re
     };
     let identity = result_of!(runner.run(SsiJob::Set(asking))?, SsiOutput::Set(identity) => identity);
     if let Some(times) = &chosen.times {
-        let reads = Reads {
+        let reads = ReadConditions {
             clock_hz: identity.clock_hz.into(),
             pause: std::time::Duration::from_micros(asking.pause_us.into()),
             ..chosen.profile.reads()
         };
-        for warning in times.reckon(&reads).warnings {
+        for warning in times.calculate_timing(&reads).warnings {
             output.remark(&words::timing(&warning).terminal_text());
         }
     }

@@ -12,7 +12,7 @@ use std::time::Duration;
 pub use families::families;
 pub use open::{check, open};
 
-use crate::buses::bridge::procedures::warn_of_supply;
+use crate::buses::bridge::procedures::log_supply_failure;
 use crate::devices::ssi::procedures::{ClockSettings, Error, Identity, Master, Station, Words, check};
 use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
@@ -160,6 +160,6 @@ impl Device for Ssi {
     }
 
     fn leave(&mut self, context: &mut SessionContext) {
-        warn_of_supply(self.master(context).leave_supply());
+        log_supply_failure(self.master(context).leave_supply());
     }
 }

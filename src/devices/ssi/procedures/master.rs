@@ -148,7 +148,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Errors of the adapter.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
-        if !self.station.adapter.switches_supply_off() {
+        if !self.station.adapter.must_switch_supply_off() {
             return Ok(());
         }
         self.line.ignore_cancellation(true);

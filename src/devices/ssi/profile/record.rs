@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::devices::ssi::protocol::{Descriptor, Direction, Family, Range, Reads, ResolvedFrame};
+use crate::devices::ssi::protocol::{Direction, Family, FrameDescriptor, Range, ReadConditions, ResolvedFrame};
 use crate::profile::ron_text::Unknown;
 
 /// A profile of an SSI encoder.
@@ -13,7 +13,7 @@ pub struct SsiProfile {
     /// Key of the family that defines timing and other limits, or `None` if the family is unknown.
     pub family: Option<String>,
     /// Description of the frame. It has been validated if it was read from a file.
-    pub descriptor: Descriptor,
+    pub descriptor: FrameDescriptor,
     /// Counting direction.
     pub direction: Direction,
     /// Position at the zero point of the shaft, within the range of the frame.
@@ -59,7 +59,7 @@ impl Default for ReadingSettings {
 
 impl SsiProfile {
     /// Creates a profile for a frame of no family, with default counting.
-    pub fn new(descriptor: Descriptor) -> Self {
+    pub fn new(descriptor: FrameDescriptor) -> Self {
         SsiProfile {
             name: String::new(),
             family: None,
@@ -72,9 +72,9 @@ impl SsiProfile {
     }
 
     /// Returns the conditions of reading, which are needed to check the timing of the frame.
-    pub fn reads(&self) -> Reads {
+    pub fn reads(&self) -> ReadConditions {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
-        Reads {
+        ReadConditions {
             clocks: self.descriptor.clocks,
             clock_hz: clock_hz.into(),
             pause: Duration::from_micros(pause_us.into()),

@@ -8,8 +8,8 @@ use ron::Value;
 
 use super::{EntryError, ReadingSettings, SsiProfile, UnknownEntries};
 use crate::devices::ssi::protocol::{
-    self, Code, Descriptor, Direction, ErrorBit, Fraction, GrayCoverage, Layout, Parity, Pattern, PositionCode, Range,
-    Repeat, Word,
+    self, Code, Direction, ErrorBit, Fraction, FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, PositionCode,
+    Range, Repeat, Word,
 };
 use crate::expected::AllowedValues;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
@@ -202,14 +202,14 @@ fn take_unknown_by_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> 
 }
 
 /// Returns the number of clocks of the position without zeros after it.
-fn default_area_clocks(frame: &Descriptor) -> u8 {
+fn default_area_clocks(frame: &FrameDescriptor) -> u8 {
     let coding = frame.range.last().ok().and_then(|last| PositionCode::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
     bits.saturating_add(frame.lead).saturating_add(frame.between)
 }
 
-fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Descriptor, ProfileError> {
-    let mut frame = Descriptor {
+fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<FrameDescriptor, ProfileError> {
+    let mut frame = FrameDescriptor {
         clocks: entries.take_required("clocks", SMALL)?,
         range: read_range(&mut entries)?,
         code: word(&mut entries, "code")?.unwrap_or(Code::Binary),

@@ -7,7 +7,7 @@ use super::range::Range;
 
 /// Description of a frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Descriptor {
+pub struct FrameDescriptor {
     /// Number of bits that the host clocks in, 1…64.
     pub clocks: u8,
     /// Range of positions.
@@ -117,11 +117,11 @@ pub enum Word {
     Bits(u64),
 }
 
-impl Descriptor {
+impl FrameDescriptor {
     /// Creates a frame that contains only binary multiturn and singleturn bits.
     pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
         let bits = multiturn + singleturn;
-        Descriptor {
+        FrameDescriptor {
             clocks: bits,
             range: Range::Bits { multiturn, singleturn },
             code: Code::Binary,

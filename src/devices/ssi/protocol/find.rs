@@ -52,14 +52,14 @@ pub struct Search {
     /// Number of different frames.
     pub different: usize,
     /// Reason why the first class is uncertain. It is `None` if every bit is explained and no other class fits as well.
-    pub doubt: Option<Uncertainty>,
+    pub doubt: Option<SearchUncertainty>,
     /// Classes of possible layouts, with the best first. The list may be empty.
     pub classes: Vec<Class>,
 }
 
 /// Reason why the result of a search is uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Uncertainty {
+pub enum SearchUncertainty {
     /// The shaft stood still or hardly moved.
     Standing,
     /// All bits of all frames have the same value.
@@ -80,16 +80,16 @@ pub enum Uncertainty {
 pub struct Class {
     /// Members of the class, with the most probable first. Factory settings come before changed ones, and usual widths
     /// before unusual ones.
-    pub members: Vec<Proposal>,
+    pub members: Vec<LayoutProposal>,
     /// The evidence.
-    pub evidence: Evidence,
+    pub evidence: ClassEvidence,
     /// Motions of the shaft that would distinguish or confirm the members.
     pub open: Vec<Open>,
 }
 
 /// A layout that fits the recorded frames.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Proposal {
+pub struct LayoutProposal {
     /// Family key and settings, or `None` for a frame of no family. Swapped data wires are not a setting and appear
     /// only in the layout.
     pub family: Option<(String, Settings)>,
@@ -97,7 +97,7 @@ pub struct Proposal {
     pub layout: Layout,
 }
 
-impl Proposal {
+impl LayoutProposal {
     /// Returns the layout as one word for the command line. This is a family with as few settings as possible, or else
     /// a complete description of the frame.
     pub fn spec_text(&self, families: &Families) -> String {
@@ -112,7 +112,7 @@ impl Proposal {
 
 /// The evidence for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evidence {
+pub struct ClassEvidence {
     /// Score from 0 to 1 for how well the layout explains the frames and how usual it is.
     pub score: f64,
     /// Number of frames that are consistent with their neighbours.
@@ -180,10 +180,10 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let different = seen.distinct_count();
     let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
     if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
-        return search(Some(Uncertainty::Stuck { high }), Vec::new());
+        return search(Some(SearchUncertainty::Stuck { high }), Vec::new());
     }
     if different < 8 || seen.is_standing() {
-        return search(Some(Uncertainty::Standing), Vec::new());
+        return search(Some(SearchUncertainty::Standing), Vec::new());
     }
     let repeat = seen.repeat();
     let words = repeat.map_or_else(|| FrameSet::new(newest, clocks), |repeat| seen.first_words(repeat));
@@ -209,7 +209,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         }
     }
     if different < LEAST_DIFFERENT && !groups.first().is_some_and(|group| group.read.closed) {
-        return search(Some(Uncertainty::Standing), Vec::new());
+        return search(Some(SearchUncertainty::Standing), Vec::new());
     }
     for group in &mut groups {
         // If the step size varies, a lowest bit that never changes is not part of the position. It is a parity bit, or

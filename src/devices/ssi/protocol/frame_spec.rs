@@ -2,7 +2,7 @@
 //! `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names and patterns are not included; they require a profile.
 
 use super::code::Code;
-use super::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
+use super::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Repeat};
 use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
 use crate::expected::AllowedValues;
@@ -36,7 +36,7 @@ const UNKNOWN: &str = "BIT";
 /// Keys of the bit lists, each with the name of its bits and whether the bits are active at 0.
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
-impl Descriptor {
+impl FrameDescriptor {
     /// Parses a frame given as one word, or returns `None` if the word begins with another keyword.
     ///
     /// By default, the code is binary, other values are 0, and there are as many clocks as position bits.
@@ -93,8 +93,9 @@ impl Descriptor {
     }
 }
 
-fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecError> {
-    let mut frame = Descriptor { code: Code::Binary, coded: GrayCoverage::Position, ..Descriptor::plain(0, 0) };
+fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<FrameDescriptor, SpecError> {
+    let mut frame =
+        FrameDescriptor { code: Code::Binary, coded: GrayCoverage::Position, ..FrameDescriptor::plain(0, 0) };
     let (mut bits, mut steps, mut length) = ((None, None), (None, None, None), (None, None));
     let (mut clocks, mut area) = (None, None);
     for setting in Setting::all(words, NAMES)? {
@@ -167,8 +168,8 @@ mod tests {
     use super::*;
     use crate::devices::ssi::protocol::Layout;
 
-    fn frame(text: &str) -> Descriptor {
-        Descriptor::parse(text).unwrap().unwrap()
+    fn frame(text: &str) -> FrameDescriptor {
+        FrameDescriptor::parse(text).unwrap().unwrap()
     }
 
     /// Reference section 8: AHM36 in Gray is 12 and 14 bits followed by an error bit.
@@ -204,8 +205,8 @@ mod tests {
 
     #[test]
     fn invalid_specifications_are_refused_with_a_reason() {
-        assert_eq!(Descriptor::parse("ahm36,code=gray"), None);
-        let said = |text: &str| Descriptor::parse(text).unwrap().unwrap_err().to_string();
+        assert_eq!(FrameDescriptor::parse("ahm36,code=gray"), None);
+        let said = |text: &str| FrameDescriptor::parse(text).unwrap().unwrap_err().to_string();
         assert!(said("frame,clock=3").starts_with("there is no \"clock\"; names: clocks, mt, st"));
         assert!(said("frame,st").contains("NAME=VALUE"));
         assert!(said("frame,st=300").contains("0 to 255"));

@@ -9,14 +9,14 @@ pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
 pub(crate) use tests::layouts as any_layouts;
 
 use super::code::{PositionCode, gray_to_binary, low_bits_mask, to_gray};
-use super::descriptor::{Descriptor, GrayCoverage};
+use super::descriptor::{FrameDescriptor, GrayCoverage};
 
-/// A checked [`Descriptor`] with its shifts and masks.
+/// A checked [`FrameDescriptor`] with its shifts and masks.
 ///
 /// A *word* is a frame without its repetition, right-justified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    pub(super) descriptor: Descriptor,
+    pub(super) descriptor: FrameDescriptor,
     pub(super) coding: PositionCode,
     /// Upper and lower part of the code word.
     pub(super) parts: [Part; 2],
@@ -112,7 +112,7 @@ impl Flags {
 impl Default for Layout {
     fn default() -> Self {
         Layout {
-            descriptor: Descriptor::plain(0, 1),
+            descriptor: FrameDescriptor::plain(0, 1),
             coding: PositionCode::BIT,
             parts: [Part::default(), Part { in_word: 0, in_code: 0, mask: 1 }],
             lost: false,
@@ -133,12 +133,12 @@ impl Layout {
     ///
     /// # Errors
     /// [`LayoutError`] if the frame is impossible.
-    pub fn new(descriptor: Descriptor) -> Result<Self, LayoutError> {
+    pub fn new(descriptor: FrameDescriptor) -> Result<Self, LayoutError> {
         check::layout(descriptor)
     }
 
     /// Returns the descriptor from which the layout was created.
-    pub const fn descriptor(&self) -> &Descriptor {
+    pub const fn descriptor(&self) -> &FrameDescriptor {
         &self.descriptor
     }
 

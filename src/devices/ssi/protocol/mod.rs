@@ -24,7 +24,7 @@ mod timing;
 pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, PositionCode, gray_to_binary, to_gray};
-pub use descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Pattern, Repeat, Word};
+pub use descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Pattern, Repeat, Word};
 pub use edges::{BurstError, ExtractedFrames, LineLevels, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
@@ -36,7 +36,7 @@ pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingName,
     Settings, SettingsError, Signal, StepLimits,
 };
-pub use find::{Class, Evidence, Open, Proposal, Search, Uncertainty, find};
+pub use find::{Class, ClassEvidence, LayoutProposal, Open, Search, SearchUncertainty, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
@@ -44,4 +44,4 @@ pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPar
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{CountedFinding, FindingCounts};
-pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};
+pub use timing::{AnySteps, Asynchronous, ReadConditions, Synchronous, Taken, Times, Timing, Warning};

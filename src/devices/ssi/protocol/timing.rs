@@ -88,7 +88,7 @@ pub struct AnySteps {
 
 /// Conditions under which a host reads frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reads {
+pub struct ReadConditions {
     /// Number of bits in a burst.
     pub clocks: u8,
     /// Clock frequency in hertz.
@@ -177,8 +177,8 @@ impl Times {
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
     /// Calculates the times for reading an encoder of no family.
-    pub fn of_any_encoder(reads: &Reads) -> Timing {
-        let mut timing = Self::GENERAL.reckon(reads);
+    pub fn of_any_encoder(reads: &ReadConditions) -> Timing {
+        let mut timing = Self::GENERAL.calculate_timing(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {
             *warning = Warning::SynchronousUnknown;
         }
@@ -186,7 +186,7 @@ impl Times {
     }
 
     /// Calculates the times for reading this encoder family under the given conditions.
-    pub fn reckon(&self, reads: &Reads) -> Timing {
+    pub fn calculate_timing(&self, reads: &ReadConditions) -> Timing {
         let mut warnings = Vec::new();
         let clock = reads.clock_hz.max(1.0);
         let period = Duration::from_secs_f64(1.0 / clock);

@@ -170,7 +170,7 @@ impl Encoder {
     fn apply_search_result(&mut self, class: usize, member: usize) {
         let SearchState::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };
-        let mut profile = self.wanted_profile();
+        let mut profile = self.edited_profile();
         profile.family = proposal.family.as_ref().map(|(key, _)| key.clone());
         profile.descriptor = proposal.layout.descriptor().clone();
         profile.preset = 0;

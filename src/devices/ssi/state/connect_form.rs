@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, for_adapter, split_target};
+use crate::app::connect::target::{checked, entered, for_adapter, network_address_of_adapter, split_target};
 use crate::buses::bridge::procedures::SupplyAfterSession;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
@@ -59,7 +59,7 @@ impl FormModel for SsiForm {
                 SsiLinkKind::Adapter
             }
         };
-        if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == LinkScheme::Bridge) {
+        if let Some(network) = network_address_of_adapter(target).filter(|_| url.scheme == LinkScheme::Bridge) {
             form.network = true;
             (form.host, form.tcp_port) = split_target(network);
         } else if form.kind == SsiLinkKind::Replay {
@@ -88,11 +88,11 @@ impl SsiForm {
     /// Returns the link parameters that have an entry in the form. Those of a virtual encoder are included if it is
     /// selected.
     pub fn entries(&self) -> Vec<Entry> {
-        let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        let own = if self.kind == SsiLinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    pub fn of_the_virtual() -> Vec<Entry> {
+    pub fn virtual_device_entries() -> Vec<Entry> {
         [Settings::entries(), bridge::entries()].concat()
     }
 

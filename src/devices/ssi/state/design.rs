@@ -10,7 +10,8 @@ use crate::app::history::History;
 use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::profile::{ReadingSettings, SsiProfile};
 use crate::devices::ssi::protocol::{
-    Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
+    Advice, Code, Direction, ErrorPlace, Families, Family, FrameDescriptor, Layout, Range, Settings, Times,
+    from_linuxcnc,
 };
 use crate::devices::ssi::sim::DELIVERED;
 use crate::devices::ssi::state::TEXTS;
@@ -38,7 +39,7 @@ pub enum Edit {
     Free,
     /// Changes the family settings.
     Settings(Box<Settings>),
-    Frame(Box<Descriptor>),
+    Frame(Box<FrameDescriptor>),
     /// Changes the positions or the code. The frame becomes longer or shorter accordingly.
     Position(Range, Code),
     Direction(Direction),
@@ -119,7 +120,7 @@ impl LayoutDesigner {
     }
 
     /// Returns the frame sent by the virtual encoder at a link.
-    pub(super) fn descriptor_sent_by(&self, url: &LinkUrl) -> Descriptor {
+    pub(super) fn virtual_encoder_descriptor(&self, url: &LinkUrl) -> FrameDescriptor {
         parse_profile(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
 

@@ -47,7 +47,7 @@ impl HasDraft for Encoder {
     }
 
     fn edited(&self) -> Drafts {
-        let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.wanted_profile()));
+        let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.edited_profile()));
         changes.iter().filter_map(|change| ron::to_string(change).ok()).collect()
     }
 

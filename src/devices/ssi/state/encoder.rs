@@ -13,7 +13,7 @@ use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{ClockSettings, Identity};
 use crate::devices::ssi::profile::SsiProfile;
-use crate::devices::ssi::protocol::{Families, Layout, Reads, Times, Timing};
+use crate::devices::ssi::protocol::{Families, Layout, ReadConditions, Times, Timing};
 use crate::link::LinkUrl;
 use crate::sim::Motor;
 
@@ -99,7 +99,7 @@ impl Encoder {
         self.designer.is_dirty()
     }
 
-    pub(crate) fn wanted_profile(&self) -> SsiProfile {
+    pub(crate) fn edited_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }
 
@@ -136,8 +136,8 @@ impl Encoder {
     pub fn link_for_layout(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
-        let differs =
-            self.session.is_virtual() && self.designer.descriptor_sent_by(url) != self.design().profile.descriptor;
+        let differs = self.session.is_virtual()
+            && self.designer.virtual_encoder_descriptor(url) != self.design().profile.descriptor;
         differs.then(|| {
             let mut url = url.clone();
             url.query.set("ssi", &settings.emit(&family.key));
@@ -164,10 +164,10 @@ impl LayoutDesigner {
 
     pub fn timing(&self) -> Timing {
         let reads = self.reads();
-        self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.reckon(&reads))
+        self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.calculate_timing(&reads))
     }
 
-    pub fn reads(&self) -> Reads {
+    pub fn reads(&self) -> ReadConditions {
         self.design().profile.reads()
     }
 

@@ -123,7 +123,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn is_silence(&self, error: &JobError) -> bool {
+    fn means_no_response(&self, error: &JobError) -> bool {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }
 

@@ -12,8 +12,8 @@ use crate::app::explain::link;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, Code, CountedFinding, Evidence, FrameFinding, GrayCoverage, Layout, Meaning, Open, Range, Uncertainty,
-    Warning,
+    Advice, ClassEvidence, Code, CountedFinding, FrameFinding, GrayCoverage, Layout, Meaning, Open, Range,
+    SearchUncertainty, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -165,19 +165,19 @@ pub fn open(open: Open) -> Text {
 }
 
 /// Returns whether the first layout found is certain and, if not, why.
-pub fn doubt(doubt: Option<Uncertainty>) -> Text {
+pub fn doubt(doubt: Option<SearchUncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
-        Some(Uncertainty::Standing) => "ssi_find.standing",
-        Some(Uncertainty::Stuck { high: true }) => "ssi.stuck_high",
-        Some(Uncertainty::Stuck { high: false }) => "ssi.stuck_low",
-        Some(Uncertainty::Nothing) => "ssi_find.nothing_fits",
-        Some(Uncertainty::Close) => "ssi_find.close",
-        Some(Uncertainty::Open) => "ssi_find.open",
+        Some(SearchUncertainty::Standing) => "ssi_find.standing",
+        Some(SearchUncertainty::Stuck { high: true }) => "ssi.stuck_high",
+        Some(SearchUncertainty::Stuck { high: false }) => "ssi.stuck_low",
+        Some(SearchUncertainty::Nothing) => "ssi_find.nothing_fits",
+        Some(SearchUncertainty::Close) => "ssi_find.close",
+        Some(SearchUncertainty::Open) => "ssi_find.open",
     })
 }
 
-pub fn evidence_for(evidence: &Evidence) -> Text {
+pub fn evidence_for(evidence: &ClassEvidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")
         .with("steps", evidence.steps_a_frame)

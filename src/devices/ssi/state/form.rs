@@ -6,7 +6,7 @@ mod free;
 
 use super::design::{Edit, LayoutDesigner};
 use crate::app::{Text, explain};
-use crate::devices::ssi::protocol::{Code, Descriptor, Direction, Fraction, GrayCoverage, Range};
+use crate::devices::ssi::protocol::{Code, Direction, Fraction, FrameDescriptor, GrayCoverage, Range};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
@@ -295,7 +295,7 @@ impl RangeKind {
 }
 
 /// Returns the rows for the positions and the code of a frame. The range can be one of `kinds`.
-fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
+fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &FrameDescriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {
         rows.push(range_row(kinds, &descriptor.range));

@@ -6,7 +6,7 @@ use super::design::Edit;
 use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
 use crate::app::action::Opened;
 use crate::app::documents::{document_of, read_only_reason};
-use crate::app::services::{Environment, JobState, Services};
+use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::{HasDraft, SessionEvents, Source};
 use crate::app::{
     ActionContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
@@ -20,7 +20,7 @@ impl DeviceModel for Encoder {
     type Action = SsiAction;
     type Done = Done;
 
-    fn prepare(&self, _world: &Environment) -> Prepare<Ssi> {
+    fn prepare(&self, _world: &StudioEnvironment) -> Prepare<Ssi> {
         let asking = self.query_settings();
         Box::new(move |session| session.request_settings(asking))
     }
@@ -57,8 +57,8 @@ impl DeviceModel for Encoder {
         }
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Some(Body::new(self.wanted_profile()))
+    fn edited_body(&self) -> Option<Body> {
+        Some(Body::new(self.edited_profile()))
     }
 
     fn apply_profile(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
@@ -70,7 +70,7 @@ impl DeviceModel for Encoder {
         if let Some(refusal) = read_only_reason(&self.session.source) {
             return self.session.refuse(refusal, services);
         }
-        let body = Body::new(self.wanted_profile());
+        let body = Body::new(self.edited_profile());
         let document = match &self.session.source {
             Source::File { document, .. } => ProfileDocument { body, ..(**document).clone() },
             Source::Link(_) | Source::New { .. } => document_of(body),

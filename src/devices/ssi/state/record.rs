@@ -13,7 +13,7 @@ use crate::app::Recording;
 use crate::app::recorder::Recorder;
 use crate::app::track::{DeviceRecorder, Meaning, PositionSample};
 use crate::devices::ssi::procedures::Words;
-use crate::devices::ssi::protocol::{Descriptor, FindingCounts, Flags, Layout, Meaning as Says, Range};
+use crate::devices::ssi::protocol::{FindingCounts, Flags, FrameDescriptor, Layout, Meaning as Says, Range};
 use crate::units::Moment;
 
 /// Number of words stored for searches and for decoding with another layout.
@@ -156,7 +156,7 @@ impl Record {
             return;
         }
         let before = std::mem::replace(&mut self.layout, layout.clone());
-        if unnamed_descriptor(&before) == unnamed_descriptor(layout) {
+        if descriptor_without_names(&before) == descriptor_without_names(layout) {
             self.tally.rename();
             if let Some(last) = self.last.as_mut() {
                 last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
@@ -165,7 +165,7 @@ impl Record {
         }
         self.meaning = meaning(layout);
         self.tally.reset();
-        self.track.restart_decoding(self.held);
+        self.track.prepare_redecoding(self.held);
         let kept = std::mem::take(&mut self.kept);
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {
@@ -247,7 +247,7 @@ impl Recording for Record {
 }
 
 /// Returns the descriptor without names, which have no effect on positions and verdicts.
-fn unnamed_descriptor(layout: &Layout) -> Descriptor {
+fn descriptor_without_names(layout: &Layout) -> FrameDescriptor {
     let mut descriptor = layout.descriptor().clone();
     descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
     descriptor.patterns.iter_mut().for_each(|pattern| pattern.name.clear());
@@ -259,11 +259,11 @@ fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
     match range {
-        Range::Bits { singleturn, .. } => Meaning::for_turns(all, f64::from(singleturn).exp2()),
-        Range::Steps { per_turn, .. } => Meaning::for_turns(all, per_turn.into()),
+        Range::Bits { singleturn, .. } => Meaning::for_steps_per_turn(all, f64::from(singleturn).exp2()),
+        Range::Steps { per_turn, .. } => Meaning::for_steps_per_turn(all, per_turn.into()),
         Range::RoundAxis { steps, revolutions } => {
             let around = f64::from(steps) * f64::from(revolutions.denominator);
-            Meaning::for_turns(all, around / f64::from(revolutions.numerator))
+            Meaning::for_steps_per_turn(all, around / f64::from(revolutions.numerator))
         }
         Range::Length { step_nanometres, .. } => Meaning::for_millimetres(f64::from(step_nanometres) * 1e-6),
     }

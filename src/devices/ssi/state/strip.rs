@@ -229,16 +229,16 @@ impl Handle {
 
 /// Returns whether error or parity bits directly follow the position and so move with its end.
 pub fn follows(layout: &Layout) -> bool {
-    !moving::adjacent_bits(layout).is_empty()
+    !moving::bits_after_position(layout).is_empty()
 }
 
 /// Returns whether the frame has patterns that are given as bits. They depend on the length of the frame.
-fn has_words(layout: &Layout) -> bool {
+fn has_bit_patterns(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Parts {
+enum PositionParts {
     /// Numbers of turn bits and step bits. Neither is 0.
     Both(u8, u8),
     /// Number of bits, if there are only turn bits or only step bits.
@@ -247,22 +247,26 @@ enum Parts {
     Whole(u8),
 }
 
-impl Parts {
+impl PositionParts {
     fn of(layout: &Layout) -> Self {
         let bits = layout.coding().bits();
         match layout.descriptor().range {
             Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn => {
-                if multiturn > 0 && singleturn > 0 { Parts::Both(multiturn, singleturn) } else { Parts::One(bits) }
+                if multiturn > 0 && singleturn > 0 {
+                    PositionParts::Both(multiturn, singleturn)
+                } else {
+                    PositionParts::One(bits)
+                }
             }
-            Range::Length { bits: own, .. } if bits == own => Parts::One(bits),
-            _ => Parts::Whole(bits),
+            Range::Length { bits: own, .. } if bits == own => PositionParts::One(bits),
+            _ => PositionParts::Whole(bits),
         }
     }
 
     const fn bits(self) -> u8 {
         match self {
-            Parts::Both(turns, steps) => turns + steps,
-            Parts::One(bits) | Parts::Whole(bits) => bits,
+            PositionParts::Both(turns, steps) => turns + steps,
+            PositionParts::One(bits) | PositionParts::Whole(bits) => bits,
         }
     }
 }

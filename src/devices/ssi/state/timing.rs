@@ -6,22 +6,22 @@ mod tests;
 
 use super::strip::{Field, Strip, cell};
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
+use crate::devices::ssi::protocol::{Layout, ReadConditions, Taken, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
 /// Timing diagram of a burst, until the next burst has begun.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Diagram {
+pub struct BurstDiagram {
     strip: Strip,
     timing: Timing,
-    pieces: Vec<Piece>,
-    spans: Vec<Span>,
+    pieces: Vec<AxisSection>,
+    spans: Vec<TimingSpan>,
     marks: Vec<TimingMark>,
 }
 
 /// A section of the time axis that is drawn. The axis is broken between two sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct AxisSection {
     /// Start in seconds.
     pub from: f64,
     /// End in seconds.
@@ -29,8 +29,8 @@ pub struct Piece {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
-    pub activity: Lasting,
+pub struct TimingSpan {
+    pub activity: TimingSpanKind,
     /// Start in seconds.
     pub from: f64,
     /// Maximum end in seconds.
@@ -40,7 +40,7 @@ pub struct Span {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Lasting {
+pub enum TimingSpanKind {
     Period,
     Burst,
     Pause,
@@ -84,20 +84,23 @@ const KEPT: f64 = 0.4;
 /// Number of clocks of the next burst that are drawn.
 const NEXT: f64 = 2.5;
 
-impl Diagram {
-    pub fn of(layout: &Layout, times: &Times, reads: &Reads) -> Self {
-        let reads = Reads { clocks: layout.clocks(), ..*reads };
-        let timing = times.reckon(&reads);
+impl BurstDiagram {
+    pub fn of(layout: &Layout, times: &Times, reads: &ReadConditions) -> Self {
+        let reads = ReadConditions { clocks: layout.clocks(), ..*reads };
+        let timing = times.calculate_timing(&reads);
         let (period, burst) = (timing.period.as_secs_f64(), timing.burst.as_secs_f64());
         let (pause, cycle) = (reads.pause.as_secs_f64(), timing.cycle.as_secs_f64());
         let (least, most) = timing.monoflop;
-        let span = |what, from, to| Span { activity: what, from, to, least: to };
+        let span = |what, from, to| TimingSpan { activity: what, from, to, least: to };
         let mut spans = vec![
-            span(Lasting::Period, 0.0, period),
-            span(Lasting::Burst, 0.0, burst),
-            span(Lasting::Pause, burst, burst + pause),
-            Span { least: burst + least.as_secs_f64(), ..span(Lasting::Monoflop, burst, burst + most.as_secs_f64()) },
-            span(Lasting::LeastPause, burst, burst + timing.least_pause.as_secs_f64()),
+            span(TimingSpanKind::Period, 0.0, period),
+            span(TimingSpanKind::Burst, 0.0, burst),
+            span(TimingSpanKind::Pause, burst, burst + pause),
+            TimingSpan {
+                least: burst + least.as_secs_f64(),
+                ..span(TimingSpanKind::Monoflop, burst, burst + most.as_secs_f64())
+            },
+            span(TimingSpanKind::LeastPause, burst, burst + timing.least_pause.as_secs_f64()),
         ];
         let mode = times.synchronous.filter(|_| reads.synchronous);
         let first = if matches!(mode.map(|mode| mode.taken), Some(Taken::FirstEdge)) {
@@ -108,7 +111,7 @@ impl Diagram {
         let mut marks = vec![TimingMark { event: first, at: 0.0 }];
         if let Some(Taken::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
             let (starts, ready) = (burst + starts * 1e-6, burst + (starts + ready) * 1e-6);
-            spans.push(span(Lasting::Making, starts, ready));
+            spans.push(span(TimingSpanKind::Making, starts, ready));
             marks.extend([
                 TimingMark { event: TimingEvent::Started, at: starts },
                 TimingMark { event: TimingEvent::Ready, at: ready },
@@ -117,14 +120,14 @@ impl Diagram {
         marks.push(TimingMark { event: TimingEvent::Next, at: cycle });
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
         let pieces = pieces(burst, cycle + NEXT * period, &spans, &marks);
-        Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
+        BurstDiagram { strip: Strip::of(layout), timing, pieces, spans, marks }
     }
 
     pub const fn strip(&self) -> &Strip {
         &self.strip
     }
 
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[AxisSection] {
         &self.pieces
     }
 
@@ -134,7 +137,7 @@ impl Diagram {
         ends.map_or(0.0, |(own, next)| next.from - own.to)
     }
 
-    pub fn spans(&self) -> &[Span] {
+    pub fn spans(&self) -> &[TimingSpan] {
         &self.spans
     }
 
@@ -189,25 +192,25 @@ impl Diagram {
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
             texts.push(cell(&self.strip, bit.clock));
         } else {
-            let waits = [Lasting::Monoflop, Lasting::Making, Lasting::Pause];
-            let is_in = |span: &&Span| waits.contains(&span.activity) && (span.from..span.to).contains(&at);
+            let waits = [TimingSpanKind::Monoflop, TimingSpanKind::Making, TimingSpanKind::Pause];
+            let is_in = |span: &&TimingSpan| waits.contains(&span.activity) && (span.from..span.to).contains(&at);
             texts.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
         }
         texts
     }
 
-    pub fn words(&self, span: &Span) -> Text {
+    pub fn words(&self, span: &TimingSpan) -> Text {
         let long = time(span.to - span.from);
         let text = match span.activity {
-            Lasting::Period => TEXTS.text("ssi.timing_period"),
-            Lasting::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
-            Lasting::Pause => TEXTS.text("ssi.timing_pause"),
-            Lasting::Monoflop if span.least < span.to => {
+            TimingSpanKind::Period => TEXTS.text("ssi.timing_period"),
+            TimingSpanKind::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
+            TimingSpanKind::Pause => TEXTS.text("ssi.timing_pause"),
+            TimingSpanKind::Monoflop if span.least < span.to => {
                 TEXTS.text("ssi.timing_monoflop_between").with_text("least", time(span.least - span.from))
             }
-            Lasting::Monoflop => TEXTS.text("ssi.timing_monoflop"),
-            Lasting::LeastPause => TEXTS.text("ssi.timing_least_pause"),
-            Lasting::Making => TEXTS.text("ssi.timing_making"),
+            TimingSpanKind::Monoflop => TEXTS.text("ssi.timing_monoflop"),
+            TimingSpanKind::LeastPause => TEXTS.text("ssi.timing_least_pause"),
+            TimingSpanKind::Making => TEXTS.text("ssi.timing_making"),
         };
         text.with_text("time", long)
     }
@@ -279,7 +282,7 @@ pub fn read_frequency(text: &str) -> Result<u32, Text> {
 }
 
 /// Returns the sections of the time axis to draw: the complete burst, and the time around each event after it.
-fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
+fn pieces(burst: f64, end: f64, spans: &[TimingSpan], marks: &[TimingMark]) -> Vec<AxisSection> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();
     let end = moments.iter().copied().fold(end, f64::max);
@@ -289,11 +292,11 @@ fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Pie
     let (mut from, mut last) = (0.0, burst);
     for at in moments {
         if at - last > LONG * burst {
-            pieces.push(Piece { from, to: last + KEPT * burst });
+            pieces.push(AxisSection { from, to: last + KEPT * burst });
             from = at - KEPT * burst;
         }
         last = at;
     }
-    pieces.push(Piece { from, to: end });
+    pieces.push(AxisSection { from, to: end });
     pieces
 }

@@ -39,7 +39,7 @@ impl TypedConnectForm for SsiConnectForm {
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            SsiLinkKind::Virtual => typed(ui, theme, say, SsiForm::of_the_virtual(), &mut form.typed),
+            SsiLinkKind::Virtual => typed(ui, theme, say, SsiForm::virtual_device_entries(), &mut form.typed),
             SsiLinkKind::Adapter => {
                 segmented_control(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {

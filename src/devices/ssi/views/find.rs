@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use super::frames;
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{Class, Descriptor, Proposal, Search, Uncertainty};
+use crate::devices::ssi::protocol::{Class, FrameDescriptor, LayoutProposal, Search, SearchUncertainty};
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
@@ -126,9 +126,11 @@ fn found_ui(
     paragraph(ui, theme.label(theme.words(&text)));
     let (icon, colour) = match search.doubt {
         None => (icons::CHECK_CIRCLE, theme.palette.good),
-        Some(Uncertainty::Open) => (icons::QUESTION, theme.palette.accent),
-        Some(Uncertainty::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
-        Some(Uncertainty::Standing | Uncertainty::Nothing | Uncertainty::Close) => (icons::WARNING, theme.palette.warn),
+        Some(SearchUncertainty::Open) => (icons::QUESTION, theme.palette.accent),
+        Some(SearchUncertainty::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
+        Some(SearchUncertainty::Standing | SearchUncertainty::Nothing | SearchUncertainty::Close) => {
+            (icons::WARNING, theme.palette.warn)
+        }
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
@@ -188,14 +190,14 @@ fn class_ui(
     });
 }
 
-fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
+fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &LayoutProposal) {
     let Some((key, settings)) = &proposal.family else {
         ui.label(say(theme, "ssi_find.any"));
         return;
     };
     let family = encoder.designer.families().named(key);
     // Swapped wires are not a setting, so they are ignored in the search for the fewest settings.
-    let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
+    let frame = FrameDescriptor { inverted: false, ..proposal.layout.descriptor().clone() };
     let fewest = family.and_then(|family| family.settings_for_frame(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());
     ui.horizontal_wrapped(|ui| {

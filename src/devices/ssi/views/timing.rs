@@ -6,7 +6,7 @@ use super::form::{LayoutFormUiState, rows_ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::Timing;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::timing::{Diagram, frequency};
+use crate::devices::ssi::state::timing::{BurstDiagram, frequency};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
@@ -24,7 +24,7 @@ pub(super) fn page_ui(
     let rows = designer.reading_form();
     let timing = designer.timing();
     card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
-        let diagram = Diagram::of(designer.layout(), &designer.applicable_times(), &designer.reads());
+        let diagram = BurstDiagram::of(designer.layout(), &designer.applicable_times(), &designer.reads());
         let label = say(theme, "ssi_timing.title");
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);

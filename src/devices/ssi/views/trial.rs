@@ -26,7 +26,7 @@ pub(super) struct TrialUiState {
 
 impl TrialUiState {
     /// Returns whether the user is typing. An entry that was refused and is still shown does not count.
-    fn is_being_edited(&self) -> bool {
+    fn is_typing(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
     }
@@ -41,7 +41,7 @@ pub(super) fn card_ui(
     view: &mut TrialUiState,
     actions: &mut Vec<Action>,
 ) {
-    let shown = view.held.take().filter(|_| view.is_being_edited()).unwrap_or_else(|| encoder.displayed_frame());
+    let shown = view.held.take().filter(|_| view.is_typing()).unwrap_or_else(|| encoder.displayed_frame());
     let is_live = encoder.is_showing_live();
     let id = encoder.session.id;
     let mut action = None;
@@ -62,7 +62,7 @@ pub(super) fn card_ui(
         findings_ui(ui, theme, &shown);
     });
     actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
-    view.held = view.is_being_edited().then_some(shown);
+    view.held = view.is_typing().then_some(shown);
 }
 
 fn numbers(

@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 use super::*;
 use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
-use crate::app::services::Environment;
+use crate::app::services::StudioEnvironment;
 use crate::app::{KindRegistry, Tool};
 use crate::signals::state::{DiagnosisSettings, SignalsAction};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(Environment::real(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())), folder)
+    (Services::new(StudioEnvironment::real(Store::at(folder.path()), KindRegistry::NONE), Arc::new(|| ())), folder)
 }
 
 fn started(services: &mut Services) -> Signals {

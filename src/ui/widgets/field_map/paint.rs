@@ -147,7 +147,7 @@ pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     }
 }
 
-pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
+pub(super) fn draw_drag_ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
     let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();
     for number in 0..runs.len() {

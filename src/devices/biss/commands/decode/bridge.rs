@@ -112,7 +112,7 @@ fn request_text(request: &Request) -> Option<String> {
 fn answered(reply: &Reply) -> Result<Vec<String>, String> {
     let switch = |on: bool| if on { "on" } else { "off" };
     Ok(match reply {
-        Reply::Hello(hello) => hello_lines(hello),
+        Reply::Hello(hello) => hello_reply_lines(hello),
         Reply::Supply { on, millivolt, milliampere } => {
             vec![format!("{}, {millivolt} mV, {milliampere} mA", switch(*on))]
         }
@@ -130,7 +130,7 @@ fn answered(reply: &Reply) -> Result<Vec<String>, String> {
     })
 }
 
-fn hello_lines(hello: &Hello) -> Vec<String> {
+fn hello_reply_lines(hello: &Hello) -> Vec<String> {
     let can = [
         (Capabilities::SSI, "SSI"),
         (Capabilities::BISS, "BiSS position"),

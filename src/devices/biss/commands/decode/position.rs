@@ -29,7 +29,7 @@ pub(super) fn explain(raw: u64, shown: String) -> Explained {
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
+pub(super) fn explain_position_word(raw: u64, shown: String) -> Explained {
     let layout = Layout::default();
     let mut more = form("position word");
     let bits = layout.multiturn_bits() + layout.singleturn_bits();

@@ -42,9 +42,9 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     }
     if let Ok(requested) = Request::parse(frame, ByteOrder::LowFirst) {
         lines.push(match requested {
-            Request::Read { register } => format!("read register {}", register_words(register)),
+            Request::Read { register } => format!("read register {}", register_number_text(register)),
             Request::Write { register, value } => {
-                format!("write 0x{value:02X} to register {}", register_words(register))
+                format!("write 0x{value:02X} to register {}", register_number_text(register))
             }
             Request::Position { argument: 0x01 } => "read the position".to_owned(),
             Request::Position { argument } => format!("read the position, with the argument 0x{argument:02X}"),
@@ -71,7 +71,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
 }
 
 /// Returns the number of a register, with its name if the kit encoder has it.
-fn register_words(register: u16) -> String {
+fn register_number_text(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),
         Some(address) => match words::name(address) {
@@ -84,8 +84,8 @@ fn register_words(register: u16) -> String {
 fn value_description(register: u16, value: u8) -> String {
     let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
     match words::register_meaning(address, &[value]) {
-        Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_words(register)),
-        None => format!("register {} is 0x{value:02X}", register_words(register)),
+        Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_number_text(register)),
+        None => format!("register {} is 0x{value:02X}", register_number_text(register)),
     }
 }
 

@@ -51,12 +51,12 @@ impl<'a> Master<'a> {
         }
         let fastest = hello.max_clock_hz;
         // The bus is configured first, because a frame shows whether the encoder already has power.
-        self.set_bus(fastest, data_bits, crc_bits)?;
+        self.configure_bus(fastest, data_bits, crc_bits)?;
         self.switch_on()?;
-        self.set_bus(fastest, data_bits, crc_bits)
+        self.configure_bus(fastest, data_bits, crc_bits)
     }
 
-    fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+    fn configure_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         let bus = Bus { clock_hz: self.station.clock_hz.min(fastest), data_bits, crc_bits };
         if self.station.bus == Some(bus) {
             return Ok(());
@@ -75,17 +75,17 @@ impl<'a> Master<'a> {
     /// Selects the bank of a register, unless it is known to be selected.
     pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
         let Some(bank) = address.bank() else { return Ok(()) };
-        self.ask(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_once(address))
+        self.ask(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_bank_once(address))
     }
 
-    fn select_once(&mut self, address: RegisterAddress) -> Attempt<()> {
+    fn select_bank_once(&mut self, address: RegisterAddress) -> Attempt<()> {
         let Some(bank) = address.bank() else { return Ok(Ok(())) };
         let now = self.now();
         let fresh = |(own, at): (u8, Moment)| own == bank && now.since(at) < BANK_TRUST;
         if self.station.bank.is_some_and(fresh) {
             return Ok(Ok(()));
         }
-        Ok(match self.register_write(RegisterAddress::BANK_SELECT, bank)? {
+        Ok(match self.write_register_once(RegisterAddress::BANK_SELECT, bank)? {
             Ok(reads) if reads == bank => Ok(()),
             Ok(_) => return Err(Error::NoSuchRegister { address }),
             Err(trouble) => Err(trouble),
@@ -93,12 +93,12 @@ impl<'a> Master<'a> {
     }
 
     pub(super) fn read_bus_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
-        if let Err(trouble) = self.select_once(address)? {
+        if let Err(trouble) = self.select_bank_once(address)? {
             return Ok(Err(trouble));
         }
         let request = Request::BissRegisterRead { slave: SLAVE, address: address.address() };
         let answered = self.adapter().ask(&request).map(Some);
-        let value = match self.register_answer(answered)? {
+        let value = match self.handle_register_reply(answered)? {
             Ok(Reply::BissRegisterRead { value }) => value,
             Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
@@ -110,20 +110,20 @@ impl<'a> Master<'a> {
     }
 
     pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
-        Ok(match self.register_write(address, value)? {
+        Ok(match self.write_register_once(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
             // A command register may be cleared as soon as the command is executed (`U`). The status shows the result.
-            Ok(0) if self.station.is_command(address) => Ok(WriteReaction::Yes),
+            Ok(0) if self.station.is_command_register(address) => Ok(WriteReaction::Yes),
             Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
         })
     }
 
     /// Writes a register without retries and returns the value that it reads back.
-    fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
+    fn write_register_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
         let answered = self.adapter().request_once(&request);
-        let reads = match self.register_answer(answered)? {
+        let reads = match self.handle_register_reply(answered)? {
             Ok(Reply::BissRegisterWrite { value }) => value,
             Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
@@ -135,7 +135,7 @@ impl<'a> Master<'a> {
     }
 
     /// Evaluates the reply to a register request and updates the cached bank.
-    fn register_answer(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
+    fn handle_register_reply(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
                 let now = self.now();
@@ -212,7 +212,7 @@ impl<'a> Master<'a> {
 
     /// Reads more frames after five had wrong checksums and none was ever correct. If the cause is noise, some of them
     /// are correct. If the widths are wrong, none is.
-    pub(super) fn retry_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
+    pub(super) fn recheck_frame_widths(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
         }
@@ -256,7 +256,7 @@ impl<'a> Master<'a> {
     }
 
     /// Returns the maximum duration of an exchange, which has up to two attempts.
-    pub(super) fn longest_bus_exchange(&self) -> Duration {
+    pub(super) fn max_bus_exchange_duration(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }
 }

@@ -37,12 +37,12 @@ impl Master<'_> {
     /// # Errors
     /// Returns an error if the adapter fails.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
-        if self.station.transport != Transport::Adapter || !self.station.adapter.switches_supply_off() {
+        if self.station.transport != Transport::Adapter || !self.station.adapter.must_switch_supply_off() {
             return Ok(());
         }
         self.run_uncancellable(|master| {
             master.stop_frame_stream()?;
-            if master.is_unfinished()? {
+            if master.may_still_need_power()? {
                 tracing::warn!("the encoder's supply stays on: it may be storing, calibrating or restarting");
                 return Ok(());
             }
@@ -51,7 +51,7 @@ impl Master<'_> {
     }
 
     /// Returns whether a loss of power could interrupt an operation of the encoder.
-    fn is_unfinished(&mut self) -> Result<bool, Error> {
+    fn may_still_need_power(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);
         }

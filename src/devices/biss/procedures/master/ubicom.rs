@@ -43,7 +43,7 @@ impl Master<'_> {
     }
 
     /// Sends a request that reveals the byte order of register numbers.
-    pub(super) fn probe_once(&mut self) -> Attempt<u8> {
+    pub(super) fn probe_byte_order_once(&mut self) -> Attempt<u8> {
         self.read_register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
 
@@ -84,7 +84,7 @@ impl Master<'_> {
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
-    pub(super) fn longest_pin_exchange(&self) -> Duration {
+    pub(super) fn max_pin_exchange_duration(&self) -> Duration {
         self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
@@ -99,7 +99,7 @@ impl Master<'_> {
         let sent_at = self.now();
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
-        let deadline = sent_at + self.longest_pin_exchange();
+        let deadline = sent_at + self.max_pin_exchange_duration();
         let received = ReceivedBytes {
             receiver: Receiver::new(NODE),
             sent: frame,

@@ -46,17 +46,17 @@ impl Guide<'_, '_> {
             return Ok(Outcome::Skipped { after: None });
         };
         self.enter(&procedure)?;
-        self.calibrate_in(first, &procedure)?;
+        self.run_calibration(first, &procedure)?;
         let second = Run::CalibrationClockwise;
         let OperatorDecision::Go(clockwise) = self.attend(Task::Turn(second))? else {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
-        self.calibrate_in(second, &procedure)?;
+        self.run_calibration(second, &procedure)?;
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
     /// Performs one calibration run. Cancellation does not interrupt the second run, because that would lose the table.
-    fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
+    fn run_calibration(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
         let (command, before, done) = if run.is_clockwise() {

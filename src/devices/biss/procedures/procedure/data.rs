@@ -30,10 +30,10 @@ impl Guide<'_, '_> {
         self.step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
         // After this point, the result of the store must be reported even after a cancellation.
-        self.run_uncancellable(|guide| guide.finish_data(&procedure, registers))
+        self.run_uncancellable(|guide| guide.save_written_data(&procedure, registers))
     }
 
-    fn finish_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
+    fn save_written_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
         self.await_status(procedure, DataStatus::Closed.byte())?;
         self.lead_back()?;
         self.step(ProcedureStep::ReadBack);

@@ -120,7 +120,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     pub(super) fn role_address(&self, role: Role) -> Option<RegisterAddress> {
-        self.description.with_role(role).map(|register| register.address)
+        self.description.register_with_role(role).map(|register| register.address)
     }
 
     pub(super) fn count_write_cycle(&mut self) {
@@ -266,7 +266,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Waits until an encoder that may be restarting replies again, and reads its state.
     pub(super) fn restart(&mut self) -> Result<(), Error> {
         self.step(ProcedureStep::Restart);
-        self.standing.may_have_restarted();
+        self.standing.record_possible_restart();
         let Some(lock) = self.description.lock() else { return Ok(()) };
         let standing = &mut self.standing;
         // After a restart another bank is selected.
@@ -354,13 +354,13 @@ fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result
 
 fn unlock(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.password_at, lock.password);
-    standing.password.record_write(true, &ended);
+    standing.password.update_after_write(true, &ended);
     ended
 }
 
 fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.mode_at, mode.byte());
-    standing.mode.record_write(mode, &ended);
+    standing.mode.update_after_write(mode, &ended);
     ended
 }
 
@@ -385,9 +385,9 @@ pub(super) fn lead_back(
             set_mode(master, lock, DeviceMode::OPERATION, standing)?;
         }
     }
-    if standing.password.may_be(true) {
+    if standing.password.may_equal(true) {
         let ended = master.write(lock.password_at, 0);
-        standing.password.record_write(false, &ended);
+        standing.password.update_after_write(false, &ended);
         ended?;
     }
     let stays = look(master, lock, standing)?;

@@ -43,18 +43,18 @@ impl<T: Copy + PartialEq> PossibleValues<T> {
         self.0 == [value]
     }
 
-    pub fn may_be(&self, value: T) -> bool {
+    pub fn may_equal(&self, value: T) -> bool {
         self.0.contains(&value)
     }
 
     pub fn or(&mut self, value: T) {
-        if !self.may_be(value) {
+        if !self.may_equal(value) {
             self.0.push(value);
         }
     }
 
     /// Updates the possible values after a write of `after`. They depend on the result of the write.
-    pub(super) fn record_write(&mut self, after: T, ended: &Result<(), Error>) {
+    pub(super) fn update_after_write(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = PossibleValues::known(after),
             // The value was not sent, or not accepted.
@@ -79,14 +79,14 @@ impl LeftState {
     }
 
     /// Records that a restart command was sent. The encoder may not have received it.
-    pub(super) fn may_have_restarted(&mut self) {
-        self.may_have_lost_power();
+    pub(super) fn record_possible_restart(&mut self) {
+        self.record_possible_power_loss();
         self.activity = Activity::Restarting;
     }
 
     /// Records that the encoder is out of reach. If it loses power, it starts again in operation with the password
     /// cleared.
-    pub(in crate::devices::biss::procedures) fn may_have_lost_power(&mut self) {
+    pub(in crate::devices::biss::procedures) fn record_possible_power_loss(&mut self) {
         self.mode.or(DeviceMode::OPERATION);
         self.password.or(false);
     }
@@ -101,16 +101,16 @@ mod tests {
     fn an_unanswered_write_leaves_two_possible_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
         let mut mode = PossibleValues::known(0);
-        mode.record_write(1, &Ok(()));
+        mode.update_after_write(1, &Ok(()));
         assert!(mode.is(1));
-        mode.record_write(0, &Err(Error::Cancelled));
+        mode.update_after_write(0, &Err(Error::Cancelled));
         assert!(mode.is(1), "it was not sent");
-        mode.record_write(0, &lost());
+        mode.update_after_write(0, &lost());
         assert_eq!((mode.values(), mode.is(1)), (&[1, 0][..], false));
-        assert!(mode.may_be(0) && mode.may_be(1) && !mode.may_be(2));
-        mode.record_write(0, &lost());
+        assert!(mode.may_equal(0) && mode.may_equal(1) && !mode.may_equal(2));
+        mode.update_after_write(0, &lost());
         assert_eq!(mode.values(), [1, 0]);
-        mode.record_write(2, &Ok(()));
+        mode.update_after_write(2, &Ok(()));
         assert!(mode.is(2));
     }
 
@@ -120,7 +120,7 @@ mod tests {
         assert!(standing.is_in_operation());
         standing.mode = PossibleValues::known(DeviceMode::PRESET);
         standing.password = PossibleValues::known(true);
-        standing.may_have_restarted();
+        standing.record_possible_restart();
         assert_eq!(standing.mode.values(), [DeviceMode::PRESET, DeviceMode::OPERATION]);
         assert_eq!(standing.password.values(), [true, false]);
         assert!(!standing.is_in_operation());

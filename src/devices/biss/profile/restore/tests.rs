@@ -118,11 +118,11 @@ fn a_bank_marked_empty_in_the_profile_is_cleared() {
     let mut now = wanted.clone();
     set_bank_bytes(&mut now, 0x25, &[(1, 0xAB)]);
     assert_eq!(ops(&planned(&wanted, &device(&now))), ["OEM data 0x25:0x01:AB>00 (1)"]);
-    assert_eq!(banks_needed(&wanted, &areas()).len(), 64);
+    assert_eq!(required_banks(&wanted, &areas()).len(), 64);
     let mut partial = wanted.clone();
     partial.data.iter_mut().for_each(|image| image.empty = None);
     set_bank_bytes(&mut partial, 0x25, &[(1, 0xAB)]);
-    assert_eq!(banks_needed(&partial, &areas()), [0x25]);
+    assert_eq!(required_banks(&partial, &areas()), [0x25]);
 }
 
 /// Issue 22.9: another kind of encoder needs its own permission; the one for another serial number is not enough.
@@ -182,7 +182,7 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(planned(&wanted, &device(&profile("1"))).mounting_written, []);
     // On the encoder itself nothing is left out.
     assert_eq!(ops(&planned(&wanted, &device(&profile("1")))), all);
-    assert_eq!(ops(&plan_data(&wanted, &now).unwrap()), all[..1]);
+    assert_eq!(ops(&plan_data_areas(&wanted, &now).unwrap()), all[..1]);
 }
 
 /// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission;

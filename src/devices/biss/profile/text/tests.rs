@@ -55,8 +55,8 @@ fn full() -> BissProfile {
         device_mode: Some(DeviceMode::DATA_WRITE),
         unknown: Default::default(),
     };
-    profile.mark_mounting_values();
-    profile.mark_mounting_values();
+    profile.mark_mounting_dependent_values();
+    profile.mark_mounting_dependent_values();
     profile
 }
 
@@ -207,11 +207,11 @@ fn a_mark_covers_its_registers() {
     let item = MountingItem::Registers("0x25:0x08+4".parse().unwrap());
     profile.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });
     let marked: Vec<u8> =
-        (0..64).filter(|at| profile.is_mounting_value(RegisterAddress::banked(0x25, *at).unwrap())).collect();
+        (0..64).filter(|at| profile.depends_on_mounting(RegisterAddress::banked(0x25, *at).unwrap())).collect();
     assert_eq!(marked, [8, 9, 10, 11]);
-    assert!(!profile.is_mounting_value(RegisterAddress::banked(0x26, 8).unwrap()));
+    assert!(!profile.depends_on_mounting(RegisterAddress::banked(0x26, 8).unwrap()));
     let count = profile.mounting.len();
-    profile.mark_mounting_values();
+    profile.mark_mounting_dependent_values();
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 

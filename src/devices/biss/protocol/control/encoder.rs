@@ -1,7 +1,7 @@
 //! The encoder's side of the control frame.
 
 use super::super::crc::crc4;
-use super::{REGISTERS, REST_CYCLES, with_crc};
+use super::{REGISTERS, REST_CYCLES, append_crc4};
 
 /// The encoder side of the control channel, driven cycle by cycle. Each cycle starts with a call of
 /// [`next_cds`](Self::next_cds) and ends with a call of [`receive_cdm`](Self::receive_cdm).
@@ -115,7 +115,7 @@ impl Encoder {
     /// Supplies the value of the requested register. Has no effect without a pending request.
     pub fn answer(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
-            *access = Access::Read(Some(with_crc(value)));
+            *access = Access::Read(Some(append_crc4(value)));
         }
     }
 
@@ -158,7 +158,7 @@ fn transfer(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (Sta
     }
     let word = word << 1 | u16::from(bit);
     let value = (word >> 4) as u8;
-    let event = (sent == Encoder::WORD_BITS).then_some(match with_crc(value) == word {
+    let event = (sent == Encoder::WORD_BITS).then_some(match append_crc4(value) == word {
         true => Event::Write { address, value },
         false => Event::Damaged,
     });

@@ -15,7 +15,7 @@ use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::codes::CodeTable;
 use super::flaw::{self, Claim, DescriptionErrorKind};
-use super::german::GermanTexts;
+use super::german::GermanNames;
 use super::name::Name;
 use super::register::{Access, Area, Register, Role, ValueDecoding};
 use super::{Description, Identity, Lock, Procedure};
@@ -63,7 +63,7 @@ struct File {
     #[serde(default)]
     procedures: Rows<Procedure>,
     #[serde(default)]
-    german: GermanTexts,
+    german: GermanNames,
 }
 
 impl File {

@@ -14,9 +14,9 @@ use super::name::Name;
 
 /// A map from English names to German ones.
 #[derive(Default)]
-pub(super) struct GermanTexts(BTreeMap<String, String>);
+pub(super) struct GermanNames(BTreeMap<String, String>);
 
-impl GermanTexts {
+impl GermanNames {
     /// Adds the German names to the English ones. `text` is the content of the file, which is searched for the position
     /// of an unused entry.
     pub(super) fn translate<'a>(
@@ -55,7 +55,7 @@ fn starts_with_colon(rest: &str) -> bool {
     rest.trim_start().starts_with(':')
 }
 
-impl<'de> Deserialize<'de> for GermanTexts {
+impl<'de> Deserialize<'de> for GermanNames {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(Entries)
     }
@@ -64,13 +64,13 @@ impl<'de> Deserialize<'de> for GermanTexts {
 struct Entries;
 
 impl<'de> Visitor<'de> for Entries {
-    type Value = GermanTexts;
+    type Value = GermanNames;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("English names with their German ones")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<GermanTexts, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<GermanNames, A::Error> {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
@@ -81,6 +81,6 @@ impl<'de> Visitor<'de> for Entries {
             }
             entries.insert(english, german);
         }
-        Ok(GermanTexts(entries))
+        Ok(GermanNames(entries))
     }
 }

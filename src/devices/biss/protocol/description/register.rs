@@ -202,7 +202,7 @@ impl Register {
     }
 
     /// Returns whether writing the given value uses up a flash write cycle.
-    pub fn is_save(&self, value: u8) -> bool {
+    pub fn costs_write_cycle(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }
 }

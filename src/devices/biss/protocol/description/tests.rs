@@ -154,7 +154,7 @@ fn registers_are_decoded() {
     let average = kit.at(at("0x00:0x0A")).unwrap();
     let Some(Decoded::Scaled(volts)) = average.decode(&[PulseVoltage::LIMIT.byte()]) else { panic!() };
     assert!((volts - 5.3).abs() < 1e-9 && average.unit == "V");
-    let set = |role: Role, byte: u8| match kit.with_role(role).unwrap().decode(&[byte]) {
+    let set = |role: Role, byte: u8| match kit.register_with_role(role).unwrap().decode(&[byte]) {
         Some(Decoded::Bits(set)) => {
             set.into_iter().map(|(bit, name)| (bit, name.map(Name::english))).collect::<Vec<_>>()
         }
@@ -166,7 +166,7 @@ fn registers_are_decoded() {
         WarningRegister::new(0x81).set().map(|(bit, name)| (bit, (bit == 0).then_some(name))).collect();
     assert_eq!(set(Role::Warnings, 0x81), warnings);
     let warm = f64::from(Temperature::new(0xB4).celsius());
-    assert_eq!(kit.with_role(Role::Temperature).unwrap().decode(&[0xB4]), Some(Decoded::Scaled(warm)));
+    assert_eq!(kit.register_with_role(Role::Temperature).unwrap().decode(&[0xB4]), Some(Decoded::Scaled(warm)));
 }
 
 #[test]

@@ -37,7 +37,7 @@ impl Encoder {
         }
     }
 
-    pub(super) fn special_register(&self, offset: u8) -> u8 {
+    pub(super) fn bank_0_register(&self, offset: u8) -> u8 {
         let of = |values: &[u8; 4], first: u8| values.get(usize::from(offset - first)).copied().unwrap_or(0);
         match offset {
             0x00 => self.calibration.command,

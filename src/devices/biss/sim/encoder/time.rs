@@ -22,20 +22,20 @@ impl Encoder {
     }
 
     fn update_runs(&mut self, now: Moment) {
-        let waited = self.waits_for_direction();
+        let waited = self.needs_reversal();
         match self.calibration.settle(now) {
             Ended::No => {}
             Ended::Saved => self.store(|flash, whole| flash.calibrated = whole),
             Ended::Lost => self.flash.calibrated = false,
         }
         self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
-        if self.waits_for_direction() && !waited {
-            self.drive.reverse_motor();
+        if self.needs_reversal() && !waited {
+            self.drive.reverse_if_configured();
         }
     }
 
     /// Returns whether a procedure has finished its first run and needs the opposite direction for the second.
-    fn waits_for_direction(&self) -> bool {
+    fn needs_reversal(&self) -> bool {
         self.calibration.status == CalibrationStatus::CounterclockwiseDone
             || self.wiegand.status == WiegandStatus::WaitForDirection
     }

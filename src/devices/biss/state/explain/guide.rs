@@ -98,14 +98,14 @@ pub fn advice_text(advice: Advice) -> Text {
 }
 
 /// Returns the text about the requirements of a calibration for the motor and the encoder.
-pub fn calibration_needs() -> Text {
+pub fn calibration_requirements_text() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
 /// Returns the text about the requirements of a Wiegand test for the motor.
-pub fn wiegand_requirements() -> Text {
+pub fn wiegand_requirements_text() -> Text {
     revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 

@@ -171,7 +171,7 @@ fn left(standing: &LeftState) -> Vec<Text> {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
         several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
     }];
-    if standing.password.may_be(true) {
+    if standing.password.may_equal(true) {
         texts.push(TEXTS.text("biss_left.password"));
     }
     texts.extend(match standing.activity {

@@ -136,7 +136,7 @@ impl Drives {
             self.connection_lost(now, ConnectionLoss::Silent { after });
         }
         if self.connection.has_timed_out(now) {
-            self.controlled.iter_mut().for_each(|man| man.dead_man.contact_lost(now));
+            self.controlled.iter_mut().for_each(|man| man.dead_man.handle_contact_loss(now));
         }
         let rest = MotionIntent::rest(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
@@ -148,8 +148,8 @@ impl Drives {
                 *out = setpoint.into();
             }
         }
-        self.look_whether_it_ends(now, &mut drives);
-        let moving_on = self.dead_man_switches().find(|man| man.gives_up()).map(DeadMan::drive);
+        self.check_for_end(now, &mut drives);
+        let moving_on = self.dead_man_switches().find(|man| man.has_exhausted_stop_levels()).map(DeadMan::drive);
         if let Some(number) = moving_on {
             self.lost.get_or_insert(ConnectionLoss::DoesNotStand(number));
             self.close(now);
@@ -159,7 +159,7 @@ impl Drives {
         Some(self.connection.packet(now, &OutputImage { drives, pkw }))
     }
 
-    fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutputData]) {
+    fn check_for_end(&mut self, now: Moment, drives: &mut [OutputData]) {
         let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
         if idle || ending.off > 0 || now.since(ending.since) >= LADDER {

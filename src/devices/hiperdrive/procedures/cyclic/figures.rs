@@ -80,7 +80,7 @@ impl Histogram {
     }
 
     /// Returns the minimum and maximum deviation in microseconds, or `None` before the first interval.
-    pub fn range_us(&self) -> Option<(i64, i64)> {
+    pub fn deviation_range_us(&self) -> Option<(i64, i64)> {
         self.least.zip(self.greatest)
     }
 
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn intervals_are_counted_in_buckets() {
         let mut histogram = Histogram::default();
-        assert_eq!((histogram.total(), histogram.range_us()), (0, None));
+        assert_eq!((histogram.total(), histogram.deviation_range_us()), (0, None));
         let wanted = Duration::from_millis(10);
         for us in [10_000, 10_049, 9_951, 10_050, 9_949, 0, 15_000, 14_999, 1_000_000] {
             histogram.count(wanted, Duration::from_micros(us));
@@ -114,6 +114,6 @@ mod tests {
                 bucket(Some(5000), None, 2),
             ]
         );
-        assert_eq!((histogram.total(), histogram.range_us()), (9, Some((-10_000, 990_000))));
+        assert_eq!((histogram.total(), histogram.deviation_range_us()), (9, Some((-10_000, 990_000))));
     }
 }

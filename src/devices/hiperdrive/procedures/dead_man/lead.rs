@@ -70,8 +70,9 @@ impl StateSequencer {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has had enough time to process the word, so it will not miss the edge that follows.
-        let seen =
-            |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
+        let seen = |word: ControlWord| {
+            self.word.is_some_and(|(sent, since)| sent == word && now.has_elapsed_since(since, SETTLE))
+        };
         let state = status.state();
         let word = match (state, self.goal) {
             (State::Fault | State::Locked, TargetState::Off) => return StateSequenceStep::There,
@@ -91,7 +92,7 @@ impl StateSequencer {
                 _ => return StateSequenceStep::There,
             },
         };
-        let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.is_past(since, STEP);
+        let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.has_elapsed_since(since, STEP);
         if self.word.is_some_and(patience) { StateSequenceStep::Lost } else { StateSequenceStep::By(word) }
     }
 }

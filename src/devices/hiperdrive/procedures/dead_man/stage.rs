@@ -56,7 +56,7 @@ const REPORTS: u64 = 2;
 
 impl Mark {
     /// Returns whether at least `time` has passed since `earlier`, and [`REPORTS`] reports have arrived.
-    pub(super) fn is_past(self, earlier: Mark, time: Duration) -> bool {
+    pub(super) fn has_elapsed_since(self, earlier: Mark, time: Duration) -> bool {
         self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
 }
@@ -92,7 +92,7 @@ impl DeadMan {
             Stage::Arm { since, acknowledged } => {
                 if self.runs() || !toggled(acknowledged) {
                     // The drive has received the control word.
-                    if mark.is_past(since, Duration::ZERO) {
+                    if mark.has_elapsed_since(since, Duration::ZERO) {
                         self.stage = Stage::Start { since: mark, acknowledged };
                     }
                 } else {
@@ -121,16 +121,16 @@ impl DeadMan {
                 }
             }
             Stage::Paused { .. } => {}
-            Stage::Stop { .. } => self.raise_stop_level(mark, actual),
+            Stage::Stop { .. } => self.escalate_stop(mark, actual),
         }
     }
 
     fn check_motion_end(&mut self, mark: Mark, actual: ActualValues, stands: Mark) {
         let Stage::Go { since, .. } = self.stage else { return };
         // A report from before the start may still show standstill, or another target as reached.
-        let late = mark.is_past(since, SETTLE);
+        let late = mark.has_elapsed_since(since, SETTLE);
         if self.runs() {
-            if late && mark.is_past(stands, SETTLE) {
+            if late && mark.has_elapsed_since(stands, SETTLE) {
                 self.stop(mark.at, Ended::RangeEnd);
             }
         } else if actual.status.has(StatusBit::TargetReached) {
@@ -138,7 +138,7 @@ impl DeadMan {
                 self.end(Ended::Arrived);
                 self.hold_state(actual.status.state());
             }
-        } else if mark.is_past(stands, SHORT) {
+        } else if mark.has_elapsed_since(stands, SHORT) {
             self.stop(mark.at, Ended::Short);
         }
     }
@@ -159,12 +159,12 @@ impl DeadMan {
 
     /// Escalates the stop until the drive is at rest, then holds its state. After a run, that state is ready, from
     /// which the next motion leads up again.
-    fn raise_stop_level(&mut self, mark: Mark, actual: ActualValues) {
+    fn escalate_stop(&mut self, mark: Mark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
             return;
         }
-        if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
+        if mark.has_elapsed_since(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
             // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
         } else if mark.at.since(since) >= LEVEL_TIME {
@@ -232,7 +232,7 @@ impl DeadMan {
 fn moving(stage: &Stage, kind: MotionKind, actual: ActualValues) -> ControlWord {
     let toggled = |acknowledged: &bool, toggle: bool| {
         let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
-        ControlWord::hold_present_state(status)
+        ControlWord::without_job_start(status)
     };
     match (stage, kind) {
         (Stage::Arm { .. }, MotionKind::Run { direction, end }) => ControlWord::speed_mode(direction, end),

@@ -118,7 +118,7 @@ impl Bench {
             "another action" => self.act(MotionRequest::Lead(TargetState::Operational)),
             "no status from the drive" => {
                 self.is_connected = false;
-                self.man.contact_lost(self.now);
+                self.man.handle_contact_loss(self.now);
                 // Leading alone takes longer.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
                 self.cycles(if leads { 36 } else { 0 });

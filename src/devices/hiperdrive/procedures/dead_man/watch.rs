@@ -227,7 +227,7 @@ impl DeadMan {
             }
             return refusal.map(Ended::Refused);
         };
-        let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.is_past(since, SHORT));
+        let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.has_elapsed_since(since, SHORT));
         let waits = watch.wait(has_braked, actual, permit);
         watch.check_report(motion, actual, permit).or(waits)
     }

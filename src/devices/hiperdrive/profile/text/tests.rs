@@ -58,7 +58,7 @@ fn emitted_profiles_parse_back() {
 #[test]
 fn a_handwritten_profile_has_no_identity() {
     let profile = parse(SHORT).unwrap();
-    assert!(profile.identity.has_no_device());
+    assert!(profile.identity.is_device_unknown());
     assert_eq!(profile.image, image_of(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
     assert_eq!(profile.drive(drive(2)), Some(&ProfileDrive::at(drive(2))));
     let text = document(profile.clone()).emit();
@@ -83,7 +83,7 @@ fn unknown_fields_are_kept() {
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
     let document = ProfileDocument::parse(&text, HiperdriveProfile::FORMATS).unwrap();
     let profile = document.body.get::<HiperdriveProfile>().unwrap();
-    assert!(profile.is_mounting_value(Item(number(258))) && profile.is_mounting_value(Item(number(398))));
+    assert!(profile.depends_on_mounting(Item(number(258))) && profile.depends_on_mounting(Item(number(398))));
     let written = document.emit();
     for kept in [
         "\"owner\": (name: \"CK\"),",

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use super::cyclic::Cyclic;
 use super::objects::{object, wrong};
-use super::plant::{Originator, Plant};
+use super::plant::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
     EPath, ElectronicKey, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen, ForwardOpenSuccess,
     GeneralStatus, IMPLICIT_PORT, IoPacket, Item, ItemList, LogicalKind, NetworkType, Owner, RealTimeFormat, Reply,
@@ -98,7 +98,7 @@ impl Connections {
     }
 }
 
-impl Plant {
+impl TargetDevice {
     /// Handles a request to the connection manager and returns the reply with the socket items to send along with it.
     pub(super) fn handle_connection(
         &mut self,

@@ -9,7 +9,7 @@
 use std::net::SocketAddrV4;
 use std::time::Duration;
 
-use super::plant::Plant;
+use super::plant::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
     ForwardOpen, Frame, IoPacket, Owner, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader,
 };
@@ -51,7 +51,7 @@ impl Cyclic {
     }
 }
 
-impl Plant {
+impl TargetDevice {
     /// Sends the packets that are due and closes the connection of a lost master. Each packet has the state of the
     /// drives at its time.
     pub(super) fn send_due_packets(&mut self) {
@@ -83,7 +83,7 @@ impl Plant {
 
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
-        if !self.count_arrival() || !self.is_delivered() {
+        if !self.accept_arrival() || !self.draw_delivery() {
             return;
         }
         match IoPacket::parse(packet, RealTimeFormat::Header) {

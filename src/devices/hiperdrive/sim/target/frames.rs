@@ -2,7 +2,7 @@
 
 use std::net::SocketAddrV4;
 
-use super::plant::{Originator, Plant};
+use super::plant::{Originator, TargetDevice};
 use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, ItemList, Reply, Request, Service,
     SocketAddress,
@@ -18,7 +18,7 @@ const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
 
 type Refusal = EncapsulationStatus;
 
-impl Plant {
+impl TargetDevice {
     /// Returns the reply to a frame, if there is one.
     pub(super) fn answer(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
         // By ODVA, a frame with unknown options or with the status of a reply is void.

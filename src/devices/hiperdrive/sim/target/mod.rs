@@ -27,7 +27,7 @@ mod tests;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use plant::{Originator, Plant};
+use plant::{Originator, TargetDevice};
 
 use super::config::Config;
 use super::station::Station;
@@ -40,7 +40,7 @@ use crate::units::Moment;
 /// from a [`Config`]. [`connection`](Self::connection) and cloning create the connection of another originator.
 #[derive(Debug)]
 pub struct Target {
-    shared: Arc<Mutex<Plant>>,
+    shared: Arc<Mutex<TargetDevice>>,
     originator: Originator,
     receiver: Receiver,
     to_host: TransitQueue<Vec<u8>>,
@@ -64,7 +64,7 @@ pub struct Figures {
 
 impl Target {
     pub fn new(config: &Config) -> Self {
-        Target::to(Arc::new(Mutex::new(Plant::new(config))), Ipv4Addr::LOCALHOST)
+        Target::to(Arc::new(Mutex::new(TargetDevice::new(config))), Ipv4Addr::LOCALHOST)
     }
 
     /// Creates a connection of another originator, with this address, to the same device.
@@ -72,7 +72,7 @@ impl Target {
         Target::to(self.shared.clone(), peer)
     }
 
-    fn to(shared: Arc<Mutex<Plant>>, peer: Ipv4Addr) -> Self {
+    fn to(shared: Arc<Mutex<TargetDevice>>, peer: Ipv4Addr) -> Self {
         let originator = lock(&shared).add_originator(peer);
         Target { shared, originator, receiver: Receiver::default(), to_host: TransitQueue::default(), ended: false }
     }
@@ -106,12 +106,12 @@ impl Target {
         self.ended
     }
 
-    fn lock(&self) -> MutexGuard<'_, Plant> {
+    fn lock(&self) -> MutexGuard<'_, TargetDevice> {
         lock(&self.shared)
     }
 }
 
-fn lock(shared: &Mutex<Plant>) -> MutexGuard<'_, Plant> {
+fn lock(shared: &Mutex<TargetDevice>) -> MutexGuard<'_, TargetDevice> {
     // The virtual device stays usable after a test has panicked.
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

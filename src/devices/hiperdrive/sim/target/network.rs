@@ -88,7 +88,7 @@ impl Network {
         Some(bytes)
     }
 
-    pub(super) fn interface_all(&self) -> Vec<u8> {
+    pub(super) fn interface_attributes(&self) -> Vec<u8> {
         (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
     }
 
@@ -127,7 +127,7 @@ impl Network {
         }
     }
 
-    pub(super) fn link_all(&self) -> Vec<u8> {
+    pub(super) fn link_attributes(&self) -> Vec<u8> {
         (1..=3).filter_map(|attribute| self.link(attribute)).flatten().collect()
     }
 }

@@ -1,6 +1,6 @@
 //! The CIP objects: identity, parameters (reference 7), and network objects.
 
-use super::plant::Plant;
+use super::plant::TargetDevice;
 use crate::buses::ethernet_ip::protocol::{
     ConfigurationControl, EPath, GeneralStatus, Identity, LogicalKind, PacketError, Reply, Request, Revision, Segment,
     Service,
@@ -24,7 +24,7 @@ const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 
 type Answer = Result<Vec<u8>, GeneralStatus>;
 
-impl Plant {
+impl TargetDevice {
     pub(super) fn object(&mut self, request: &Request) -> Reply {
         match self.ask(request) {
             Ok(data) => request.done(data),
@@ -62,9 +62,11 @@ impl Plant {
             }
             ConfigurationControl::CLASS => {
                 let network = &self.network;
-                read(request, attribute, network.interface_all(), |number| network.interface(number))
+                read(request, attribute, network.interface_attributes(), |number| network.interface(number))
             }
-            ETHERNET_LINK => read(request, attribute, self.network.link_all(), |number| self.network.link(number)),
+            ETHERNET_LINK => {
+                read(request, attribute, self.network.link_attributes(), |number| self.network.link(number))
+            }
             class => self.parameter(request, class, attribute),
         }
     }

@@ -19,7 +19,7 @@ use crate::units::Moment;
 
 /// The device with everything that is connected to it.
 #[derive(Debug)]
-pub(super) struct Plant {
+pub(super) struct TargetDevice {
     pub(super) station: Station,
     pub(super) network: Network,
     pub(super) connections: Connections,
@@ -45,9 +45,9 @@ pub(super) struct Originator {
 
 const REPLY: Duration = Duration::from_millis(1);
 
-impl Plant {
+impl TargetDevice {
     pub(super) fn new(config: &Config) -> Self {
-        Plant {
+        TargetDevice {
             station: Station::of(config),
             network: Network::new(config.switch, config.serial_number),
             connections: Connections::default(),
@@ -90,7 +90,7 @@ impl Plant {
     pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance(now);
         self.figures.frames += 1;
-        if !self.count_arrival() {
+        if !self.accept_arrival() {
             return None;
         }
         let reply = self.answer(from, frame)?;
@@ -135,7 +135,7 @@ impl Plant {
     }
 
     /// Counts an arrival and returns whether the target receives it.
-    pub(super) fn count_arrival(&mut self) -> bool {
+    pub(super) fn accept_arrival(&mut self) -> bool {
         let speaks = self.can_send();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)
@@ -145,7 +145,7 @@ impl Plant {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    pub(super) fn is_delivered(&mut self) -> bool {
+    pub(super) fn draw_delivery(&mut self) -> bool {
         self.faults.transmit_byte(&mut self.rng, 0).carried.is_some()
     }
 

@@ -45,7 +45,7 @@ impl Axis {
     fn leave(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
         // The fact that was just confirmed may differ from the earlier one.
         self.settle(seen);
-        if self.invalidated_text().is_some() {
+        if self.invalidated_step().is_some() {
             return;
         }
         if self.step == AxisStep::Reference {
@@ -56,11 +56,11 @@ impl Axis {
         if self.chain.make(self.step, self.basis(seen), skipped)
             && let Some(next) = next
         {
-            self.undo_from(next, next == AxisStep::Upper);
+            self.undo_results_from(next, next == AxisStep::Upper);
         }
         match next {
             Some(step) => self.enter(step, seen),
-            None => self.finish_with(End::Done, seen, when),
+            None => self.record_end(End::Done, seen, when),
         }
     }
 
@@ -69,7 +69,7 @@ impl Axis {
         if self.over.is_some() || !self.can_go_back(seen) {
             return;
         }
-        if let Some(step) = self.invalidated_text().or_else(|| self.step.neighbour(-1)) {
+        if let Some(step) = self.invalidated_step().or_else(|| self.step.neighbour(-1)) {
             self.enter(step, seen);
         }
     }
@@ -84,11 +84,11 @@ impl Axis {
     pub(crate) fn cancel(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() {
             self.going = None;
-            self.finish_with(End::Cancelled, seen, when);
+            self.record_end(End::Cancelled, seen, when);
         }
     }
 
-    fn finish_with(&mut self, end: End, seen: &DriveFacts, when: &str) {
+    fn record_end(&mut self, end: End, seen: &DriveFacts, when: &str) {
         self.over = Some(RunSummary { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
@@ -227,7 +227,7 @@ impl Axis {
             _ => {}
         }
         if let Some(step) = self.chain.discard_outdated(&self.basis(seen)) {
-            self.undo_from(step, false);
+            self.undo_results_from(step, false);
         }
         let is_set = |position: &i32| seen.values.get(&REFERENCE) == Some(&i64::from(*position));
         if let Some(position) = self.sets.filter(is_set) {
@@ -237,7 +237,7 @@ impl Axis {
 
     /// Undoes the results of the given step and all later steps. `taught` tells whether taught entries are discarded as
     /// well.
-    fn undo_from(&mut self, step: AxisStep, taught: bool) {
+    fn undo_results_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;
         }

@@ -49,7 +49,7 @@ impl Axis {
             AxisButton::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
             AxisButton::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
             AxisButton::Acknowledge => Ok(DriveRequest::Acknowledge),
-            _ if let Some(step) = self.invalidated_text() => Err(words::invalidated_text(step)),
+            _ if let Some(step) = self.invalidated_step() => Err(words::invalidated_step(step)),
             AxisButton::Do => stands().and_then(|()| self.step_request(seen)),
             AxisButton::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
@@ -150,8 +150,8 @@ impl Axis {
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
         }
-        if let Some(step) = self.invalidated_text() {
-            return Err(words::invalidated_text(step));
+        if let Some(step) = self.invalidated_step() {
+            return Err(words::invalidated_step(step));
         }
         match seen.actual.map(|actual| actual.status.state()) {
             Some(State::Fault) => return Err(TEXTS.text("hd_refused.fault")),
@@ -169,8 +169,8 @@ impl Axis {
     /// # Errors
     /// Returns the reason if the location cannot become a limit.
     pub fn check_can_adopt_place(&self, seen: &DriveFacts) -> Result<(), Text> {
-        if let Some(step) = self.invalidated_text() {
-            return Err(words::invalidated_text(step));
+        if let Some(step) = self.invalidated_step() {
+            return Err(words::invalidated_step(step));
         }
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
@@ -198,7 +198,7 @@ impl Axis {
     }
 
     pub fn can_skip(&self, seen: &DriveFacts) -> bool {
-        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_text().is_none()
+        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_step().is_none()
     }
 
     /// Checks whether the current step is complete, so that the next step may follow.
@@ -213,8 +213,8 @@ impl Axis {
         if seen.moves {
             return Err(TEXTS.text("hd_axis.moving"));
         }
-        if let Some(step) = self.invalidated_text() {
-            return Err(words::invalidated_text(step));
+        if let Some(step) = self.invalidated_step() {
+            return Err(words::invalidated_step(step));
         }
         match self.step {
             AxisStep::Request => {

@@ -33,7 +33,7 @@ pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language
     page.push_blank_line();
     AxisStep::ALL.into_iter().for_each(|step| report_step(&mut page, axis, step, seen));
     page.push_blank_line();
-    end_lines(axis, now).iter().for_each(|line| page.line("", line));
+    write_outcome_lines(axis, now).iter().for_each(|line| page.line("", line));
     Some(page.text)
 }
 
@@ -57,7 +57,7 @@ fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) 
 }
 
 /// Returns what was written, whether it is saved, and what now differs from the saved values.
-pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
+pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::write_back_text(axis, now)) {
         (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),
@@ -73,7 +73,7 @@ pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     }
     lines.extend(words::differences(now));
     lines.extend(words::unrestored_position_text(axis, now));
-    lines.extend(words::unexplained_change_text(axis, axis.as_seen(now)));
+    lines.extend(words::unexplained_change_text(axis, axis.facts_to_show(now)));
     lines
 }
 

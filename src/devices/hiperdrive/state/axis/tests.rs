@@ -363,7 +363,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
     // The place has the position that was set.
     assert_eq!(axis.changes(), [AxisChange::Position(128)]);
-    let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
+    let told = |axis: &Axis| write_outcome_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
     assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
     let mut axis = run();
     axis.cancel(&seen, "");

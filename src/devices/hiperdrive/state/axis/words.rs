@@ -138,7 +138,7 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
 }
 
-pub fn invalidated_text(step: AxisStep) -> Text {
+pub fn invalidated_step(step: AxisStep) -> Text {
     let why = TEXTS.text(match step {
         AxisStep::Request => "hd_axis.fell_request",
         AxisStep::Scale => "hd_axis.fell_scale",

@@ -21,7 +21,7 @@ pub(super) fn frame(status: EncapsulationStatus) -> Text {
         0x69 => "hd_status_name.frame_69",
         _ => UNKNOWN,
     };
-    coded_name(format!("0x{:08X}", status.code()), name)
+    code_and_name_text(format!("0x{:08X}", status.code()), name)
 }
 
 /// Returns code and name of a CIP status and of its extended status.
@@ -29,7 +29,7 @@ pub(super) fn refusal(refusal: &Refusal) -> Text {
     let status = general_status_text(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
         ([], _) => return status,
-        ([first, ..], Some(row)) => vec![coded_name(format!("0x{first:04X}"), connection(row.code))],
+        ([first, ..], Some(row)) => vec![code_and_name_text(format!("0x{first:04X}"), connection(row.code))],
         (words, None) => words.iter().map(|word| plain(format!("0x{word:04X}"))).collect(),
     };
     let words = Text::new("plain.words").with_list("words", words);
@@ -71,7 +71,7 @@ fn general_status_text(status: GeneralStatus) -> Text {
         0x2C => "hd_status_name.cip_2c",
         _ => UNKNOWN,
     };
-    coded_name(format!("0x{:02X}", status.code()), name)
+    code_and_name_text(format!("0x{:02X}", status.code()), name)
 }
 
 /// Describes the extended status of a connection failure.
@@ -99,7 +99,7 @@ fn connection(code: u16) -> &'static str {
     }
 }
 
-fn coded_name(code: String, name: &'static str) -> Text {
+fn code_and_name_text(code: String, name: &'static str) -> Text {
     TEXTS.text("hd_status_name.coded").with("code", code).with_text("name", TEXTS.text(name))
 }
 

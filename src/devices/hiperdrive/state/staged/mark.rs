@@ -43,7 +43,7 @@ impl Staged {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();
         for drive in wanted.drives() {
-            mark_drive(base, wanted, drive, position(drive), &mut of_drives);
+            push_drive_marks(base, wanted, drive, position(drive), &mut of_drives);
         }
         let moved: Vec<ParameterNumber> =
             of_drives.iter().filter(|mark| matches!(mark, Mark::LimitsMove { .. })).flat_map(Mark::numbers).collect();
@@ -59,7 +59,7 @@ impl Staged {
     }
 }
 
-fn mark_drive(base: &Image, wanted: &Image, drive: DriveNumber, position: Option<i64>, marks: &mut Vec<Mark>) {
+fn push_drive_marks(base: &Image, wanted: &Image, drive: DriveNumber, position: Option<i64>, marks: &mut Vec<Mark>) {
     let now = base.scale(drive).unwrap_or(PositionScale::FACTORY);
     let scale = wanted.scale(drive).unwrap_or(now);
     if let Some((lower, upper)) = wanted.limits(drive) {

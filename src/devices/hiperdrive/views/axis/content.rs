@@ -7,7 +7,7 @@ use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton, AxisStep, Entries, TestTarget, words};
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
-use crate::devices::hiperdrive::views::jog::pad_ui;
+use crate::devices::hiperdrive::views::jog::jog_button_ui;
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button_with_reason, entry, paragraph, problem, row, text_entry};
 use crate::ui::widgets::HoldButton;
@@ -29,7 +29,7 @@ pub(super) fn content_ui(
         control_ui(ui, theme, shown, actions);
     }
     if step.jogs() {
-        pads_ui(ui, theme, shown, actions);
+        jog_buttons_ui(ui, theme, shown, actions);
     }
     match step {
         AxisStep::Scale => {
@@ -41,7 +41,7 @@ pub(super) fn content_ui(
         AxisStep::Lower => number_ui(ui, theme, "hd_axis.lower", &mut entries.lower),
         AxisStep::Upper => number_ui(ui, theme, "hd_axis.upper", &mut entries.upper),
         AxisStep::Test => test_ui(ui, theme, shown, actions),
-        AxisStep::PowerCycle => power_ui(ui, theme, shown, actions),
+        AxisStep::PowerCycle => supply_switch_ui(ui, theme, shown, actions),
         AxisStep::Request | AxisStep::Jog | AxisStep::Save => {}
     }
     if matches!(
@@ -66,7 +66,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
         shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
-        super::recall_ui(ui, theme, shown, actions);
+        super::write_back_button_ui(ui, theme, shown, actions);
     }
     super::skip_ui(ui, theme, shown, actions);
 }
@@ -116,7 +116,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     }
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
-        && shown.axis.invalidated_text().is_none()
+        && shown.axis.invalidated_step().is_none()
         // The reason is already shown above.
         && shown.axis.check_can_continue(shown.seen).err().as_ref() != Some(&why)
     {
@@ -128,7 +128,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     }
 }
 
-fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
+fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
@@ -140,7 +140,7 @@ fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
             let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
             let press = Motor::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
-            pad_ui(ui, theme, about, press, (&button, vec2(width, PAD)), actions);
+            jog_button_ui(ui, theme, about, press, (&button, vec2(width, PAD)), actions);
         }
     });
     ui.add_space(theme.space.inside);
@@ -237,7 +237,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
 }
 
 /// Draws the control of the supply. A virtual device is switched here, a real one by hand.
-fn power_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
+fn supply_switch_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));
         shown.button(ui, theme, AxisButton::Do, (icons::PENCIL_SIMPLE, &word), actions);

@@ -61,7 +61,7 @@ fn emitted_profiles_parse_back() {
     profile.fields.push(FieldImage { number: 1, status, bytes: Some(offset) });
     let status = DataFieldStatus::from_byte(0xE8);
     profile.fields.push(FieldImage { number: 2, status, bytes: None });
-    profile.mark_mounting_values();
+    profile.mark_mounting_dependent_values();
     assert_eq!(profile.mounting[0].item, FieldRange::new(1, 0, 16));
     document.note = Some("two\nlines".to_owned());
     assert_eq!(parse(&document.emit()), Ok(document));

@@ -32,7 +32,7 @@ impl Planner<'_> {
         let left = std::mem::take(&mut self.left);
         let stays = |own: &FieldImage| {
             let bytes = own.bytes.as_ref().map_or(0, Vec::len);
-            let has_mounting = (0..bytes).any(|at| profile.is_mounting_value(own.number, at));
+            let has_mounting = (0..bytes).any(|at| profile.depends_on_mounting(own.number, at));
             !left.contains(&own.number) || (with_mounting && has_mounting)
         };
         let last = self.wanted.iter().filter(|own| stays(own)).map(|own| own.number).max();
@@ -220,7 +220,7 @@ impl Planner<'_> {
         }
         let (mut allowed, mut of_mounting) = (Vec::new(), Vec::new());
         for at in range {
-            let is_mounting = self.profile.is_mounting_value(field, at);
+            let is_mounting = self.profile.depends_on_mounting(field, at);
             if is_mounting {
                 extend(&mut of_mounting, at);
             }

@@ -44,7 +44,7 @@ pub(super) fn unknown_fields(
         };
         let grown = old.len()..new.len();
         let differing = runs(old, new).into_iter().flatten().chain(grown);
-        let bytes = differing.filter(|at| !profile.is_mounting_value(target.number, *at)).count();
+        let bytes = differing.filter(|at| !profile.depends_on_mounting(target.number, *at)).count();
         let answer = options.copy.get(&target.number).copied();
         (bytes > 0).then_some(UnknownField { field: target.number, bytes, answer })
     };

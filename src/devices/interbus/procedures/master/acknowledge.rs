@@ -25,7 +25,7 @@ impl Master<'_> {
     /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
     /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
-        self.resend_setting(command, 0)
+        self.send_setting_attempt(command, 0)
     }
 
     /// Sends a setting whose echo is ambiguous and reads the value back with `question`. Both are repeated with longer
@@ -34,7 +34,7 @@ impl Master<'_> {
     /// # Errors
     /// Returns [`Error::NotTaken`] with the name `item` if the value is not accepted, and otherwise the same errors as
     /// [`set`](Self::set).
-    pub(in crate::devices::interbus::procedures) fn set_and_read_out(
+    pub(in crate::devices::interbus::procedures) fn set_and_verify(
         &mut self,
         command: Command,
         question: Command,
@@ -43,7 +43,7 @@ impl Master<'_> {
     ) -> Result<(), Error> {
         let mut reads = wanted;
         for tried in 0..TRIES {
-            self.resend_setting(command, tried)?;
+            self.send_setting_attempt(command, tried)?;
             reads = self.ask(question)?;
             if reads == wanted {
                 return Ok(());
@@ -52,18 +52,18 @@ impl Master<'_> {
         Err(Error::NotTaken { item: item(), wanted: wanted.get(), reads: reads.get() })
     }
 
-    fn resend_setting(&mut self, command: Command, tried: u32) -> Result<(), Error> {
+    fn send_setting_attempt(&mut self, command: Command, tried: u32) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        self.await_no_value()?;
+        self.wait_until_value_cleared()?;
         self.parameterising = true;
         self.mark_program_set();
         self.wait_for_acknowledgement(command, tried, false)
     }
 
     /// Sends a word until its echo is stable. A missing echo is also accepted if the encoder keeps running (`U`).
-    pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
+    pub(super) fn send_mode_command(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        self.await_no_value()?;
+        self.wait_until_value_cleared()?;
         self.wait_for_acknowledgement(command, 0, true)
     }
 
@@ -77,7 +77,7 @@ impl Master<'_> {
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {
                 _ if is_echo(command, word) => {
-                    holds.map_or(same.is_stable(), |holds| same.has_lasted(holds)).then_some(Ok(()))
+                    holds.map_or(same.is_stable(), |holds| same.has_held_for(holds)).then_some(Ok(()))
                 }
                 Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
                     Some(Err(Error::Refused { sent: command, error }))

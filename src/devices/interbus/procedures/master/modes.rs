@@ -38,7 +38,7 @@ impl Master<'_> {
             _ => self.run_uncancellable(Self::lead_back),
         };
         let is_back = led.is_ok() || self.is_in_initial_state();
-        self.record_step_end(is_back);
+        self.record_stores_and_return(is_back);
         let Err(why) = led else {
             self.rested = self.is_in_initial_state().then(|| self.data.now());
             return ended;
@@ -56,9 +56,9 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns [`Error::NotLedBack`] with the cause if the encoder cannot be returned to operation.
-    pub fn end_leftover_operation(&mut self) -> Result<StartupMode, Error> {
+    pub fn end_foreign_operation(&mut self) -> Result<StartupMode, Error> {
         let ended = self.run_uncancellable(|master| {
-            master.release_run()?;
+            master.clear_run_command()?;
             let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
             match master.run() {
                 Err(Error::Refused { error, .. }) => {
@@ -70,13 +70,13 @@ impl Master<'_> {
             let mode = master.read_startup_mode()?;
             master.found = Some(mode);
             if was_set {
-                master.record_store()?;
+                master.note_foreign_store()?;
             }
             master.resume(mode)?;
             master.lead_back()?;
             Ok(master.is.unwrap_or(mode))
         });
-        self.record_step_end(ended.is_ok());
+        self.record_stores_and_return(ended.is_ok());
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
@@ -90,7 +90,7 @@ impl Master<'_> {
         match (self.is, wanted) {
             (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
             (Some(mode @ Unknown(_)), _) => Err(Error::UnknownMode { mode }),
-            (Some(is), wanted) if is_equivalent_mode(is, wanted) => Ok(()),
+            (Some(is), wanted) if is_same_operating_mode(is, wanted) => Ok(()),
             (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
             (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
             (Some(Cams(_)), Velocity) => {
@@ -107,7 +107,7 @@ impl Master<'_> {
     }
 
     /// Marks the present mode as the one to which the encoder returns after the job.
-    pub(in crate::devices::interbus::procedures) fn keep_current_mode(&mut self) {
+    pub(in crate::devices::interbus::procedures) fn stay_in_current_mode(&mut self) {
         self.found = self.is;
     }
 
@@ -121,7 +121,7 @@ impl Master<'_> {
             match Reply::parse(self.input) {
                 Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
                     let input = self.input;
-                    return Err(match self.detect_word_order(input)? {
+                    return Err(match self.swapped_word_order(input)? {
                         Some(swapped) => Error::WordOrder { input, swapped },
                         None => Error::NotRunning { input },
                     });
@@ -152,7 +152,7 @@ impl Master<'_> {
         }
         // Checks whether this read-out has ended the mode. In another mode, words for cams have other effects.
         self.rest()?;
-        if is_equivalent_mode(self.read_startup_mode()?, mode) {
+        if is_same_operating_mode(self.read_startup_mode()?, mode) {
             self.known.kept = Some(mode);
             return Ok(());
         }
@@ -182,7 +182,7 @@ impl Master<'_> {
         self.record_mode_switch(wanted)?;
         for held in [false, true].into_iter().skip(usize::from(known)) {
             (self.unsure, self.switched) = (true, true);
-            self.send_instruction(command)?;
+            self.send_mode_command(command)?;
             if of_cams {
                 self.run()?;
             }
@@ -191,7 +191,7 @@ impl Master<'_> {
                 self.return_to_operation()?;
             }
             is = self.read_startup_mode()?;
-            if is_equivalent_mode(is, wanted) {
+            if is_same_operating_mode(is, wanted) {
                 if !held {
                     self.known.kept = Some(wanted);
                 }
@@ -217,7 +217,7 @@ impl Master<'_> {
             || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
         if self.parameterising || self.unsure || stands {
             if self.out == Some(Command::Run) {
-                self.release_run()?;
+                self.clear_run_command()?;
             }
             self.run()?;
             self.return_to_operation()?;
@@ -237,7 +237,7 @@ impl Master<'_> {
     }
 
     /// Sends 00000000h, so that a following 80000000h has the edge that it needs to take effect.
-    fn release_run(&mut self) -> Result<(), Error> {
+    fn clear_run_command(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
         }
@@ -246,25 +246,25 @@ impl Master<'_> {
 
     /// Sends the word that keeps the mode without a request.
     fn rest(&mut self) -> Result<(), Error> {
-        self.await_no_value()?;
+        self.wait_until_value_cleared()?;
         let word = self.idle_command();
         if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
     }
 
     fn idle_command(&self) -> Command {
-        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| is_equivalent_mode(is, *mode)));
+        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| is_same_operating_mode(is, *mode)));
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
     /// Waits until the IN word contains no value. A new value could not be distinguished from the old one.
-    pub(super) fn await_no_value(&mut self) -> Result<(), Error> {
-        let asks = self.out.is_some_and(is_question);
+    pub(super) fn wait_until_value_cleared(&mut self) -> Result<(), Error> {
+        let asks = self.out.is_some_and(is_read_command);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
         if !asks && !stands {
             return Ok(());
         }
         if self.parameterising {
-            return self.end_query();
+            return self.clear_query_while_setting();
         }
         let word = self.idle_command();
         let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
@@ -280,7 +280,7 @@ impl Master<'_> {
 
     /// Sends 00000000h until the IN word contains no value. It is used while parameters or cams are being set, since
     /// 80000000h would store them. A value that persists is accepted because it differs from the next echo.
-    fn end_query(&mut self) -> Result<(), Error> {
+    fn clear_query_while_setting(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, ExpectedWord::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -294,12 +294,12 @@ impl Master<'_> {
 }
 
 /// Returns whether two modes are equal. K2 and K3 count as equal, since both return the position.
-pub(super) fn is_equivalent_mode(is: StartupMode, wanted: StartupMode) -> bool {
+pub(super) fn is_same_operating_mode(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)
 }
 
-fn is_question(command: Command) -> bool {
+fn is_read_command(command: Command) -> bool {
     matches!(
         command,
         Command::ReadOut(_)

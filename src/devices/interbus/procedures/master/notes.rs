@@ -2,7 +2,7 @@
 //! mode.
 
 use super::Master;
-use super::modes::is_equivalent_mode;
+use super::modes::is_same_operating_mode;
 use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::journal::{Journal, ModeSwitch};
 use crate::devices::interbus::protocol::{ReadOutNumber, StartupMode};
@@ -43,7 +43,7 @@ impl Master<'_> {
         }
         let serial_number = self.serial_number()?;
         if let Some(journal) = &mut self.notes.journal {
-            journal.record_intent(&serial_number, programs as u64);
+            journal.record_planned_stores(&serial_number, programs as u64);
         }
         Ok(())
     }
@@ -54,15 +54,15 @@ impl Master<'_> {
 
     /// If an interrupted run left the encoder in the given mode, marks the original mode as the one to return to.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
-        if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_excursions()) {
+        if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_modes_to_restore()) {
             return Ok(());
         }
         let serial_number = self.serial_number()?;
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
-        let Some(excursion) = journal.recorded_excursion(&serial_number) else { return Ok(()) };
-        if is_equivalent_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
+        let Some(excursion) = journal.recorded_mode_switch(&serial_number) else { return Ok(()) };
+        if is_same_operating_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
             // The encoder was returned, or another mode has been selected since.
-            journal.record_return(&serial_number);
+            journal.record_mode_restored(&serial_number);
             return Ok(());
         }
         tracing::warn!(
@@ -82,7 +82,7 @@ impl Master<'_> {
         {
             self.notes.left += 1;
         }
-        let Some(found) = self.found.filter(|found| !is_equivalent_mode(*found, wanted)) else { return Ok(()) };
+        let Some(found) = self.found.filter(|found| !is_same_operating_mode(*found, wanted)) else { return Ok(()) };
         if self.notes.journal.is_none() {
             return Ok(());
         }
@@ -92,13 +92,13 @@ impl Master<'_> {
             excursion.sent.push(wanted);
         }
         if let Some(journal) = &mut self.notes.journal {
-            journal.record_excursion(&serial_number, excursion);
+            journal.save_mode_switch(&serial_number, excursion);
         }
         Ok(())
     }
 
     /// Records that settings of another program were stored when the encoder was returned to operation.
-    pub(super) fn record_store(&mut self) -> Result<(), Error> {
+    pub(super) fn note_foreign_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;
             self.notes.left += 1;
@@ -107,7 +107,7 @@ impl Master<'_> {
     }
 
     /// Records the possible stores at the end of a step, and whether the encoder is back in its initial mode.
-    pub(super) fn record_step_end(&mut self, is_back: bool) {
+    pub(super) fn record_stores_and_return(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {
             return;
@@ -116,7 +116,7 @@ impl Master<'_> {
         journal
             .record_possible_stores(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
         if is_back && excursion.take().is_some() {
-            journal.record_return(serial_number);
+            journal.record_mode_restored(serial_number);
         }
     }
 

@@ -54,11 +54,11 @@ impl StabilityTimer {
     }
 
     pub(super) fn is_settled(self) -> bool {
-        self.has_lasted(STAYS_FOR)
+        self.has_held_for(STAYS_FOR)
     }
 
     /// Returns whether the condition has held for the given time and for the minimum number of cycles.
-    pub(super) fn has_lasted(self, duration: Duration) -> bool {
+    pub(super) fn has_held_for(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.is_stable_for(duration)
     }

@@ -123,7 +123,7 @@ fn another_type_needs_a_separate_permission() {
 fn only_needed_programs_are_read() {
     let mut of = profile(MINE);
     let numbers = |profile: &InterbusProfile| -> Vec<u8> {
-        required_programs(profile).into_iter().map(ProgramNumber::get).collect()
+        programs_to_read(profile).into_iter().map(ProgramNumber::get).collect()
     };
     assert_eq!(numbers(&of), [1, 2, 3, 4, 5, 6, 7, 8]);
     of.image.programs[..6].fill(None);

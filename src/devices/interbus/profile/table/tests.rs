@@ -76,7 +76,7 @@ fn rounding_of_an_edge_is_reported() {
     assert!((row.start.off + 0.019_531_25).abs() < 1e-9 && (row.stop.off - 0.019_531_25).abs() < 1e-9, "{row:?}");
     assert_eq!((row.start.requested, row.stop.requested), (350.0, 10.0));
     assert_eq!(table.rounded().map(|row| row.line).collect::<Vec<_>>(), [1]);
-    assert!((table.most_off() - 0.019_531_25).abs() < 1e-9);
+    assert!((table.max_rounding_error() - 0.019_531_25).abs() < 1e-9);
     let table = options(Scale::millimetres(12.5, 0).unwrap(), 10_000).read("feed;100;200,03");
     assert_eq!(rows(&table), [(1, 0, "feed", 1250, 2500)]);
     assert!((table.rows[0].stop.off + 0.03).abs() < 1e-9);

@@ -23,7 +23,7 @@ impl Setting<'_> {
     }
 
     /// Sets the mask of active cams. A mask with more than 8 bits is invalid (`U`). See reference 6.9.
-    pub(super) fn activate(&mut self, mask: u16) -> Result<(), Fault> {
+    pub(super) fn set_active_cams(&mut self, mask: u16) -> Result<(), Fault> {
         self.0.mask = u8::try_from(mask).map_err(|_| Fault::WrongData)?;
         Ok(())
     }
@@ -45,8 +45,8 @@ impl Encoder {
     /// Ends a read-out. If values are set but not stored, the position and outputs remain invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
-            None => self.switch_activity(Activity::Running, InWordContent::Live),
-            Some(_) => self.switch_activity(Activity::Setting, InWordContent::Word(INVALID)),
+            None => self.enter_activity(Activity::Running, InWordContent::Live),
+            Some(_) => self.enter_activity(Activity::Setting, InWordContent::Word(INVALID)),
         }
     }
 }

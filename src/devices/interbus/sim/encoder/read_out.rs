@@ -38,7 +38,7 @@ impl Encoder {
     /// Sends the value of a read-out. `None` sends the error of a cam, register or number that does not exist.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
-        self.switch_activity(Activity::ReadingOut, InWordContent::Word(word));
+        self.enter_activity(Activity::ReadingOut, InWordContent::Word(word));
     }
 
     fn value(&self, now: Moment, read_out: ReadOutNumber) -> Option<u32> {

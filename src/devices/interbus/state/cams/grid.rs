@@ -31,7 +31,7 @@ pub fn rounded(at_least: f64) -> f64 {
 /// Returns the visible grid lines. Their distance is at least `apart` steps.
 pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_per_unit();
-    let unit = round_units(scale.unit(), apart / one);
+    let unit = round_interval(scale.unit(), apart / one);
     let decimals = decimals(unit);
     let zero = f64::from(scale.zero());
     let (from, to) = (view.first(), (view.first() + view.span()).min(f64::from(range)));
@@ -47,7 +47,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
 
 /// Returns the next grid line after a position, or the previous one before it, in steps. It may be beyond the range.
 pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
-    let around = lines_around(scale, apart, f64::from(position), 2);
+    let around = grid_lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
     let mut lines = around.into_iter().map(|line| line as i64);
     if forward {
@@ -58,15 +58,15 @@ pub fn next_grid_line(scale: &Scale, apart: f64, position: u32, forward: bool) -
 }
 
 /// Returns the grid lines around a position, with `each` lines on either side. They are whole steps in ascending order.
-pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
-    let steps = scale.steps_per_unit() * round_units(scale.unit(), apart / scale.steps_per_unit());
+pub(super) fn grid_lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
+    let steps = scale.steps_per_unit() * round_interval(scale.unit(), apart / scale.steps_per_unit());
     let zero = f64::from(scale.zero());
     let own = ((position - zero) / steps).floor();
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
 }
 
 /// Returns the smallest round number in a unit that is not below `at_least`.
-fn round_units(unit: Unit, at_least: f64) -> f64 {
+fn round_interval(unit: Unit, at_least: f64) -> f64 {
     match unit {
         Unit::Steps => rounded(at_least).max(1.0),
         Unit::Millimetres => rounded(at_least),

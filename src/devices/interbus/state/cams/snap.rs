@@ -71,7 +71,7 @@ fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, sn
         }
     }
     if let Some(apart) = snap.apart {
-        targets.extend(grid::lines_around(scale, apart, at - turn, 0).into_iter().map(|line| turn + line));
+        targets.extend(grid::grid_lines_around(scale, apart, at - turn, 0).into_iter().map(|line| turn + line));
     }
     targets
 }

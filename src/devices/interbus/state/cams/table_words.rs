@@ -75,7 +75,7 @@ pub fn rounding_text(row: &TableRow, scale: &Scale) -> Text {
 /// Describes the requested position of an edge, its rounded position and the difference.
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
-    let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
+    let id = if edge.is_rounded() { "camtable.edge_off" } else { "camtable.edge" };
     // The number has all decimals of the table, since rounding would hide the difference.
     let requested = decimals.max(decimal_count(edge.requested));
     let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());

@@ -252,6 +252,6 @@ fn only_a_lost_wire_counts_as_a_lost_connection() {
         assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
     }
     let silent = JobError::Device(Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
-    assert!(loss(&silent).is_none() && is_silence(&silent));
-    assert!(!is_silence(&JobError::Device(Error::NeverSilent)));
+    assert!(loss(&silent).is_none() && means_no_response(&silent));
+    assert!(!means_no_response(&JobError::Device(Error::NeverSilent)));
 }

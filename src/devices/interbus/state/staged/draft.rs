@@ -51,7 +51,7 @@ impl Staged {
             return;
         };
         for kept in draft {
-            if kept.concerns_unread_values(&wanted, self.base_source) {
+            if kept.changes_unread_value(&wanted, self.base_source) {
                 self.waiting.push(kept);
             } else {
                 kept.put(&mut wanted, self.base_source);
@@ -177,7 +177,7 @@ impl SavedEdit {
     }
 
     /// Returns whether the edit concerns a value that was not read. Names do not have to be read.
-    fn concerns_unread_values(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
+    fn changes_unread_value(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
         ground == BaseSource::Encoder
             && match self {
                 SavedEdit::Shift(_) => wanted.image.shift.is_none(),

@@ -72,7 +72,8 @@ impl EditedValues {
             let Some(track) = self.name(program, number) else { continue };
             for other in CamNumber::all().filter(on).filter(|other| *other > number) {
                 let is_same = self.name(program, other).is_some_and(|name| is_same_track(name, track));
-                let both = self.cam(program, other).filter(|_| is_same).and_then(|other| first_common(cam, other));
+                let both =
+                    self.cam(program, other).filter(|_| is_same).and_then(|other| first_common_position(cam, other));
                 if let Some(at) = both {
                     marks.push(Mark::Clash { program, first: number, second: other, at });
                 }
@@ -87,7 +88,7 @@ pub(super) fn is_same_track(one: &str, other: &str) -> bool {
 }
 
 /// Returns the first position at which both cams are on. It is the start of one of them.
-fn first_common(one: Cam, other: Cam) -> Option<u32> {
+fn first_common_position(one: Cam, other: Cam) -> Option<u32> {
     let wrapped = one.wraps() && other.wraps();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));
     if wrapped { Some(0) } else { begins.map(|at| at.get()).min() }

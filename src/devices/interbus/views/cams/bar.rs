@@ -43,14 +43,14 @@ pub(super) fn bar_ui(
             }
         }
         if encoder.staged.program(program).is_some() {
-            read_again_ui(ui, theme, encoder, program, actions);
+            reread_button_ui(ui, theme, encoder, program, actions);
             whole_ui(ui, theme, encoder, program, &mut view.bar, actions);
         }
         tables_ui(ui, theme, encoder, program, actions);
     });
 }
 
-fn read_again_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+fn reread_button_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
     let button = icon_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_again"));

@@ -78,7 +78,7 @@ pub(super) fn card_ui(
             };
         });
         if sends.is_some() {
-            agreement_ui(ui, theme, &encoder.preview);
+            output_comparison_ui(ui, theme, &encoder.preview);
         } else if reading.is_none() && encoder.session.line().is_some() {
             paragraph(ui, theme.caption(say(theme, "ib_cams.not_live")));
         }
@@ -101,7 +101,7 @@ pub(super) fn card_ui(
     }
 }
 
-fn agreement_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
+fn output_comparison_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {
         if *same > 0 {

@@ -231,7 +231,7 @@ impl CamChart<'_> {
     }
 
     /// Draws a label with the result of a drag. The label never leaves the painting area.
-    pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
+    pub(super) fn draw_drag_ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
         let words = match drag.hold {

@@ -109,7 +109,7 @@ pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f
     let whole = ring.draw_disc(rect, drag);
     let edges = ring.edges(drag);
     if let Some(drag) = drag {
-        model.ghost(theme, ui.painter(), &drag, rect.center());
+        model.draw_drag_ghost(theme, ui.painter(), &drag, rect.center());
     }
     if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
         ui.data_mut(|data| data.remove::<Drag>(base));

@@ -54,7 +54,7 @@ fn full() -> SsiProfile {
         cleared_by_transfer: !active_low,
     };
     let pattern = |name: &str, word, meaning| Pattern { name: name.to_owned(), word, meaning };
-    let frame = Descriptor {
+    let frame = FrameDescriptor {
         clocks: 51,
         range: Range::Bits { multiturn: 7, singleturn: 12 },
         code: Code::Gray,

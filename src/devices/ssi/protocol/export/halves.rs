@@ -55,7 +55,7 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWid
     let mut text = String::new();
     // Writing into a String does not fail.
     let _ = writeln!(text, "(* SSI decoder: {}", to_single_line(title).replace("*)", "* )"));
-    let _ = writeln!(text, "   {} IEC 61131-3, 32 bits.", halves.first_bit(layout));
+    let _ = writeln!(text, "   {} IEC 61131-3, 32 bits.", halves.describe_first_bit(layout));
     for (name, flag, meaning) in flags(layout) {
         let _ = writeln!(text, "   flags 16#{:X}: {name}, {}", flag.0, to_single_line(&meaning).replace("*)", "* )"));
     }
@@ -83,7 +83,7 @@ pub fn scl_source(layout: &Layout, title: &str) -> Result<String, TooWideError> 
         let _ = writeln!(text, "    {}", halves.comment(words));
     };
     comment(&format!("SSI decoder: {title}"));
-    comment(&halves.first_bit(layout));
+    comment(&halves.describe_first_bit(layout));
     for (name, flag, meaning) in flags(layout) {
         comment(&format!("flags 16#{:X}: {name}, {meaning}", flag.0));
     }
@@ -111,7 +111,7 @@ impl SplitWordDialect {
     }
 
     /// Returns the text of a comment that states which bit holds the first bit of a frame.
-    fn first_bit(&self, layout: &Layout) -> String {
+    fn describe_first_bit(&self, layout: &Layout) -> String {
         let clocks = layout.clocks();
         let (bit, name) = if self.is_wide { (clocks - 1 - HALF, "frame_high") } else { (clocks - 1, "frame") };
         format!("{clocks} clocks; the first bit received is bit {bit} of {name}.")

@@ -5,7 +5,7 @@
 //! Gray code.
 
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning};
+use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
@@ -168,14 +168,14 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
         bits @ 0..=32 => Range::Bits { multiturn: 0, singleturn: bits },
         bits => Range::Bits { multiturn: bits - 32, singleturn: 32 },
     };
-    let descriptor = Descriptor {
+    let descriptor = FrameDescriptor {
         clocks,
         range,
         code: if field.gray { Code::Gray } else { Code::Binary },
         area: begins - 1 + field.bits,
         lead: begins - 1,
         errors,
-        ..Descriptor::plain(0, 0)
+        ..FrameDescriptor::plain(0, 0)
     };
     Ok(Layout::new(descriptor)?)
 }

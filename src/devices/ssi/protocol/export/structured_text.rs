@@ -105,14 +105,14 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
          code : LWORD;\n    fold : LWORD;\n    digit : LWORD;\nEND_VAR\n",
     );
     for line in statements(layout, &StructuredTextDialect) {
-        let _ = writeln!(text, "{}", to_local_names(&line));
+        let _ = writeln!(text, "{}", escape_type_names(&line));
     }
     text.push_str("END_FUNCTION_BLOCK\n");
     text
 }
 
 /// Renames the variable `word` to `word_`, because `WORD` is a type name in structured text.
-fn to_local_names(line: &str) -> String {
+fn escape_type_names(line: &str) -> String {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut out = String::new();
     let mut name = String::new();

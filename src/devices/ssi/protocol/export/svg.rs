@@ -4,7 +4,7 @@ use super::picture::{FAINT, MARGIN, Picture, PictureLabel, PictureLength, Pictur
 use super::text::{ExportText, Say};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
-use crate::devices::ssi::protocol::timing::{Reads, Times};
+use crate::devices::ssi::protocol::timing::{ReadConditions, Times};
 
 const CELL: u32 = 22;
 const WIDTH: u32 = 900;
@@ -100,8 +100,8 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
 
 /// Draws a burst and the pause after it to scale, with the clock, the data and the transfer times. See figure 2 of the
 /// manual.
-pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str, say: Say<'_>) -> Picture {
-    let timing = times.reckon(reads);
+pub fn timing_picture(layout: &Layout, times: &Times, reads: &ReadConditions, title: &str, say: Say<'_>) -> Picture {
+    let timing = times.calculate_timing(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());
     let scale = f64::from(WIDTH - 2 * MARGIN) / (burst + pause).max(1e-9);
     let x = |seconds: f64| PictureLength::Scaled(f64::from(MARGIN) + seconds * scale);

@@ -1,7 +1,7 @@
 //! Format strings and tables; the compiled decoders are tested separately (`tests/behaviour/ssi_export.rs`).
 
 use super::*;
-use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Families, Layout, Parity, Settings};
+use crate::devices::ssi::protocol::{ErrorBit, Families, FrameDescriptor, Layout, Parity, Settings};
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
@@ -92,7 +92,7 @@ fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
     let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
     assert!(error.ends_with("1 (the last bit is an error bit)"), "{error}");
     let parity = Some(Parity { clock: 15, even: true });
-    let own = Layout::new(Descriptor { clocks: 15, parity, ..Descriptor::plain(0, 14) }).unwrap();
+    let own = Layout::new(FrameDescriptor { clocks: 15, parity, ..FrameDescriptor::plain(0, 14) }).unwrap();
     let lines = sheet(&own);
     let error = power_failure(&lines).unwrap();
     assert!(error.ends_with(" 0"), "{error}");

@@ -1,7 +1,7 @@
 //! Search for the settings with which a family sends a given frame.
 
 use super::{Align, ErrorPlace, Family, Settings};
-use crate::devices::ssi::protocol::descriptor::Descriptor;
+use crate::devices::ssi::protocol::descriptor::FrameDescriptor;
 use crate::devices::ssi::protocol::range::Range;
 
 type Leave = fn(&mut Settings);
@@ -25,7 +25,7 @@ const LEAVE: [Leave; 12] = [
 impl Family {
     /// Returns the fewest settings with which this family sends exactly this frame, or `None` if it cannot. Direction
     /// and preset keep their factory setting, because they are not part of a frame.
-    pub fn settings_for_frame(&self, frame: &Descriptor) -> Option<Settings> {
+    pub fn settings_for_frame(&self, frame: &FrameDescriptor) -> Option<Settings> {
         let asked = self.derived_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
         let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
@@ -33,16 +33,16 @@ impl Family {
         tried
             .map(|(align, place)| Settings { align, errors: Some(place), ..asked.clone() })
             .filter(|settings| self.can_send_frame(settings, frame))
-            .map(|settings| self.shortest_settings(settings, frame))
+            .map(|settings| self.drop_unneeded_settings(settings, frame))
             .min_by_key(count)
     }
 
-    fn can_send_frame(&self, settings: &Settings, frame: &Descriptor) -> bool {
+    fn can_send_frame(&self, settings: &Settings, frame: &FrameDescriptor) -> bool {
         settings.resolve(self).is_ok_and(|resolved| resolved.layout.descriptor() == frame)
     }
 
     /// Resets every setting that is not needed to produce the frame.
-    fn shortest_settings(&self, settings: Settings, frame: &Descriptor) -> Settings {
+    fn drop_unneeded_settings(&self, settings: Settings, frame: &FrameDescriptor) -> Settings {
         LEAVE.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
             leave(&mut fewer);
@@ -51,7 +51,7 @@ impl Family {
     }
 
     /// Returns the settings that follow directly from a frame. These are all settings except the alignment.
-    fn derived_settings(&self, frame: &Descriptor) -> Settings {
+    fn derived_settings(&self, frame: &FrameDescriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),
             coded: Some(frame.coded),
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
     use crate::devices::ssi::protocol::{Families, Parity};
 
-    fn frame(families: &Families, text: &str) -> Option<Descriptor> {
+    fn frame(families: &Families, text: &str) -> Option<FrameDescriptor> {
         let (key, settings) = Settings::parse(text).unwrap();
         let resolved = settings.resolve(families.named(&key).unwrap()).ok()?;
         Some(resolved.layout.descriptor().clone())
@@ -179,13 +179,20 @@ mod tests {
             let own = frame(&families, &family.key).unwrap();
             let parity = own.clocks + 1;
             let others = [
-                ("exchanged wires", Descriptor { inverted: true, ..own.clone() }),
+                ("exchanged wires", FrameDescriptor { inverted: true, ..own.clone() }),
                 (
                     "parity",
-                    Descriptor { clocks: parity, parity: Some(Parity { clock: parity, even: true }), ..own.clone() },
+                    FrameDescriptor {
+                        clocks: parity,
+                        parity: Some(Parity { clock: parity, even: true }),
+                        ..own.clone()
+                    },
                 ),
-                ("zeros in between", Descriptor { between: 1, ..own.clone() }),
-                ("another range", Descriptor { range: Range::Bits { multiturn: 20, singleturn: 2 }, ..own.clone() }),
+                ("zeros in between", FrameDescriptor { between: 1, ..own.clone() }),
+                (
+                    "another range",
+                    FrameDescriptor { range: Range::Bits { multiturn: 20, singleturn: 2 }, ..own.clone() },
+                ),
             ];
             for (what, other) in others {
                 assert_eq!(family.settings_for_frame(&other), None, "{}: {what}", family.key);

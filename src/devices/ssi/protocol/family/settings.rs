@@ -2,7 +2,7 @@
 
 use super::{Align, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode};
-use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage};
+use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
 
@@ -186,7 +186,7 @@ impl Settings {
         if let Some(most) = most.filter(|most| clocks > *most) {
             return Err(SettingsError::Clocks { family: family.name.clone(), most, clocks });
         }
-        let descriptor = Descriptor {
+        let descriptor = FrameDescriptor {
             clocks,
             range,
             code,

@@ -3,11 +3,11 @@
 
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
-use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, crosses_zero, detect_parity, sum};
+use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, encoder_parity, find_ambiguous_parity, sum};
 use super::plausible::{bit_shares, width_penalty};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Descriptor, ErrorBit, GrayCoverage, Meaning, Parity, Repeat};
+use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
@@ -42,28 +42,30 @@ pub(super) fn try_custom_frames(
     for bits in widths_of.into_iter().take(WIDTHS) {
         let lead = above - (bits - least);
         for (range, weight) in ranges(read, bits) {
-            let base = Descriptor {
+            let base = FrameDescriptor {
                 clocks: words.clocks,
                 range,
                 code: reading.code,
                 area: reading.last,
                 lead,
                 between: reading.gap.map_or(0, |(from, to)| to + 1 - from),
-                parity: detect_parity(reading, inverted),
+                parity: encoder_parity(reading, inverted),
                 inverted,
-                ..Descriptor::plain(0, 0)
+                ..FrameDescriptor::plain(0, 0)
             };
-            let fixed = fixed_bits(words, read, lead, inverted);
+            let fixed = bits_outside_position(words, read, lead, inverted);
             let high = fixed.iter().filter(|bit| bit.active_low).count();
             let weights = [(inverted, EXCHANGED), (reading.parity.is_some(), PARITY)];
             let weight = ANY_OTHER + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
-            let base = Descriptor { errors: fixed, ..base };
-            let over = crosses_zero(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
-            let all: Vec<(Descriptor, f64)> = over.map(|frame| (frame, PADDED)).chain([(base.clone(), 0.0)]).collect();
+            let base = FrameDescriptor { errors: fixed, ..base };
+            let over =
+                find_ambiguous_parity(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
+            let all: Vec<(FrameDescriptor, f64)> =
+                over.map(|frame| (frame, PADDED)).chain([(base.clone(), 0.0)]).collect();
             for (frame, more) in all {
                 let whole = match repeat {
                     None => frame,
-                    Some(repeat) => Descriptor { clocks, repeat: Some(repeat), ..frame },
+                    Some(repeat) => FrameDescriptor { clocks, repeat: Some(repeat), ..frame },
                 };
                 if let Ok(layout) = Layout::new(whole) {
                     take(None, layout, weight + more);
@@ -75,13 +77,13 @@ pub(super) fn try_custom_frames(
 
 /// Returns the frames that could be mistaken for one with this parity bit. In one the code covers a zero at its end,
 /// and in the other it covers an error bit.
-fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
-    let none = Descriptor { parity: None, ..frame.clone() };
+fn parity_variants(frame: &FrameDescriptor, parity: Parity) -> [FrameDescriptor; 2] {
+    let none = FrameDescriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
     errors.push(named("ERROR", parity.clock, false));
     [
-        Descriptor { coded: GrayCoverage::Area, area: parity.clock, ..none.clone() },
-        Descriptor { coded: GrayCoverage::AreaAndErrors, errors, ..none },
+        FrameDescriptor { coded: GrayCoverage::Area, area: parity.clock, ..none.clone() },
+        FrameDescriptor { coded: GrayCoverage::AreaAndErrors, errors, ..none },
     ]
 }
 
@@ -110,7 +112,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
 
 /// Returns the bits outside the position that need a name. These are bits that are always 1, bits that were active, and
 /// unexplained bits.
-fn fixed_bits(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
+fn bits_outside_position(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;
     let mut bits = Vec::new();
     for (clock, bit) in words.bits() {

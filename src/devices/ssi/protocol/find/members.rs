@@ -67,15 +67,15 @@ fn possible_inversions(read: &Read) -> &'static [bool] {
 }
 
 /// Returns the parity as the encoder sends it. Swapped wires change the parity of an odd number of bits.
-pub(super) fn detect_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
+pub(super) fn encoder_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
 /// Returns an even parity bit after Gray code, which could also be a zero covered by the code. Both look like the
 /// lowest position bit.
-pub(super) fn crosses_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
-    detect_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
+pub(super) fn find_ambiguous_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
+    encoder_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
 /// Returns whether nearly all steps are even numbers. The lowest bit then carries no information.

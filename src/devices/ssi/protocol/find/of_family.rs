@@ -1,11 +1,11 @@
 //! Candidate layouts of a family. Only settings whose position ends where the reading ends are tried.
 
 use super::frame_set::FrameSet;
-use super::members::{EXCHANGED, PADDED, Take, crosses_zero, sum};
+use super::members::{EXCHANGED, PADDED, Take, find_ambiguous_parity, sum};
 use super::plausible::width_penalty;
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
-use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage};
+use crate::devices::ssi::protocol::descriptor::{FrameDescriptor, GrayCoverage};
 use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
@@ -28,7 +28,7 @@ pub(super) fn of_family(
     };
     let shifts: &[bool] = if family.shift { &[false, true] } else { &[false] };
     let coded: &[GrayCoverage] = match reading.code {
-        Code::Gray if crosses_zero(reading, inverted).is_some() => {
+        Code::Gray if find_ambiguous_parity(reading, inverted).is_some() => {
             &[GrayCoverage::Position, GrayCoverage::Area, GrayCoverage::AreaAndErrors]
         }
         _ => &[GrayCoverage::Position],
@@ -56,7 +56,7 @@ pub(super) fn of_family(
                         if resolved.advice.iter().any(|advice| matches!(advice, Advice::Clocks { .. })) {
                             continue;
                         }
-                        let descriptor = Descriptor { inverted, ..resolved.layout.descriptor().clone() };
+                        let descriptor = FrameDescriptor { inverted, ..resolved.layout.descriptor().clone() };
                         let Ok(layout) = Layout::new(descriptor) else { continue };
                         let delivered_place =
                             family.frames.iter().any(|frame| frame.place.first().unwrap_or(&places[0]) == &errors);

@@ -218,7 +218,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let mut best = f64::INFINITY;
     for (_, reading) in tried.into_iter().take(BEST) {
         let plain = Read::new(seen, reading);
-        if leaves_out_highest(seen, &plain) {
+        if is_missing_highest_bit(seen, &plain) {
             continue;
         }
         best = best.min(plain.bits);
@@ -234,7 +234,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
 }
 
 /// Returns whether a bit before the position changes where the numbers wrap. Such a bit is the true highest bit.
-fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
+fn is_missing_highest_bit(seen: &FrameSet, read: &Read) -> bool {
     let round = read.reading.round();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
     let Some(clock) = moving.filter(|_| round != 0) else { return false };

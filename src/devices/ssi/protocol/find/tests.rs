@@ -7,7 +7,7 @@ mod recordings;
 use fastrand::Rng;
 
 use super::*;
-use crate::devices::ssi::protocol::{Descriptor, Flags, Range};
+use crate::devices::ssi::protocol::{Flags, FrameDescriptor, Range};
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
@@ -44,7 +44,11 @@ fn the_class_of_every_family_ranks_first() {
             let truth = layout(&text);
             let search = find(&turning(&truth, speed), truth.clocks(), &families);
             // If the end of the range is not passed, it is not known whether higher bits belong to the position.
-            assert!(matches!(search.doubt, None | Some(Uncertainty::Open)), "{text} at {speed}: {:?}", search.doubt);
+            assert!(
+                matches!(search.doubt, None | Some(SearchUncertainty::Open)),
+                "{text} at {speed}: {:?}",
+                search.doubt
+            );
             let first = &search.classes[0];
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
@@ -72,7 +76,7 @@ fn settings_are_found() {
     for text in settings {
         let truth = layout(text);
         let search = find(&turning(&truth, 1.3), truth.clocks(), &families);
-        assert_eq!(search.doubt, Some(Uncertainty::Open), "{text}");
+        assert_eq!(search.doubt, Some(SearchUncertainty::Open), "{text}");
         let first = &search.classes[0];
         assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)), "{text}");
     }
@@ -103,7 +107,7 @@ fn a_shaft_at_rest_yields_no_layout() {
     for family in families.iter() {
         let truth = layout(&family.key);
         let search = find(&turning(&truth, 0.0), truth.clocks(), &families);
-        assert_eq!(search.doubt, Some(Uncertainty::Standing), "{}", family.key);
+        assert_eq!(search.doubt, Some(SearchUncertainty::Standing), "{}", family.key);
         assert_eq!(search.classes, []);
     }
 }
@@ -113,32 +117,33 @@ fn noise_and_stuck_lines_yield_no_layout() {
     let families = Families::built_in();
     let mut rng = Rng::with_seed(3);
     let noise: Vec<u64> = (0..2000).map(|_| rng.u64(..)).collect();
-    assert_eq!(find(&noise, 25, &families).doubt, Some(Uncertainty::Nothing));
-    assert_eq!(find(&[0; 100], 25, &families).doubt, Some(Uncertainty::Stuck { high: false }));
-    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).doubt, Some(Uncertainty::Stuck { high: true }));
-    assert_eq!(find(&[], 25, &families).doubt, Some(Uncertainty::Standing));
+    assert_eq!(find(&noise, 25, &families).doubt, Some(SearchUncertainty::Nothing));
+    assert_eq!(find(&[0; 100], 25, &families).doubt, Some(SearchUncertainty::Stuck { high: false }));
+    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).doubt, Some(SearchUncertainty::Stuck { high: true }));
+    assert_eq!(find(&[], 25, &families).doubt, Some(SearchUncertainty::Standing));
 }
 
 /// Returns frames of an encoder of no family: gray excess whose end was passed, and a parity bit.
 #[test]
 fn encoders_of_no_family_are_found() {
     let families = Families::built_in();
-    let excess = Layout::new(Descriptor {
+    let excess = Layout::new(FrameDescriptor {
         clocks: 12,
         range: Range::Steps { per_turn: 360, turns: 1 },
         code: crate::devices::ssi::protocol::Code::GrayExcess,
         area: 12,
         lead: 3,
-        ..Descriptor::plain(0, 0)
+        ..FrameDescriptor::plain(0, 0)
     })
     .unwrap();
     let search = find(&turning(&excess, 0.7), 12, &families);
     assert_eq!((search.doubt, search.classes[0].members[0].layout.coding().last()), (None, 359), "{search:?}");
 
     let parity = crate::devices::ssi::protocol::Parity { clock: 21, even: true };
-    let with_parity = Layout::new(Descriptor { clocks: 21, parity: Some(parity), ..Descriptor::plain(0, 20) }).unwrap();
+    let with_parity =
+        Layout::new(FrameDescriptor { clocks: 21, parity: Some(parity), ..FrameDescriptor::plain(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
-    assert_eq!(search.doubt, Some(Uncertainty::Open));
+    assert_eq!(search.doubt, Some(SearchUncertainty::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
@@ -156,7 +161,7 @@ fn disturbed_frames_do_not_hide_the_layout() {
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
     // The disturbed bit is one of turns that do not change.
-    assert_eq!((search.doubt, first.evidence.misfits), (Some(Uncertainty::Open), 40));
+    assert_eq!((search.doubt, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
     assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)));
 }
 
@@ -170,7 +175,7 @@ fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
 }
 
 /// Returns whether it reads every undisturbed frame as intended.
-fn reads(proposal: &Proposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
+fn reads(proposal: &LayoutProposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
     let read =
         |(frame, meant): (&u64, &Option<u64>)| meant.is_none_or(|own| proposal.layout.decode(*frame).position == own);
     frames.iter().zip(meant).all(read)
@@ -248,7 +253,7 @@ fn every_proposal_round_trips_as_text() {
         let search = find(&recording.frames, recording.clocks, &families);
         for proposal in search.classes.iter().flat_map(|class| &class.members) {
             let text = proposal.spec_text(&families);
-            let descriptor = Descriptor::parse(&text).unwrap_or_else(|| {
+            let descriptor = FrameDescriptor::parse(&text).unwrap_or_else(|| {
                 let (key, settings) = Settings::parse(&text).unwrap();
                 Ok(settings.resolve(families.named(&key).unwrap()).unwrap().layout.descriptor().clone())
             });

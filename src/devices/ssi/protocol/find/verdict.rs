@@ -4,7 +4,7 @@ use super::frame_set::FrameSet;
 use super::members::{LayoutCandidate, has_only_even_steps};
 use super::probe::Trial;
 use super::reading::Read;
-use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
+use super::{CLASSES, Class, ClassEvidence, Group, LayoutProposal, Open, SearchUncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum difference between the first two classes in bits.
@@ -22,21 +22,21 @@ const SURE_BITS: u8 = 5;
 const SURE_DIFFERENT: usize = 64;
 const MEMBERS: usize = 200;
 
-pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
-    let Some(first) = groups.first() else { return Some(Uncertainty::Nothing) };
+pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<SearchUncertainty> {
+    let Some(first) = groups.first() else { return Some(SearchUncertainty::Nothing) };
     let frames = words.words().len();
     if !is_even(&first.read, frames, EVEN) {
-        return Some(Uncertainty::Nothing);
+        return Some(SearchUncertainty::Nothing);
     }
     if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
-        return Some(Uncertainty::Close);
+        return Some(SearchUncertainty::Close);
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
     let sure = sure && !has_uniform_jumps(&first.read) && words.distinct_count() >= SURE_DIFFERENT;
     // The readings are compared here without the penalties for unusual layouts.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven_properties(words, first).is_empty();
-    (!proven).then_some(Uncertainty::Open)
+    (!proven).then_some(SearchUncertainty::Open)
 }
 
 /// Returns whether many jumps have the same size. This indicates a wrong code rather than disturbances.
@@ -128,13 +128,13 @@ pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> 
         last = evidence.score;
         let open = open(words, &group);
         let members = group.members.into_iter().take(MEMBERS);
-        let members = members.map(|LayoutCandidate { family, layout, .. }| Proposal { family, layout }).collect();
+        let members = members.map(|LayoutCandidate { family, layout, .. }| LayoutProposal { family, layout }).collect();
         classes.push(Class { members, evidence, open });
     }
     classes
 }
 
-fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
+fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     let Group { read, members, .. } = group;
     let frames = words.words().len();
     let random = f64::from(read.reading.width()) * frames as f64;
@@ -144,7 +144,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     let explained = read.motion.explained_frame_count();
     let outside = words.bits().filter(|(clock, bit)| !read.reading.has(*clock) && !bit.moves);
     let misfits = outside.map(|(_, bit)| bit.unusual).max().unwrap_or(0).max(read.motion.nones);
-    Evidence {
+    ClassEvidence {
         score: (fit.clamp(0.0, 1.0) * explained as f64 / frames.max(1) as f64).min(most),
         explained,
         steps_a_frame: read.motion.median,

@@ -2,7 +2,7 @@
 
 use super::{Flags, Layout, Part};
 use crate::devices::ssi::protocol::code::{Code, CodeError, PositionCode, low_bits_mask};
-use crate::devices::ssi::protocol::descriptor::{Descriptor, GrayCoverage, Meaning, Parity, Word};
+use crate::devices::ssi::protocol::descriptor::{FrameDescriptor, GrayCoverage, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
 /// The reason why a frame is impossible.
@@ -147,7 +147,7 @@ struct Clocks {
     taken: Vec<(u8, ClockUse)>,
 }
 
-pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
+pub(super) fn layout(descriptor: FrameDescriptor) -> Result<Layout, LayoutError> {
     let (clocks, word) = (descriptor.clocks, descriptor.word());
     if clocks == 0 || clocks > 64 {
         return Err(LayoutError::Clocks(clocks));
@@ -246,7 +246,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
 }
 
 /// Returns the locations of the upper and lower part of the code word within a word.
-fn parts(descriptor: &Descriptor, coding: &PositionCode) -> Result<[Part; 2], LayoutError> {
+fn parts(descriptor: &FrameDescriptor, coding: &PositionCode) -> Result<[Part; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
     let needed = u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits);
@@ -284,7 +284,7 @@ fn check_count(what: RepeatedPart, limit: usize, count: usize) -> Result<(), Lay
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 
-fn invalid(descriptor: &Descriptor) -> Flags {
+fn invalid(descriptor: &FrameDescriptor) -> Flags {
     let errors = descriptor.errors.iter().map(|bit| bit.meaning).enumerate();
     let patterns = descriptor.patterns.iter().map(|pattern| pattern.meaning).enumerate();
     let raised = errors.map(|(index, meaning)| (Flags::error(index), meaning));

@@ -28,7 +28,7 @@ pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
             let parity = even.map(|even| Parity { clock: area + errors + 1, even });
             let word = area + errors + u8::from(parity.is_some());
             let repeat = twice.then_some(Repeat { word, gap: 1 });
-            Layout::new(Descriptor {
+            Layout::new(FrameDescriptor {
                 clocks: if twice { word.checked_mul(2)?.checked_add(1)? } else { word },
                 range,
                 code,
@@ -98,8 +98,8 @@ proptest! {
     }
 }
 
-fn plain() -> Descriptor {
-    Descriptor::plain(12, 13)
+fn plain() -> FrameDescriptor {
+    FrameDescriptor::plain(12, 13)
 }
 
 fn bit(name: &str, clock: u8) -> ErrorBit {
@@ -109,48 +109,48 @@ fn bit(name: &str, clock: u8) -> ErrorBit {
 #[test]
 fn impossible_layouts_are_refused_with_a_reason() {
     let parity = |clock| Some(Parity { clock, even: true });
-    let cases: [(&str, Descriptor, &str); 11] = [
-        ("no clocks", Descriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
-        ("many clocks", Descriptor { clocks: 65, ..plain() }, "a frame has 1 to 64 clocks, not 65"),
+    let cases: [(&str, FrameDescriptor, &str); 11] = [
+        ("no clocks", FrameDescriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
+        ("many clocks", FrameDescriptor { clocks: 65, ..plain() }, "a frame has 1 to 64 clocks, not 65"),
         (
             "few clocks",
-            Descriptor { clocks: 24, ..plain() },
+            FrameDescriptor { clocks: 24, ..plain() },
             "the position extends to clock 25, but the frame has only 24 clocks",
         ),
         (
             "odd gray excess",
-            Descriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
+            FrameDescriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
             "Gray excess requires an even number of steps, because with 359 steps two bits would change at the end of \
              the range",
         ),
         (
             "error bit on the position",
-            Descriptor { errors: vec![bit("ERROR", 25)], ..plain() },
+            FrameDescriptor { errors: vec![bit("ERROR", 25)], ..plain() },
             "clock 25 is used by both the position and ERROR",
         ),
         (
             "two error bits on a clock",
-            Descriptor { clocks: 26, errors: vec![bit("A", 26), bit("B", 26)], ..plain() },
+            FrameDescriptor { clocks: 26, errors: vec![bit("A", 26), bit("B", 26)], ..plain() },
             "clock 26 is used by both A and B",
         ),
         (
             "error bit behind the frame",
-            Descriptor { errors: vec![bit("ERROR", 26)], ..plain() },
+            FrameDescriptor { errors: vec![bit("ERROR", 26)], ..plain() },
             "ERROR is on clock 26, but the frame has only 25 clocks",
         ),
         (
             "wide",
-            Descriptor { lead: 1, ..plain() },
+            FrameDescriptor { lead: 1, ..plain() },
             "25 position bits after 1 zeros need 26 clocks, but only 25 are available",
         ),
         (
             "repetition",
-            Descriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
+            FrameDescriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
             "the frame and the repeated frame need 51 clocks, but there are only 50",
         ),
         (
             "parity bit in the Gray code",
-            Descriptor {
+            FrameDescriptor {
                 clocks: 27,
                 area: 27,
                 code: Code::Gray,
@@ -162,7 +162,7 @@ fn impossible_layouts_are_refused_with_a_reason() {
         ),
         (
             "parity bit in what is shifted",
-            Descriptor { clocks: 28, area: 28, shift_right: true, parity: parity(28), ..plain() },
+            FrameDescriptor { clocks: 28, area: 28, shift_right: true, parity: parity(28), ..plain() },
             "the parity bit cannot be on clock 28, because the first 28 clocks are shifted together",
         ),
     ];
@@ -174,12 +174,12 @@ fn impossible_layouts_are_refused_with_a_reason() {
 /// Reference section 8: the position ABCDEF in Gray followed by an error bit 1, both ways.
 #[test]
 fn gray_decodes_with_and_without_the_error_bit() {
-    let descriptor = |coded| Descriptor {
+    let descriptor = |coded| FrameDescriptor {
         clocks: 25,
         code: Code::Gray,
         coded,
         errors: vec![bit("ERROR", 25)],
-        ..Descriptor::plain(0, 24)
+        ..FrameDescriptor::plain(0, 24)
     };
     let plain = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
     let whole = Layout::new(descriptor(GrayCoverage::AreaAndErrors)).unwrap();
@@ -193,7 +193,8 @@ fn gray_decodes_with_and_without_the_error_bit() {
 /// Zeros around the word belong to the Gray code or not: the frames differ whenever the lowest bit is 1 (section 2).
 #[test]
 fn gray_may_cover_the_position_or_also_the_zeros() {
-    let descriptor = |coded| Descriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..Descriptor::plain(0, 12) };
+    let descriptor =
+        |coded| FrameDescriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..FrameDescriptor::plain(0, 12) };
     let position = Layout::new(descriptor(GrayCoverage::Position)).unwrap();
     let area = Layout::new(descriptor(GrayCoverage::Area)).unwrap();
     // 101 = binary 1100101, gray 1010111; with two zeros after it: gray of 110010100 = 101011110.
@@ -206,5 +207,5 @@ fn gray_may_cover_the_position_or_also_the_zeros() {
 
 #[test]
 fn the_smallest_frame_passes_the_checks() {
-    assert_eq!(Ok(Layout::default()), Layout::new(Descriptor::plain(0, 1)));
+    assert_eq!(Ok(Layout::default()), Layout::new(FrameDescriptor::plain(0, 1)));
 }

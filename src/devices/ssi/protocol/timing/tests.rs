@@ -3,8 +3,8 @@
 use super::*;
 use crate::devices::ssi::protocol::Families;
 
-fn reads(clocks: u8, clock_hz: f64, pause_us: u64) -> Reads {
-    Reads {
+fn reads(clocks: u8, clock_hz: f64, pause_us: u64) -> ReadConditions {
+    ReadConditions {
         clocks,
         clock_hz,
         pause: Duration::from_micros(pause_us),
@@ -22,7 +22,7 @@ fn times(key: &str) -> Times {
 /// bits at 400 kHz take 82.5 µs. How often it makes positions is not known.
 #[test]
 fn any_encoder_has_the_general_times() {
-    let reads = Reads { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
+    let reads = ReadConditions { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
     let timing = Times::of_any_encoder(&reads);
     assert_eq!(timing.burst, Duration::from_nanos(82_500));
     assert_eq!(timing.cycle, Duration::from_nanos(102_500));
@@ -30,8 +30,8 @@ fn any_encoder_has_the_general_times() {
     assert_eq!((timing.cable_hz, timing.age), (Some(300_000), None));
     let short = Warning::PauseShort { least: Duration::from_micros(25) };
     assert_eq!(timing.warnings, [Warning::CableClock { most_hz: 300_000 }, short]);
-    let fast = Reads { clock_hz: 2.5e6, pause: Duration::from_micros(30), cable_metres: None, ..reads };
-    let synchronous = Reads { synchronous: true, ..fast };
+    let fast = ReadConditions { clock_hz: 2.5e6, pause: Duration::from_micros(30), cable_metres: None, ..reads };
+    let synchronous = ReadConditions { synchronous: true, ..fast };
     let too_fast = Warning::EncoderClock { most_hz: 2_000_000 };
     assert_eq!(Times::of_any_encoder(&fast).warnings, [too_fast]);
     assert_eq!(Times::of_any_encoder(&synchronous).warnings, [Warning::SynchronousUnknown, too_fast]);
@@ -42,11 +42,11 @@ fn any_encoder_has_the_general_times() {
 fn bursts_match_the_reference() {
     let table = [(25, 400e3, 62_500), (25, 1e6, 25_000), (25, 1.5e6, 16_667), (33, 400e3, 82_500)];
     for (clocks, clock_hz, nanoseconds) in table {
-        let timing = times("afm60").reckon(&reads(clocks, clock_hz, 100));
+        let timing = times("afm60").calculate_timing(&reads(clocks, clock_hz, 100));
         assert_eq!(timing.burst, Duration::from_nanos(nanoseconds), "{clocks} at {clock_hz}");
     }
     // 33 bits at 400 kHz and tm of 25 µs: 107.5 µs.
-    let timing = times("afm60").reckon(&reads(33, 400e3, 100));
+    let timing = times("afm60").calculate_timing(&reads(33, 400e3, 100));
     assert_eq!(timing.least_pause, Duration::from_micros(25));
     assert_eq!(timing.monoflop, (Duration::from_micros(15), Duration::from_micros(25)));
     assert!((timing.most_reads_hz - 1e6 / 107.5).abs() < 1e-6, "{}", timing.most_reads_hz);
@@ -57,7 +57,8 @@ fn cable_lengths_match_the_manual() {
     let table =
         [(49.9, Some(400_000)), (50.0, Some(300_000)), (150.0, Some(200_000)), (399.0, Some(100_000)), (400.0, None)];
     for (metres, most_hz) in table {
-        let timing = times("afm60").reckon(&Reads { cable_metres: Some(metres), ..reads(25, 150e3, 100) });
+        let timing =
+            times("afm60").calculate_timing(&ReadConditions { cable_metres: Some(metres), ..reads(25, 150e3, 100) });
         assert_eq!(timing.cable_hz, most_hz, "{metres} m");
         let warned = timing.warnings.iter().any(|it| matches!(it, Warning::CableClock { .. } | Warning::CableLong));
         assert_eq!(warned, most_hz.is_none_or(|most| most < 150_000), "{metres} m");
@@ -67,17 +68,17 @@ fn cable_lengths_match_the_manual() {
 /// Reference section 5.
 #[test]
 fn family_timing_limits_cause_warnings() {
-    let warnings = |key: &str, reads: &Reads| times(key).reckon(reads).warnings;
+    let warnings = |key: &str, reads: &ReadConditions| times(key).calculate_timing(reads).warnings;
     let micros = Duration::from_micros;
     let ahm = reads(27, 400e3, 200);
-    let behind = |reads: Reads| Reads { synchronous: true, ..reads };
+    let behind = |reads: ReadConditions| ReadConditions { synchronous: true, ..reads };
     assert_eq!(warnings("ahm36", &ahm), []);
     assert_eq!(warnings("ahm36", &reads(27, 400e3, 600_001)), [Warning::PauseLong { most: micros(600_000) }]);
     // 27 bits at 2 MHz take 13.5 µs: with 30 µs of pause a read takes 43.5 µs, and positions are made every 125.
     assert_eq!(warnings("ahm36", &reads(27, 2e6, 30)), [Warning::Repeats { update: micros(125) }]);
     assert_eq!(warnings("ahm36", &behind(reads(27, 400e3, 100))), [Warning::PauseShort { least: micros(150) }]);
     assert_eq!(warnings("atm60", &behind(reads(25, 1.6e6, 300))), [Warning::EncoderClock { most_hz: 1_500_000 }]);
-    let odd = Reads { any_steps: true, ..behind(reads(25, 400e3, 180)) };
+    let odd = ReadConditions { any_steps: true, ..behind(reads(25, 400e3, 180)) };
     assert_eq!(warnings("atm60", &odd), [Warning::PauseShort { least: micros(200) }]);
     assert_eq!(warnings("afs60", &behind(reads(21, 400e3, 100))), [Warning::NoSynchronous]);
     assert_eq!(warnings("afs60", &reads(21, 2.1e6, 100)), [Warning::EncoderClock { most_hz: 2_000_000 }]);
@@ -91,17 +92,21 @@ fn position_ages_are_computed() {
     let micros = |all: f64| Duration::from_secs_f64(all * 1e-6);
     // 25 clocks at 500 kHz: 50 µs.
     let burst = reads(25, 500e3, 300);
-    let behind = Reads { synchronous: true, ..burst };
-    assert_eq!(times("atm60").reckon(&burst).age, Some((micros(55.0), micros(200.0))));
-    let tm = times("atm60").reckon(&behind).monoflop;
+    let behind = ReadConditions { synchronous: true, ..burst };
+    assert_eq!(times("atm60").calculate_timing(&burst).age, Some((micros(55.0), micros(200.0))));
+    let tm = times("atm60").calculate_timing(&behind).monoflop;
     assert_eq!(tm, (micros(150.0), micros(150.0)), "synchronous");
-    let any_steps = Reads { any_steps: true, ..burst };
-    assert_eq!(times("atm60").reckon(&any_steps).age, Some((micros(55.0), micros(250.0))));
-    assert_eq!(times("atm60").reckon(&behind).age, Some((micros(400.0), micros(400.0))), "that of the burst before");
+    let any_steps = ReadConditions { any_steps: true, ..burst };
+    assert_eq!(times("atm60").calculate_timing(&any_steps).age, Some((micros(55.0), micros(250.0))));
     assert_eq!(
-        times("ahm36").reckon(&behind).age,
+        times("atm60").calculate_timing(&behind).age,
+        Some((micros(400.0), micros(400.0))),
+        "that of the burst before"
+    );
+    assert_eq!(
+        times("ahm36").calculate_timing(&behind).age,
         Some((micros(330.0), micros(330.0))),
         "taken 20 µs behind the burst"
     );
-    assert_eq!(times("ttk70").reckon(&burst).age, None);
+    assert_eq!(times("ttk70").calculate_timing(&burst).age, None);
 }

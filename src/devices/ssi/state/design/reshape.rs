@@ -1,7 +1,7 @@
 //! Change of a frame for other positions or another code. The frame becomes longer or shorter, as a user would redraw
 //! it.
 
-use crate::devices::ssi::protocol::{Code, Descriptor, LayoutError, PositionCode, Range};
+use crate::devices::ssi::protocol::{Code, FrameDescriptor, LayoutError, PositionCode, Range};
 
 /// Returns the frame with other positions or another code. Zeros after the position absorb the change if there are any.
 /// Otherwise the parts after the position move, and the frame becomes longer or shorter.
@@ -9,15 +9,19 @@ use crate::devices::ssi::protocol::{Code, Descriptor, LayoutError, PositionCode,
 /// # Errors
 /// Returns an error if the positions or code words are impossible. Whether the complete frame is possible must be
 /// checked by the caller.
-pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> Result<Descriptor, LayoutError> {
+pub(super) fn with_positions(
+    before: &FrameDescriptor,
+    range: Range,
+    code: Code,
+) -> Result<FrameDescriptor, LayoutError> {
     let bits_before = bits(&before.range, before.code)?;
     let bits_now = bits(&range, code)?;
-    let mut now = Descriptor { range, code, ..before.clone() };
+    let mut now = FrameDescriptor { range, code, ..before.clone() };
     let parted = matches!(range, Range::Bits { multiturn, singleturn } if multiturn > 0 && singleturn > 0);
     if !parted || code == Code::Bcd {
         now.between = 0;
     }
-    let used = |descriptor: &Descriptor, bits: u8| {
+    let used = |descriptor: &FrameDescriptor, bits: u8| {
         u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits)
     };
     let (used_before, used_now) = (used(before, bits_before), used(&now, bits_now));
@@ -70,14 +74,14 @@ mod tests {
     #[test]
     fn a_frame_without_zeros_grows_and_shrinks_with_its_position() {
         // AFM60: 12 + 18 bits, error bit behind them on 31.
-        let before = Descriptor { clocks: 31, errors: vec![error(31)], ..Descriptor::plain(12, 18) };
+        let before = FrameDescriptor { clocks: 31, errors: vec![error(31)], ..FrameDescriptor::plain(12, 18) };
         let now = with_positions(&before, bits(12, 15), Code::Gray).unwrap();
         assert_eq!((now.clocks, now.area, now.errors[0].clock, now.code), (28, 27, 28, Code::Gray));
         let back = with_positions(&now, bits(12, 18), Code::Binary).unwrap();
         assert_eq!(back, before);
         // Decimal digits: 3600 steps need four, and 12 bits were 12 clocks.
         let steps = Range::Steps { per_turn: 3600, turns: 1 };
-        let plain = Descriptor { range: steps, ..Descriptor::plain(0, 12) };
+        let plain = FrameDescriptor { range: steps, ..FrameDescriptor::plain(0, 12) };
         let bcd = with_positions(&plain, steps, Code::Bcd).unwrap();
         assert_eq!((bcd.clocks, bcd.area), (16, 16));
     }
@@ -85,7 +89,7 @@ mod tests {
     #[test]
     fn trailing_zeros_absorb_changes_of_the_position() {
         // AHS36: 14 clocks for the position, the error bit on 15.
-        let before = Descriptor { clocks: 15, area: 14, errors: vec![error(15)], ..Descriptor::plain(0, 12) };
+        let before = FrameDescriptor { clocks: 15, area: 14, errors: vec![error(15)], ..FrameDescriptor::plain(0, 12) };
         let now = with_positions(&before, bits(0, 13), Code::Binary).unwrap();
         assert_eq!((now.clocks, now.area, now.errors[0].clock), (15, 14, 15));
         let longer = with_positions(&before, bits(0, 16), Code::Binary).unwrap();
@@ -95,11 +99,11 @@ mod tests {
 
     #[test]
     fn a_repeated_frame_grows_in_both_copies() {
-        let before = Descriptor {
+        let before = FrameDescriptor {
             clocks: 27,
             parity: Some(Parity { clock: 13, even: true }),
             repeat: Some(Repeat { word: 13, gap: 1 }),
-            ..Descriptor::plain(0, 12)
+            ..FrameDescriptor::plain(0, 12)
         };
         let now = with_positions(&before, bits(0, 14), Code::Binary).unwrap();
         assert_eq!((now.clocks, now.parity.unwrap().clock, now.repeat.unwrap().word), (31, 15, 15));
@@ -108,12 +112,12 @@ mod tests {
 
     #[test]
     fn impossible_frames_are_refused() {
-        let plain = Descriptor::plain(0, 12);
+        let plain = FrameDescriptor::plain(0, 12);
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };
         assert!(with_positions(&plain, odd, Code::GrayExcess).is_err());
         // Too long for a frame, and no panic.
-        let long = with_positions(&Descriptor { lead: 40, ..plain }, bits(32, 32), Code::Binary).unwrap();
+        let long = with_positions(&FrameDescriptor { lead: 40, ..plain }, bits(32, 32), Code::Binary).unwrap();
         assert!(Layout::new(long).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Form rows for a frame that belongs to no family, or that its family cannot send.
 
 use super::{CODES, Field, FieldInput, Group, OVER, RangeKind, Row, byte, position_rows, word};
-use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+use crate::devices::ssi::protocol::{ErrorBit, Fraction, FrameDescriptor, Meaning, Parity, Range, Repeat};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::{Edit, LayoutDesigner};
 
@@ -19,7 +19,7 @@ pub(super) fn groups(designer: &LayoutDesigner) -> Vec<Group> {
     groups
 }
 
-fn frame(descriptor: &Descriptor) -> Vec<Row> {
+fn frame(descriptor: &FrameDescriptor) -> Vec<Row> {
     let mut rows = vec![
         Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""),
         Row::number(Field::Lead, "ssi_form.lead", descriptor.lead, "bit"),
@@ -153,11 +153,11 @@ fn apply_range_input(range: &Range, field: Field, input: &FieldInput) -> Option<
 
 /// Returns the frame with the given numbers of zeros before and within the position. The parts after the position move
 /// with it.
-fn with_padding(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
+fn with_padding(before: &FrameDescriptor, lead: u8, between: u8) -> Option<FrameDescriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
     let mut next =
-        Descriptor { lead, between, area: moved(before.area)?, clocks: moved(before.clocks)?, ..before.clone() };
+        FrameDescriptor { lead, between, area: moved(before.area)?, clocks: moved(before.clocks)?, ..before.clone() };
     for error in next.errors.iter_mut().filter(|error| error.clock > before.area) {
         error.clock = moved(error.clock)?;
     }
@@ -172,7 +172,7 @@ fn with_padding(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor
 }
 
 /// Returns the frame with another parity. A new parity bit becomes an additional clock at the end.
-fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
+fn with_parity(mut next: FrameDescriptor, choice: usize) -> Option<FrameDescriptor> {
     match (choice, next.parity) {
         (0, Some(parity)) => {
             next.parity = None;
@@ -200,7 +200,7 @@ fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
 
 impl LayoutDesigner {
     /// Returns the frame with an additional error bit, or `None` if the frame already has the maximum number.
-    pub fn with_error_bit(&self) -> Option<Descriptor> {
+    pub fn with_error_bit(&self) -> Option<FrameDescriptor> {
         let mut next = self.design().profile.descriptor.clone();
         if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
             return None;
@@ -219,7 +219,7 @@ impl LayoutDesigner {
     }
 
     /// Returns the frame without an error bit. Its clock becomes a zero, unless it is the last one.
-    pub fn without_error_bit(&self, index: usize) -> Descriptor {
+    pub fn without_error_bit(&self, index: usize) -> FrameDescriptor {
         let mut next = self.design().profile.descriptor.clone();
         if index < next.errors.len() {
             let removed = next.errors.remove(index);

@@ -1,8 +1,8 @@
 //! Moving of parts of a frame. The result is always a possible frame. If the requested clock is not possible, the
 //! nearest possible one towards the present clock is used.
 
-use super::{Handle, Parts, has_words};
-use crate::devices::ssi::protocol::{Descriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
+use super::{Handle, PositionParts, has_bit_patterns};
+use crate::devices::ssi::protocol::{FrameDescriptor, GrayCoverage, Layout, Parity, Pattern, Range, Repeat, Word};
 
 /// Returns the frame after a part was moved to a clock, or as close to it as possible.
 ///
@@ -22,20 +22,22 @@ pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout
 pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
     let descriptor = layout.descriptor();
     let mut handles = vec![Handle::Position];
-    match Parts::of(layout) {
-        Parts::Both(..) if descriptor.between == 0 => {
+    match PositionParts::of(layout) {
+        PositionParts::Both(..) if descriptor.between == 0 => {
             handles.extend([Handle::LeadEnd, Handle::Split, Handle::BetweenEnd, Handle::StepsEnd]);
         }
-        Parts::Both(..) => handles.extend([Handle::LeadEnd, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd]),
-        Parts::One(_) => handles.extend([Handle::LeadEnd, Handle::StepsEnd]),
-        Parts::Whole(_) => {}
+        PositionParts::Both(..) => {
+            handles.extend([Handle::LeadEnd, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd])
+        }
+        PositionParts::One(_) => handles.extend([Handle::LeadEnd, Handle::StepsEnd]),
+        PositionParts::Whole(_) => {}
     }
-    if is_area_relevant(descriptor) {
+    if is_area_end_used(descriptor) {
         handles.push(Handle::AreaEnd);
     }
     handles.extend((0..descriptor.errors.len()).map(Handle::Error));
     handles.extend(descriptor.parity.map(|_| Handle::Parity));
-    if descriptor.repeat.is_some() && !has_words(layout) {
+    if descriptor.repeat.is_some() && !has_bit_patterns(layout) {
         handles.extend([Handle::WordEnd, Handle::GapEnd]);
     }
     handles.push(Handle::FrameEnd);
@@ -47,14 +49,14 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
 pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     let descriptor = layout.descriptor();
     let begins = descriptor.lead + u8::from(descriptor.shift_right);
-    let parts = Parts::of(layout);
-    let is_bits = !matches!(parts, Parts::Whole(_));
+    let parts = PositionParts::of(layout);
+    let is_bits = !matches!(parts, PositionParts::Whole(_));
     match (handle, parts) {
         (Handle::LeadEnd, _) => is_bits.then_some(begins),
-        (Handle::Split | Handle::TurnsEnd, Parts::Both(turns, _)) => Some(begins + turns),
-        (Handle::BetweenEnd, Parts::Both(turns, _)) => Some(begins + turns + descriptor.between),
+        (Handle::Split | Handle::TurnsEnd, PositionParts::Both(turns, _)) => Some(begins + turns),
+        (Handle::BetweenEnd, PositionParts::Both(turns, _)) => Some(begins + turns + descriptor.between),
         (Handle::StepsEnd, parts) => is_bits.then_some(begins + descriptor.between + parts.bits()),
-        (Handle::AreaEnd, _) => is_area_relevant(descriptor).then_some(descriptor.area),
+        (Handle::AreaEnd, _) => is_area_end_used(descriptor).then_some(descriptor.area),
         (Handle::WordEnd, _) => descriptor.repeat.map(|repeat| repeat.word),
         (Handle::GapEnd, _) => descriptor.repeat.map(|repeat| repeat.word + repeat.gap),
         (Handle::FrameEnd, _) => Some(descriptor.clocks),
@@ -72,7 +74,7 @@ pub(super) enum Single {
 }
 
 /// Returns the error and parity bits that directly follow the position.
-pub(super) fn adjacent_bits(layout: &Layout) -> Vec<Single> {
+pub(super) fn bits_after_position(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
     let mut chain = Vec::new();
@@ -83,7 +85,7 @@ pub(super) fn adjacent_bits(layout: &Layout) -> Vec<Single> {
     chain
 }
 
-fn single_bit_at(descriptor: &Descriptor, clock: u8) -> Option<Single> {
+fn single_bit_at(descriptor: &FrameDescriptor, clock: u8) -> Option<Single> {
     let error = descriptor.errors.iter().position(|bit| bit.clock == clock).map(Single::Error);
     error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
 }
@@ -92,25 +94,25 @@ fn single_bit_at(descriptor: &Descriptor, clock: u8) -> Option<Single> {
 pub(super) fn end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
-    (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)
+    (descriptor.lead + descriptor.between + PositionParts::of(layout).bits() + late).min(descriptor.area)
 }
 
 /// Returns whether the frame depends on the end of the area.
-const fn is_area_relevant(descriptor: &Descriptor) -> bool {
+const fn is_area_end_used(descriptor: &FrameDescriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
 /// Returns the frame with a part moved from one clock to another. The frame may be impossible. Returns `None` if no
 /// descriptor can express it.
-fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
+fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<FrameDescriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();
-    let both = matches!(Parts::of(layout), Parts::Both(..));
+    let both = matches!(PositionParts::of(layout), PositionParts::Both(..));
     match handle {
         Handle::LeadEnd => {
             new.lead = plus(new.lead, by)?;
             new.range =
-                if both { with_resized_range(new.range, -by, 0)? } else { resize_range_evenly(new.range, -by)? };
+                if both { with_resized_range(new.range, -by, 0)? } else { resize_single_part_range(new.range, -by)? };
         }
         Handle::Split if new.between > 0 => return None,
         Handle::Split => new.range = with_resized_range(new.range, by, -by)?,
@@ -123,7 +125,8 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
             new.between = plus(new.between, by)?;
         }
         Handle::StepsEnd => {
-            new.range = if both { with_resized_range(new.range, 0, by)? } else { resize_range_evenly(new.range, by)? };
+            new.range =
+                if both { with_resized_range(new.range, 0, by)? } else { resize_single_part_range(new.range, by)? };
             follow(layout, &mut new, by, following)?;
         }
         Handle::Position => {
@@ -148,7 +151,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
         Handle::Parity => put(&mut new, Single::Parity, at, to),
     }
-    if !is_area_relevant(&new) {
+    if !is_area_end_used(&new) {
         // The area has no effect on the frame, but it must have room for the position.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
@@ -157,20 +160,20 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
 }
 
 /// Returns the width of the code word. The code does not change when parts are moved.
-fn bits(new: &Descriptor, old: &Layout) -> u8 {
-    match Parts::of(old) {
-        Parts::Whole(bits) => bits,
-        Parts::Both(..) | Parts::One(_) => new.range.bits().unwrap_or(u8::MAX),
+fn bits(new: &FrameDescriptor, old: &Layout) -> u8 {
+    match PositionParts::of(old) {
+        PositionParts::Whole(bits) => bits,
+        PositionParts::Both(..) | PositionParts::One(_) => new.range.bits().unwrap_or(u8::MAX),
     }
 }
 
 /// Moves the parts after the position together with its end.
-fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
-    let chain = adjacent_bits(old);
+fn follow(old: &Layout, new: &mut FrameDescriptor, by: i16, following: bool) -> Option<()> {
+    let chain = bits_after_position(old);
     if !following || chain.is_empty() {
         return Some(());
     }
-    if is_area_relevant(new) && end(old) == new.area {
+    if is_area_end_used(new) && end(old) == new.area {
         new.area = plus(new.area, by)?;
     }
     for single in chain {
@@ -181,7 +184,7 @@ fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Optio
 }
 
 /// Moves a bit to another clock. If there is already a bit at that clock, the bits swap places.
-fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
+fn put(descriptor: &mut FrameDescriptor, single: Single, at: u8, to: u8) {
     let other = single_bit_at(descriptor, to);
     set(descriptor, single, to);
     if let Some(other) = other {
@@ -189,14 +192,14 @@ fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
     }
 }
 
-fn bit_clock(descriptor: &Descriptor, single: Single) -> Option<u8> {
+fn bit_clock(descriptor: &FrameDescriptor, single: Single) -> Option<u8> {
     match single {
         Single::Error(index) => descriptor.errors.get(index).map(|bit| bit.clock),
         Single::Parity => descriptor.parity.map(|parity| parity.clock),
     }
 }
 
-fn set(descriptor: &mut Descriptor, single: Single, clock: u8) {
+fn set(descriptor: &mut FrameDescriptor, single: Single, clock: u8) {
     match single {
         Single::Error(index) => {
             if let Some(bit) = descriptor.errors.get_mut(index) {
@@ -221,7 +224,7 @@ fn with_resized_range(range: Range, turns: i16, steps: i16) -> Option<Range> {
 
 /// Returns the range with another number of bits, or `None` if the number becomes 0 or the range is not defined by
 /// bits.
-fn resize_range_evenly(range: Range, by: i16) -> Option<Range> {
+fn resize_single_part_range(range: Range, by: i16) -> Option<Range> {
     let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
     match range {
         Range::Bits { multiturn, singleturn: 0 } => Some(Range::Bits { multiturn: more(multiturn)?, singleturn: 0 }),

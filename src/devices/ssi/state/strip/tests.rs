@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::app::Language;
-use crate::devices::ssi::protocol::{Code, Descriptor, ErrorBit, Families, Fraction, Parity, Repeat, Settings};
+use crate::devices::ssi::protocol::{Code, ErrorBit, Families, Fraction, FrameDescriptor, Parity, Repeat, Settings};
 
 fn bit(name: &str, clock: u8) -> ErrorBit {
     ErrorBit { name: name.to_owned(), clock, meaning: Meaning::Invalid, active_low: false, cleared_by_transfer: false }
@@ -53,7 +53,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
             let errors: Vec<_> =
                 errors.iter().enumerate().map(|(i, at)| bit(&format!("E{i}"), needed + 1 + at)).collect();
             let repeat = twice.map(|(gap, _)| Repeat { word, gap });
-            Layout::new(Descriptor {
+            Layout::new(FrameDescriptor {
                 clocks: twice.map_or(Some(word), |(gap, behind)| word.checked_mul(2)?.checked_add(gap + behind))?,
                 range,
                 code,
@@ -74,7 +74,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
 }
 
 /// Returns the frame without an area that has no effect: here it is the whole word.
-fn without_area(layout: &Layout) -> Descriptor {
+fn without_area(layout: &Layout) -> FrameDescriptor {
     let mut descriptor = layout.descriptor().clone();
     if !descriptor.shift_right && descriptor.coded == GrayCoverage::Position {
         descriptor.area = descriptor.word();
@@ -94,7 +94,7 @@ proptest! {
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit moved directly after others follows them from now on.
-        prop_assume!(moving::adjacent_bits(there.layout()).len() == moving::adjacent_bits(&layout).len() || !following);
+        prop_assume!(moving::bits_after_position(there.layout()).len() == moving::bits_after_position(&layout).len() || !following);
         // So does the end of an area that the position now fills.
         let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
@@ -151,11 +151,11 @@ fn frames_are_divided_into_fields() {
     assert_eq!(cell(&tree, 9).words(Language::English), "Clock 9: bit MT3 of the turns (number of turn bits: 8)");
     assert_eq!(short(&tree, &tree.fields()[2]).words(Language::German), "ST 8");
 
-    let twice = Layout::new(Descriptor {
+    let twice = Layout::new(FrameDescriptor {
         clocks: 20,
         parity: Some(Parity { clock: 9, even: false }),
         repeat: Some(Repeat { word: 9, gap: 1 }),
-        ..Descriptor::plain(0, 8)
+        ..FrameDescriptor::plain(0, 8)
     });
     let twice = Strip::of(&twice.unwrap());
     let fields =
@@ -185,7 +185,7 @@ fn error_bits_optionally_follow_the_end_of_the_steps() {
 #[test]
 fn moving_boundaries_yields_the_formats_of_the_manual() {
     let position = 0xA5 << 8 | 0x3C;
-    let whole = Strip::of(&Layout::new(Descriptor::plain(12, 13)).unwrap());
+    let whole = Strip::of(&Layout::new(FrameDescriptor::plain(12, 13)).unwrap());
     let tree = whole.moved(Handle::LeadEnd, 4, true).moved(Handle::StepsEnd, 20, true);
     assert_eq!(frame(&tree, position, &[]), 0x014_A780);
     let other = whole.moved(Handle::Split, 13, true).moved(Handle::LeadEnd, 5, true);

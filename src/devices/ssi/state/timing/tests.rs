@@ -9,20 +9,21 @@ use crate::app::Language;
 use crate::devices::ssi::protocol::{Families, Settings};
 use crate::devices::ssi::state::strip::Kind;
 
-fn diagram(family: &str, clock_hz: f64, pause_us: f64, synchronous: bool) -> Diagram {
+fn diagram(family: &str, clock_hz: f64, pause_us: f64, synchronous: bool) -> BurstDiagram {
     let families = Families::built_in();
     let family = families.named(family).unwrap();
     let layout = Settings::default().resolve(family).unwrap().layout;
     let pause = Duration::from_secs_f64(pause_us * 1e-6);
-    let reads = Reads { clocks: layout.clocks(), clock_hz, pause, cable_metres: None, synchronous, any_steps: false };
-    Diagram::of(&layout, &family.times, &reads)
+    let reads =
+        ReadConditions { clocks: layout.clocks(), clock_hz, pause, cable_metres: None, synchronous, any_steps: false };
+    BurstDiagram::of(&layout, &family.times, &reads)
 }
 
 fn micros(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e3
 }
 
-fn span_texts(diagram: &Diagram) -> Vec<String> {
+fn span_texts(diagram: &BurstDiagram) -> Vec<String> {
     diagram.spans().iter().map(|span| diagram.words(span).words(Language::English)).collect()
 }
 

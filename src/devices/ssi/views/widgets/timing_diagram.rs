@@ -21,7 +21,7 @@ use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke,
 use super::bit_strip::field_ink;
 use crate::app::Text;
 use crate::devices::ssi::state::strip::{CellState, bare, short};
-use crate::devices::ssi::state::timing::{Diagram, skipped_operations};
+use crate::devices::ssi::state::timing::{BurstDiagram, skipped_operations};
 use crate::ui::Theme;
 
 use axis::Axis;
@@ -30,7 +30,7 @@ use place::{Bar, LabelExtent, LabelPlacement};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
     pub(crate) label: &'a str,
-    pub(crate) diagram: &'a Diagram,
+    pub(crate) diagram: &'a BurstDiagram,
     /// Right-justified bits to display, if known.
     pub(crate) frame: Option<u64>,
 }

@@ -8,12 +8,12 @@ use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
     axis.look(seen);
-    assert_eq!((axis.step(), axis.invalidated_text()), (shown, Some(step)), "the page is left by a press alone");
+    assert_eq!((axis.step(), axis.invalidated_step()), (shown, Some(step)), "the page is left by a press alone");
     assert_eq!(axis.step_status(step), Reached::Failed);
     assert_eq!(axis.check_can_continue(seen).unwrap_err().id(), "hd_axis.fallen");
     assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
     axis.back(seen);
-    assert_eq!((axis.step(), axis.invalidated_text()), (step, None));
+    assert_eq!((axis.step(), axis.invalidated_step()), (step, None));
 }
 
 #[test]
@@ -48,7 +48,7 @@ fn setup_restarts_at_the_first_step_with_lost_values() {
     seen.connected = false;
     seen.scale = None;
     axis.look(&seen);
-    assert_eq!((axis.step(), axis.invalidated_text()), (AxisStep::Test, None));
+    assert_eq!((axis.step(), axis.invalidated_step()), (AxisStep::Test, None));
 }
 
 /// Issue 21.6 (c): any change of pitch, reference or a limit makes all later results void, including taught limits.
@@ -75,7 +75,7 @@ fn steps_after_a_changed_value_are_undone() {
         let (mut axis, mut seen) = tested();
         change(&mut seen);
         axis.look(&seen);
-        assert_eq!((axis.invalidated_text(), done(&axis)), (Some(falls), falls.index()), "{label}");
+        assert_eq!((axis.invalidated_step(), done(&axis)), (Some(falls), falls.index()), "{label}");
         assert!(axis.outcome(TestTarget::Middle).is_none(), "{label}");
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
         assert!(axis.ask(AxisButton::Go(TestTarget::Upper), &seen).is_err(), "{label}");
@@ -98,7 +98,7 @@ fn steps_after_a_changed_value_are_undone() {
     assert!(axis.outcome(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
-    assert_eq!(axis.invalidated_text(), None, "the review of their plan confirms them");
+    assert_eq!(axis.invalidated_step(), None, "the review of their plan confirms them");
     // Going back to look, and forward again, loses nothing.
     let (mut axis, seen) = tested();
     (0..4).for_each(|_| axis.back(&seen));

@@ -160,7 +160,7 @@ impl LanePainter<'_> {
             painter.vline(x, place.plot.y_range(), Stroke::new(1.0, theme.palette.accent));
         }
         let x = x.clamp(place.plot.left(), place.plot.right());
-        self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
+        self.model.draw_drag_ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
     /// Draws the handle of an edge.

@@ -84,7 +84,7 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         return Some(lane.shrink2(Vec2::new(ends, 0.0)));
     }
     let edge = edge(rows, strip, handle)?;
-    let x = edge.center().x + side(handle) * if is_second_tab(strip, handle) { WIDTH } else { BESIDE };
+    let x = edge.center().x + side(handle) * if has_second_tab(strip, handle) { WIDTH } else { BESIDE };
     let (top, bottom) = match handle {
         // Another boundary can be at the same edge.
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
@@ -105,12 +105,12 @@ pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 
 /// Returns the horizontal distance of a boundary's tab from its edge. Negative values are to the left.
 pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
-    side(handle) * if is_second_tab(strip, handle) { SECOND_TAB } else { TAB }
+    side(handle) * if has_second_tab(strip, handle) { SECOND_TAB } else { TAB }
 }
 
 /// Returns whether the tab of a handle is the second one at its edge. The boundary between turns and steps is closer to
 /// the edge than the handle for zeros between them.
-fn is_second_tab(strip: &Strip, handle: Handle) -> bool {
+fn has_second_tab(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }
 

@@ -132,11 +132,11 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: O
         }
     }
     if drag.is_some() {
-        ghost(view, handle);
+        draw_drag_ghost(view, handle);
     }
 }
 
-fn ghost(view: &StripContext<'_>, handle: Handle) {
+fn draw_drag_ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };
     let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_cell()) {

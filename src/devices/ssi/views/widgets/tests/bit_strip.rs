@@ -179,7 +179,7 @@ fn cells_can_be_selected_and_bits_toggled() {
 #[test]
 fn every_frame_stays_within_its_width() {
     for (bits, width) in [((1, 1), 200.0), ((32, 32), 300.0), ((32, 32), 600.0), ((32, 32), 880.0), ((12, 13), 470.0)] {
-        let plain = crate::devices::ssi::protocol::Descriptor::plain(bits.0, bits.1);
+        let plain = crate::devices::ssi::protocol::FrameDescriptor::plain(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
         let left = harness.get_by_label("before").rect().left();
         let labels = ["Frame", "End of the frame", "Start of the position bits", "Entire position"];
@@ -213,7 +213,7 @@ fn a_handle_describes_its_purpose_and_range() {
 #[test]
 fn names_do_not_overlap() {
     for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {
-        let mut descriptor = crate::devices::ssi::protocol::Descriptor::plain(0, 4);
+        let mut descriptor = crate::devices::ssi::protocol::FrameDescriptor::plain(0, 4);
         descriptor.clocks = 64;
         descriptor.lead = if first == 1 { 10 } else { 0 };
         descriptor.area = 64;

@@ -4,16 +4,16 @@ use std::time::Duration;
 
 use egui_kittest::kittest::Queryable;
 
-use crate::devices::ssi::protocol::{Families, Reads, Settings};
-use crate::devices::ssi::state::timing::Diagram;
+use crate::devices::ssi::protocol::{Families, ReadConditions, Settings};
+use crate::devices::ssi::state::timing::BurstDiagram;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::widgets::tests::{theme, window};
 
-fn diagram(clock_hz: f64, pause_us: u64) -> Diagram {
+fn diagram(clock_hz: f64, pause_us: u64) -> BurstDiagram {
     let families = Families::built_in();
     let family = families.named("ahm36").unwrap();
     let layout = Settings::default().resolve(family).unwrap().layout;
-    let reads = Reads {
+    let reads = ReadConditions {
         clocks: layout.clocks(),
         clock_hz,
         pause: Duration::from_micros(pause_us),
@@ -21,7 +21,7 @@ fn diagram(clock_hz: f64, pause_us: u64) -> Diagram {
         synchronous: true,
         any_steps: false,
     };
-    Diagram::of(&layout, &family.times, &reads)
+    BurstDiagram::of(&layout, &family.times, &reads)
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn the_accessible_value_lists_the_times() {
     for (clock_hz, pause_us) in [(400e3, 200), (2e6, 600_000), (1e3, 1), (80e3, 0)] {
         for width in [300.0_f32, 880.0] {
             let diagram = diagram(clock_hz, pause_us);
-            let harness = window(diagram.clone(), move |ui, own: &mut Diagram| {
+            let harness = window(diagram.clone(), move |ui, own: &mut BurstDiagram| {
                 ui.set_max_width(width);
                 let frame = Some(0x091_D4B6);
                 timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame });
@@ -45,7 +45,7 @@ fn the_accessible_value_lists_the_times() {
 
 #[test]
 fn hovering_shows_the_clock() {
-    let mut harness = window(diagram(400e3, 200), |ui, own: &mut Diagram| {
+    let mut harness = window(diagram(400e3, 200), |ui, own: &mut BurstDiagram| {
         timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
     });
     let rect = harness.get_by_label("Burst").rect();

@@ -2,20 +2,20 @@
 
 use egui::Rangef;
 
-use crate::devices::ssi::state::timing::Piece;
+use crate::devices::ssi::state::timing::AxisSection;
 
 pub(super) const BREAK: f32 = 24.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
-    pieces: Vec<Piece>,
+    pieces: Vec<AxisSection>,
     left: f32,
     /// Scale in points per second.
     scale: f64,
 }
 
 impl Axis {
-    pub(super) fn new(pieces: &[Piece], room: Rangef) -> Self {
+    pub(super) fn new(pieces: &[AxisSection], room: Rangef) -> Self {
         let breaks = pieces.len().saturating_sub(1) as f32 * BREAK;
         let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
         let scale = f64::from((room.span() - breaks).max(1.0)) / drawn.max(1e-12);
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn times_and_positions_convert_both_ways() {
-        let pieces = [Piece { from: 0.0, to: 60.0 }, Piece { from: 1000.0, to: 1040.0 }];
+        let pieces = [AxisSection { from: 0.0, to: 60.0 }, AxisSection { from: 1000.0, to: 1040.0 }];
         // 224 points minus a break of 24 are two per second.
         let axis = Axis::new(&pieces, Rangef::new(10.0, 234.0));
         for (at, x) in [(0.0, 10.0), (60.0, 130.0), (1000.0, 154.0), (1040.0, 234.0), (500.0, 142.0), (9999.0, 234.0)] {
@@ -80,7 +80,7 @@ mod tests {
         for (x, at) in [(10.0, Some(0.0)), (130.0, Some(60.0)), (142.0, None), (164.0, Some(1005.0)), (240.0, None)] {
             assert_eq!(axis.at(x), at, "{x}");
         }
-        let nothing = Axis::new(&[Piece { from: 0.0, to: 0.0 }], Rangef::new(0.0, 100.0));
+        let nothing = Axis::new(&[AxisSection { from: 0.0, to: 0.0 }], Rangef::new(0.0, 100.0));
         assert!(nothing.x(0.0).is_finite() && nothing.at(0.0).is_some());
     }
 }
