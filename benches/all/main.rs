@@ -10,6 +10,7 @@ mod history;
 mod interbus;
 mod plot;
 mod poll;
+mod soak;
 mod ssi;
 mod window;
 
@@ -40,6 +41,7 @@ const ALL: &[Benchmark] = &[
     ("interbus", |_| interbus::run()),
     ("plot", plot::run),
     ("poll", |_| poll::run()),
+    ("soak", soak::run),
     ("ssi", |_| ssi::run()),
     ("window", window::run),
 ];

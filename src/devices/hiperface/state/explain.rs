@@ -263,7 +263,7 @@ mod tests {
                 "To complete the write, restore the profile again",
                 "To complete the write, restore the profile again",
             ),
-            (ChangeKind::Bytes, "remain as edits", "Run the command again to complete the write"),
+            (ChangeKind::Bytes, "are kept as edits", "Run the command again to complete the write"),
             (ChangeKind::Single, "repeat the change", "run the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {

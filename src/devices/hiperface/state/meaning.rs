@@ -87,7 +87,7 @@ mod tests {
         let cases: [(&str, &[u8], Option<TraceFault>, &str); 6] = [
             ("good", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38], None, "position"),
             ("a bit flipped", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x39], Some(TraceFault::Broken), "checksum"),
-            ("cut short", &[0x40, 0x42], Some(TraceFault::Broken), "2 bytes"),
+            ("cut short", &[0x40, 0x42], Some(TraceFault::Broken), "(2)"),
             ("another address", &[0x41, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x39], Some(TraceFault::Broken), "41h"),
             ("refused", &[0x40, 0x50, 0x1F, 0x0F], Some(TraceFault::Reported), "1Fh"),
             ("with a warning", &[0x40, 0xC2, 0x00, 0x01, 0x23, 0x45, 0xE5], Some(TraceFault::Reported), "position"),

@@ -81,7 +81,7 @@ fn nested_phrases_are_translated_to_german() {
         ),
         (
             LayoutError::Many { what: RepeatedPart::Patterns, limit: 32, count: 33 },
-            "höchstens 32 Muster möglich, nicht 33",
+            "höchstens 32 Muster sind möglich, nicht 33",
         ),
     ];
     for (error, german) in cases {

@@ -296,7 +296,7 @@ fn a_run_ends_with_a_report() {
         "7. Upper limit: done\n   The drive's limits are -10.00 mm to 20.00 mm.",
         "The test moves were made at 10 % speed and 25 % torque.",
         "Lower limit: reached -10.01 mm (-0.01 mm off target)",
-        "The virtual supply was switched off and on.",
+        "The virtual supply was switched off\n   and on.",
         "All values that the device can save have been saved.",
     ] {
         assert!(text.contains(part), "{part}: {text}");
