@@ -36,7 +36,7 @@ pub enum AllowedValues {
     Periods { most: u32 },
     #[error("1 to {most} turns")]
     MostTurns { most: u32 },
-    #[error("a number of steps from {low} to {high}, limited by its number of turns")]
+    #[error("a number of steps from {low} to {high}, limited by the encoder's number of turns")]
     StepsOfTurns { low: u32, high: u32 },
     #[error("only together with {0}")]
     OnlyWith(&'static str),
@@ -76,15 +76,15 @@ pub enum AllowedValues {
     /// The value of an error register.
     #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
-    #[error("the number of write cycles of its flash so far")]
+    #[error("the number of write cycles of the encoder's flash memory so far")]
     WriteCycles,
-    #[error("the number of write cycles of its EEPROM so far")]
+    #[error("the number of write cycles of the encoder's EEPROM so far")]
     Stores,
     #[error("AVERAGE,MINIMUM in volts from 0 to 25.5, such as 6.3,5.8")]
     Pulses,
     #[error("a cam program from 1 to 8, or 0 for none")]
     Program,
-    #[error("4 or 8 ports, or omitted for an adapter with one drive")]
+    #[error("4 or 8 ports; omit the setting for an adapter with one drive")]
     Hub,
     #[error("a two-digit switch setting from 0 to 99")]
     SwitchDigits,
@@ -98,19 +98,19 @@ pub enum AllowedValues {
     ErrorBits(Vec<String>),
     #[error("no value, because the frame of this encoder has no error bits")]
     NoErrorBits,
-    #[error("a text")]
+    #[error("a string")]
     Text,
-    #[error("a text such as {0:?}")]
+    #[error("a string such as {0:?}")]
     TextSuchAs(&'static str),
     #[error("a number from 0 to 255 (0x00 to 0xFF)")]
     Byte,
     #[error("a number from 0 to 65535 (0x0000 to 0xFFFF)")]
     Word,
-    #[error("a list of texts with hexadecimal bytes")]
+    #[error("a list of strings of hexadecimal bytes")]
     HexLines,
     #[error("a structure: (name: value, …)")]
     Structure,
-    #[error("names before the colons")]
+    #[error("a structure with a name before each colon")]
     Names,
     #[error("a list: […]")]
     List,
@@ -121,7 +121,7 @@ pub enum AllowedValues {
     #[error("the first and the last bank, such as (0x24, 0x43)")]
     Banks,
     /// A number of revolutions, which may be a fraction.
-    #[error("a whole number, or a text such as \"25/2\"")]
+    #[error("a whole number, or a string such as \"25/2\"")]
     Revolutions,
     #[error("a number or a fraction such as 25/2")]
     Fraction,
@@ -131,7 +131,7 @@ pub enum AllowedValues {
     ParityBit,
     #[error("BITS+ZEROS, such as 25+1")]
     Repetition,
-    #[error("clocks, such as 1+26")]
+    #[error("numbers of clock cycles, such as 1+26")]
     Clocks,
 }
 
@@ -154,7 +154,7 @@ pub enum Quantity {
     Turns,
     #[error("a position")]
     Position,
-    #[error("a position of the code disc")]
+    #[error("a position on the code disc")]
     PlaceOfDisc,
     #[error("a temperature in °C")]
     Celsius,
@@ -169,7 +169,7 @@ pub enum Quantity {
     Version,
     #[error("an address")]
     Address,
-    #[error("a port")]
+    #[error("a port number")]
     Port,
     #[error("a unit ID")]
     Unit,

@@ -99,7 +99,7 @@ pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) ->
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceFileError {
     /// The first line is not the header of a trace file.
-    #[error("it does not begin with \"{HEADER}\"")]
+    #[error("the file does not begin with \"{HEADER}\"")]
     Header,
     /// A line does not consist of time, direction and bytes.
     #[error("line {line} is not of the form \"0.031204 > 40 42 02\"")]
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn a_broken_trace_names_the_line() {
         let cases = [
-            ("", "it does not begin with \"# encoder-studio trace 1\""),
+            ("", "the file does not begin with \"# encoder-studio trace 1\""),
             ("# encoder-studio trace 1\n\n0.1 = 40", "line 3 is not of the form \"0.031204 > 40 42 02\""),
             ("# encoder-studio trace 1\n-1 > 40", "line 2 is not of the form \"0.031204 > 40 42 02\""),
             ("# encoder-studio trace 1\n# note\n1 > 4G", "line 3: 'G' is not a hexadecimal digit"),

@@ -45,12 +45,14 @@ impl LinkScheme {
     /// Returns a description of what has to follow the colon, with an example.
     fn requirements(self) -> &'static str {
         match self {
-            LinkScheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
+            LinkScheme::Tcp => "a host and a port, as in tcp:192.168.0.7:4001",
             LinkScheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
             LinkScheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
-            LinkScheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            LinkScheme::Bridge => {
+                "a serial port, or a host and a port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001"
+            }
             LinkScheme::Replay => "a file, as in replay:capture.trace",
-            LinkScheme::Serial | LinkScheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
+            LinkScheme::Serial | LinkScheme::Sim => "a serial port, as in serial:/dev/ttyUSB0 or serial:COM3",
         }
     }
 }
@@ -105,7 +107,7 @@ pub enum UrlError {
         scheme: LinkScheme,
     },
     /// The port number is invalid.
-    #[error("{scheme}: {port} is not a port from 1 to 65535")]
+    #[error("{scheme}: {port} is not a port number from 1 to 65535")]
     Port {
         /// Keyword before the colon.
         scheme: &'static str,
@@ -318,24 +320,26 @@ mod tests {
                 "usb:1",
                 "\"usb:1\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
             ),
-            ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
-            ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
-            ("tcp:host:99999", "tcp: 99999 is not a port from 1 to 65535"),
-            ("tcp:host:0", "tcp: 0 is not a port from 1 to 65535"),
-            ("tcp:host:", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
-            ("enip:127.0.0.1:99999", "enip: 99999 is not a port from 1 to 65535"),
+            ("serial:", "serial: needs a serial port, as in serial:/dev/ttyUSB0 or serial:COM3"),
+            ("tcp:host", "tcp: needs a host and a port, as in tcp:192.168.0.7:4001"),
+            ("tcp:host:99999", "tcp: 99999 is not a port number from 1 to 65535"),
+            ("tcp:host:0", "tcp: 0 is not a port number from 1 to 65535"),
+            ("tcp:host:", "tcp: needs a host and a port, as in tcp:192.168.0.7:4001"),
+            ("enip:127.0.0.1:99999", "enip: 99999 is not a port number from 1 to 65535"),
             ("enip:", "enip: needs a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818"),
             ("replay:", "replay: needs a file, as in replay:capture.trace"),
             (
                 "bridge:",
-                "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+                "bridge: needs a serial port, or a host and a port, as in bridge:/dev/ttyACM0 or \
+                 bridge:tcp:192.168.0.7:4001",
             ),
             (
                 "bridge:tcp:host",
-                "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+                "bridge: needs a serial port, or a host and a port, as in bridge:/dev/ttyACM0 or \
+                 bridge:tcp:192.168.0.7:4001",
             ),
             ("modbus:", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
-            ("modbus:plc:many", "modbus: many is not a port from 1 to 65535"),
+            ("modbus:plc:many", "modbus: many is not a port number from 1 to 65535"),
             ("serial:x?baud", "\"baud\" is not of the form name=value"),
             ("serial:x?baud=1&baud=2", "baud appears twice"),
         ];

@@ -89,7 +89,7 @@ pub enum ProfileError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxErrorKind {
     /// Structures are nested too deeply.
-    #[error("nested too deeply")]
+    #[error("the structures are nested too deeply")]
     TooDeep,
     /// A name occurs twice within a structure.
     #[error("{0} appears twice")]

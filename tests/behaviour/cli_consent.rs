@@ -81,7 +81,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
     assert!(
-        ran.err.contains("Set them up again before the machine runs") && ran.err.contains("field:0@0+16"),
+        ran.err.contains("must be set up again before you run the machine") && ran.err.contains("field:0@0+16"),
         "{ran:?}"
     );
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));

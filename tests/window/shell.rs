@@ -276,7 +276,7 @@ fn the_trace_is_searched_and_paused() {
     screen.until("another position", |studio| studio.hiperface().unwrap().session.trace.end() >= frames + 2);
     screen.steps();
     assert_eq!(count(&screen, read_position), before);
-    assert!(screen.shows("newer frames") || screen.shows("neuere"));
+    assert!(screen.shows("Newer frames") || screen.shows("Neuere"));
     screen.click("trace.follow");
     assert!(count(&screen, read_position) > before);
 }

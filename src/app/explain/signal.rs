@@ -280,14 +280,14 @@ mod tests {
         assert_eq!(
             said(drive),
             [
-                "Both channels carry interference of 12.3 mV (2.5 % of the amplitude) at 8000 Hz in phase. It enters through \
-                 the cable screen or the ground. Connect the cable screen at both ends.",
-                "Beide Kanäle führen eine gleichphasige Störung von 12,3 mV (2,5 % der Amplitude) mit 8000 Hz. Sie wird über \
-                 Schirm oder Masse eingekoppelt. Den Schirm beidseitig auflegen.",
+                "Both channels carry in-phase interference of 12.3 mV (2.5 % of the amplitude) at 8000 Hz, which is coupled in \
+                 through the cable screen or the ground. Connect the cable screen at both ends.",
+                "Beide Kanäle führen eine gleichphasige Störung von 12,3 mV (2,5 % der Amplitude) mit 8000 Hz, die über \
+                 Schirm oder Masse eingekoppelt wird. Den Schirm beidseitig auflegen.",
             ]
         );
         let dead = FindingKind::Dead { channel: SignalChannel::Sine, stuck: StuckLevel::Ground(Wire::Refsin) };
-        assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal, weil REFSIN auf Masse liegt."));
+        assert!(said(dead)[1].starts_with("Der Sinuskanal hat kein Signal, weil REFSIN auf Masse liegt."));
         let level = FindingKind::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
         assert!(said(level)[0].contains("3.20 V; the permitted range is 2.375 to 2.625 V"));
         let harmonics = FindingKind::Harmonics { order: 4, share: 0.02 };

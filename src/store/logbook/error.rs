@@ -19,21 +19,21 @@ pub enum LogbookErrorKind {
     #[error(transparent)]
     Folder(FileError),
     /// The file cannot be opened because a folder has its name or because permission is missing.
-    #[error("cannot be opened")]
+    #[error("the file cannot be opened")]
     NoAccess,
     /// The file can be read but not written.
-    #[error("is write-protected")]
+    #[error("the file is write-protected")]
     WriteProtected,
     /// Another program kept the file locked for longer than the time limit.
-    #[error("is in use by another program")]
+    #[error("the file is in use by another program")]
     Locked,
     #[error("the disk is full")]
     DiskFull,
     /// The file is damaged or not a database.
-    #[error("is damaged: {what}")]
+    #[error("the file is damaged: {what}")]
     Damaged { what: String },
     /// The file was created by a newer version of the program and is left unchanged.
-    #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
+    #[error("the file uses schema {found} of a newer version; this version supports schemas up to {known}")]
     Newer {
         found: i64,
         /// Latest schema that this version of the program knows.

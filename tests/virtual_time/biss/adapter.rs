@@ -180,7 +180,7 @@ fn wrong_widths_are_reported() {
 fn another_version_is_refused_naming_both() {
     let mut bus = Bus::new("version=2");
     let error = bus.master().read(at("0x66")).unwrap_err();
-    assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, this program version 1");
+    assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, but this program uses version 1");
     assert_eq!(bus.tap().sent.len(), 1);
 }
 

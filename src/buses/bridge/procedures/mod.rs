@@ -50,7 +50,7 @@ pub enum AdapterError {
     /// The adapter has not replied to a request and its repetition.
     #[error("the adapter does not answer")]
     Silent,
-    #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
+    #[error("the adapter uses version {got} of the bridge protocol, but this program uses version {expected}")]
     Version { expected: u8, got: u8 },
     #[error("the adapter {name} does not support BiSS")]
     NoBiss { name: String },

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
     /// The length of the body does not match the operation.
-    #[error("operation 0x{op:02X}: a body of {got} bytes has the wrong length")]
+    #[error("operation 0x{op:02X}: the message body has the wrong length (bytes received: {got})")]
     Length {
         /// Operation code.
         op: u8,
@@ -12,10 +12,10 @@ pub enum BodyError {
         got: usize,
     },
     /// The operation code is unknown.
-    #[error("0x{0:02X} is not an operation")]
+    #[error("0x{0:02X} is not a valid operation code")]
     Operation(u8),
     /// The value of a field is invalid.
-    #[error("operation 0x{op:02X}: {field} cannot be {got}")]
+    #[error("operation 0x{op:02X}: {got} is not a valid value for {field}")]
     Value {
         /// Operation code.
         op: u8,
@@ -31,7 +31,7 @@ pub enum BodyError {
         op: u8,
     },
     /// The adapter uses another version of the protocol.
-    #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
+    #[error("the adapter uses version {got} of the bridge protocol, but this program uses version {expected}")]
     Version {
         /// Version that this program supports.
         expected: u8,

@@ -205,7 +205,7 @@ fn every_truncated_body_is_refused() {
 fn a_version_mismatch_names_both_versions() {
     let packet = Packet { seq: 0, op: 0x81, body: vec![2, 1, 2, 3] };
     let error = Message::parse(&packet).unwrap_err();
-    assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, this program version 1");
+    assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, but this program uses version 1");
 }
 
 #[test]

@@ -165,7 +165,7 @@ mod tests {
             ("rpi=4", "rpi=4 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("rpi=101", "rpi=101 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("order=middle", "order=middle is not valid (allowed: little or big)"),
-            ("udp=0", "udp=0 is not valid (allowed: a port from 1 to 65535)"),
+            ("udp=0", "udp=0 is not valid (allowed: a port number from 1 to 65535)"),
             ("timeout=5000", "timeout=5000 is not valid (allowed: a time in milliseconds from 10 to 2000)"),
         ];
         for (query, message) in cases {

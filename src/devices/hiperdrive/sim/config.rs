@@ -191,7 +191,8 @@ mod tests {
             ),
             (
                 "hub=2",
-                "`hub=2` is not valid (allowed: 4 or 8 ports, or omitted for an adapter with one drive)".to_owned(),
+                "`hub=2` is not valid (allowed: 4 or 8 ports; omit the setting for an adapter with one drive)"
+                    .to_owned(),
             ),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1".to_owned()),
         ];

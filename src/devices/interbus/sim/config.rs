@@ -190,7 +190,8 @@ mod tests {
             ("sed=1", format!("a virtual INTERBUS encoder has no setting `sed`; valid settings are {keys}")),
             (
                 "steps=8193&revolutions=1",
-                "`steps=8193` is not valid (allowed: a number of steps from 1 to 8192, limited by its number of turns)"
+                "`steps=8193` is not valid (allowed: a number of steps from 1 to 8192, limited by the encoder's number \
+                 of turns)"
                     .to_owned(),
             ),
             (

@@ -159,7 +159,7 @@ fn hex_is_pasted_where_it_fits() {
     press(&mut harness, &[(CTRL, Key::End)]);
     harness.event(Event::Paste("01 02".to_owned()));
     harness.run();
-    harness.get_by_label_contains("2 bytes do not fit. Only 1 can be entered from 0x1F.");
+    harness.get_by_label_contains("Bytes entered: 2; bytes available from address 0x1F: 1.");
     assert!(harness.state().edits.is_empty());
 }
 

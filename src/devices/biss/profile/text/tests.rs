@@ -121,7 +121,7 @@ fn profile_errors_name_their_location() {
         ("schema: 1", "schema: 0", "schema 0; this program knows schema 1 to 1"),
         ("identity:", "identy:", "line 3, column 5: identy is unknown, and identity is missing"),
         ("data:", "date:", "line 4, column 5: date is unknown, and data is missing"),
-        ("\"1234567\"", "1234567", "identity.serial_number must be a text"),
+        ("\"1234567\"", "1234567", "identity.serial_number must be a string"),
         ("0x6129", "0x16129", "identity.profile_id must be a number from 0 to 65535 (0x0000 to 0xFFFF)"),
         ("01 01 68 11 00 01", "01 01 68 11 00", "identity.device_id: 5 bytes instead of 6"),
         ("manufacturer:", "maker:", "identity.manufacturer is missing"),

@@ -75,7 +75,7 @@ fn profile_errors_name_their_location() {
         ("schema: 1,", "", "schema is missing"),
         ("schema: 1,", "schema: 0,", "schema 0; this program knows schema 1 to 1"),
         ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\""),
-        ("\"A1\"", "17", "identity.serial_number must be a text"),
+        ("\"A1\"", "17", "identity.serial_number must be a string"),
         ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
         ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
         ("status: 0xC8", "status: 0xC9", "fields[0].bytes: the field has 16 bytes, but its status specifies 32"),

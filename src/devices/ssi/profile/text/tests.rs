@@ -275,11 +275,11 @@ fn profile_errors_name_their_location() {
         (
             "multiturn: 12, singleturn: 14",
             "steps: 9, revolutions: \"x\"",
-            "frame.revolutions must be a whole number, or a text such as \"25/2\"",
+            "frame.revolutions must be a whole number, or a string such as \"25/2\"",
         ),
         ("multiturn: 12, singleturn: 14", "steps: 9, revolutions: -1", "frame.revolutions must be a whole number, or"),
         ("clocks: 27", "code: \"grey\", clocks: 27", "frame.code must be binary, gray, gray-excess or bcd"),
-        ("clocks: 27", "code: 1, clocks: 27", "frame.code must be a text"),
+        ("clocks: 27", "code: 1, clocks: 27", "frame.code must be a string"),
         ("clocks: 27", "over: \"all\", clocks: 27", "frame.over must be position, padded or errors"),
         (
             "clocks: 27",
@@ -309,7 +309,7 @@ fn profile_errors_name_their_location() {
         ("frame:", "reading: (pause_us: 0), frame:", "reading.pause_us must be a number from 1 to 65535"),
         ("frame:", "reading: (cable_metres: -1), frame:", "reading.cable_metres must be a number from 0 to 65535"),
         ("frame:", "reading: (synchronous: 1), frame:", "reading.synchronous must be true or false"),
-        ("frame:", "family: 7, frame:", "family must be a text"),
+        ("frame:", "family: 7, frame:", "family must be a string"),
     ];
     for (old, new, message) in cases {
         assert!(SHORT.contains(old), "{old}");
