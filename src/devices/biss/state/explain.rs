@@ -245,7 +245,7 @@ mod tests {
             (Error::NoAcknowledge { tries: 5, supply_off: true }, vec!["voltage="]),
             (Error::StuckLow { tries: 5 }, vec!["SLO"]),
             (Error::StuckHigh { tries: 5 }, vec!["SLO"]),
-            (Error::WrongWidths { frames: 21, data_bits: 27, crc_bits: 6 }, vec!["21", " 27 ", " 6 "]),
+            (Error::WrongWidths { frames: 21, data_bits: 27, crc_bits: 6 }, vec!["21", "27 ", " 6 "]),
             (Error::WidthsUnknown { moving: true }, vec!["10", "48"]),
             (Error::WidthsUnknown { moving: false }, vec![]),
             (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
