@@ -1,5 +1,5 @@
-//! Bytes as hexadecimal strings: upper case, separated by spaces as in the manuals, with secrets masked. Also
-//! interprets bytes as numbers or text.
+//! Bytes as hexadecimal strings: upper case, separated by spaces as in the manuals, with secrets masked. Bytes can also
+//! be interpreted as numbers or text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -22,7 +22,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number with its width in bits, displayed with as many upper-case hexadecimal digits as the width requires.
+/// A number with its width in bits. It is displayed with as many upper-case hexadecimal digits as the width requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.
@@ -41,7 +41,7 @@ impl fmt::Display for Word {
 pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
-    /// Creates bytes none of which is masked.
+    /// Creates bytes that are all visible.
     pub fn clear(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
@@ -50,7 +50,7 @@ impl MaskedBytes {
         MaskedBytes(vec![None; count])
     }
 
-    /// Creates the bytes, masking those at the positions in `secret`.
+    /// Creates bytes and masks those at the positions in `secret`.
     pub fn masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
@@ -82,7 +82,7 @@ impl MaskedBytes {
         self.0.extend(more.0);
     }
 
-    /// Returns whether the bytes have the same length and are equal wherever this value is not masked.
+    /// Returns whether all bytes that are not masked equal those in `bytes`. The lengths must be equal too.
     pub fn matches(&self, bytes: &[u8]) -> bool {
         self.0.len() == bytes.len() && self.0.iter().zip(bytes).all(|(own, byte)| own.is_none_or(|own| own == *byte))
     }
@@ -116,7 +116,7 @@ impl FromStr for MaskedBytes {
     }
 }
 
-/// The reason why a string cannot be parsed as hexadecimal bytes.
+/// The reason why a string is not a list of hexadecimal bytes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HexError {
     /// The character is neither a hex digit nor a separator.
@@ -126,8 +126,8 @@ pub enum HexError {
     Odd(String),
 }
 
-/// Parses hex bytes: groups of two digits each, optionally separated by blanks, commas, colons or dashes, with or
-/// without `0x` or a final `h`. An empty string yields no bytes.
+/// Parses hex bytes in groups of two digits each. Blanks, commas, colons or dashes may separate the groups, and `0x` or
+/// a final `h` may enclose them. An empty string yields no bytes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, HexError> {
     let mut bytes = Vec::new();
     for group in text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ':' | '-')).filter(|g| !g.is_empty()) {
@@ -145,7 +145,7 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
         .collect::<Result<_, _>>()?;
     let (pairs, rest) = digits.as_chunks::<2>();
     if !rest.is_empty() || digits.is_empty() {
-        // A single digit is a byte only if it is the whole text: "0x5" is 05.
+        // A single digit is a byte only if it is the whole text. For example, "0x5" is 05.
         return match (pairs, rest) {
             ([], [digit]) => {
                 bytes.push(*digit);
@@ -178,7 +178,6 @@ pub enum TypedKind {
 }
 
 impl TypedKind {
-    /// All kinds, in display order.
     pub const ALL: [TypedKind; 9] = [
         TypedKind::U8,
         TypedKind::I8,
@@ -242,8 +241,7 @@ pub fn binary_text(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
-/// Returns the shortest representation that parses back to the same number, with an exponent if it would otherwise be
-/// long.
+/// Returns the shortest representation that parses back to the same number. A long number is written with an exponent.
 fn float_text(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }

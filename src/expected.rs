@@ -1,12 +1,12 @@
-//! Allowed values of a parameter, a setting or an entry: a fact with its limits, described in English here and with its
-//! own text in the window (`app::explain::expected`).
+//! Allowed values of a parameter, a setting or an entry. They are described in English here and have their own text in
+//! the window (`app::explain::expected`).
 
 use std::borrow::Cow;
 use std::fmt;
 
 use thiserror::Error;
 
-/// The set of allowed values, reported when an invalid value is given.
+/// The set of allowed values. An error about an invalid value contains it.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AllowedValues {
     /// One of a few keywords, which the message lists.
@@ -16,7 +16,7 @@ pub enum AllowedValues {
     OneOf(Vec<String>),
     #[error("{quantity} from {low} to {high}")]
     Range { quantity: Quantity, low: Limit, high: Limit },
-    /// A whole number of any size that the type can hold.
+    /// A whole number within the range of its type.
     #[error("a whole number")]
     Whole,
     /// A 32-bit number.
@@ -42,7 +42,7 @@ pub enum AllowedValues {
     OnlyWith(&'static str),
     #[error("a polynomial with all terms, such as 0x43, or none")]
     Polynomial,
-    /// A frame of at most 64 bits.
+    /// A frame of 64 bits or fewer.
     #[error("a frame of at most 64 bits, including turns, two flags and CRC")]
     ShortFrame,
     /// An encoder address on the bus, or the address for a single connected encoder.
@@ -66,7 +66,7 @@ pub enum AllowedValues {
     SerialNumber,
     #[error("up to {most} ASCII characters")]
     Ascii { most: u32 },
-    /// A position in steps whose limits are not known yet.
+    /// A position in steps. Its limits are not known yet.
     #[error("a position in steps")]
     Steps,
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
@@ -137,7 +137,7 @@ pub enum AllowedValues {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Quantity {
-    /// Nothing in particular.
+    /// A number without any limits.
     #[error("a number")]
     Number,
     #[error("a time in milliseconds")]
@@ -193,7 +193,7 @@ pub enum Quantity {
     RefusedRequests,
 }
 
-/// A limit of a range, exact to a thousandth.
+/// A limit of a range, exact to one thousandth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limit {
     thousandths: i128,
@@ -220,7 +220,7 @@ impl AllowedValues {
 }
 
 impl Limit {
-    /// Creates a number from its value in thousandths.
+    /// Creates a limit from thousandths.
     pub const fn from_thousandths(thousandths: i128) -> Self {
         Limit { thousandths }
     }

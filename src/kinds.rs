@@ -1,4 +1,4 @@
-//! All kinds of device in the program, one line each. No other file lists them all.
+//! All kinds of device in the program, one line each. No other file lists them.
 
 mod kind;
 
@@ -25,7 +25,8 @@ pub fn program() -> Program {
     })
 }
 
-/// Returns the virtual devices that can be attached to the virtual adapter. Those that take a speed (`rpm`) come last.
+/// Returns the virtual devices that can be attached to the virtual adapter. Devices with a speed setting (`rpm`) come
+/// last.
 pub fn attachable_kinds() -> &'static [&'static dyn AttachableKind] {
     static DEVICES: OnceLock<Vec<&'static dyn AttachableKind>> = OnceLock::new();
     DEVICES.get_or_init(|| {

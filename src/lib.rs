@@ -1,16 +1,16 @@
-//! encoder-studio: configures position encoders and small drives at a desk.
+//! encoder-studio: configures position encoders and small drives.
 //!
-//! ARCHITECTURE.md describes the layers: a module uses only its own layer and the ones below, and the core knows no
+//! ARCHITECTURE.md describes the layers. A module uses only its own layer and the ones below, and the core knows no
 //! device.
 
-// all device kinds, and all that the program knows about each
+// all device kinds
 pub mod kinds;
 
 pub mod buses;
 pub mod devices;
 pub mod signals;
 
-// the core, highest first: drawing
+// the core, from the highest layer down: drawing
 pub mod ui;
 
 // the program without drawing

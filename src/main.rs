@@ -1,4 +1,4 @@
-//! The program: arguments lead to a command or to the window.
+//! Entry point of the program. Arguments run a command or open the window.
 
 use std::process::ExitCode;
 

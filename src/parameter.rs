@@ -1,5 +1,5 @@
 //! Parameters of a link and settings of a virtual device as keys with values. The `parameters!` macro creates a struct
-//! with one line per parameter, from which parameters are parsed, validated, printed and offered in a form. The allowed
+//! with one line per parameter. The parameters are then parsed, validated, printed and offered in a form. The allowed
 //! values are a type that implements [`Values`].
 
 mod values;
@@ -13,18 +13,18 @@ pub use values::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub key: String,
-    /// The refused value as the user wrote it.
+    /// The refused value as typed.
     pub value: String,
     pub allowed: AllowedValues,
 }
 
 impl Refused {
-    /// Creates the error for a refused value; `allowed` describes the accepted values.
+    /// Creates the error for a refused value. `allowed` describes the accepted values.
     pub fn new(key: &str, value: impl ToString, allowed: AllowedValues) -> Self {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
 
-    /// Replaces the value by asterisks, for a value that is secret.
+    /// Replaces a secret value by asterisks.
     #[must_use]
     pub fn masked(self) -> Self {
         Refused { value: "**".to_owned(), ..self }
@@ -36,20 +36,19 @@ impl Refused {
 pub struct Entry {
     pub key: &'static str,
     pub label: &'static str,
-    /// Unit symbol, or empty if the parameter has no unit.
+    /// Unit symbol. Empty if the parameter has no unit.
     pub unit: &'static str,
-    /// The default that applies while the entry is empty, or an example value.
+    /// Hint in an empty entry: the default that applies, or an example.
     pub hint: String,
-    /// Whether the value is a number that may have decimals.
     pub is_decimal: bool,
 }
 
-/// Returns the entries with the given keys, in the order of `keys`.
+/// Returns the entries with these keys, in the order of `keys`.
 pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
     keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
 }
 
-/// A group of parameters, declared with `parameters!`. Parameters that are not given keep their defaults.
+/// A group of parameters, declared with `parameters!`. Parameters without a value have their defaults.
 pub trait Parameters: Default {
     /// The error returned when a value is refused.
     type Error;
@@ -59,7 +58,7 @@ pub trait Parameters: Default {
     /// Keys whose values are neither displayed nor stored.
     const SECRETS: &'static [&'static str];
 
-    /// Sets the value of a key. Returns `false` if the key does not exist.
+    /// Sets the value of a key. Returns `false` if there is no such key.
     ///
     /// # Errors
     /// Returns an error if the key does not accept the value.
@@ -68,7 +67,7 @@ pub trait Parameters: Default {
     /// Returns the entries that a user can fill in, in order of declaration.
     fn entries() -> Vec<Entry>;
 
-    /// Parses the known keys and ignores all others. If a key is given twice, the last value counts.
+    /// Parses the known keys and ignores all others. The last value of a repeated key counts.
     ///
     /// # Errors
     /// Returns an error for the first value that its key does not accept.

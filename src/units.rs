@@ -1,5 +1,5 @@
-//! Quantities: newtypes wherever two integers could be confused, a range is limited or arithmetic has a meaning. No
-//! clock is read here: the owner of a [`Moment`] passes it in.
+//! Quantities as newtypes. A quantity has one if two integers could be confused, a range is limited, or arithmetic has
+//! a meaning. No clock is read here: the owner of a [`Moment`] passes it in.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::parameter::Words;
 
-/// A point in time, counted from the start of a clock. Moments from different clocks cannot be compared.
+/// A point in time since the start of a clock. Moments of different clocks cannot be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Moment(Duration);
 
@@ -22,7 +22,7 @@ impl Moment {
         self.0
     }
 
-    /// Returns the time elapsed since `earlier`, or zero if `earlier` is later.
+    /// Returns the time elapsed since `earlier`. Returns zero if `earlier` is later.
     pub fn since(self, earlier: Moment) -> Duration {
         self.0.saturating_sub(earlier.0)
     }
@@ -42,7 +42,7 @@ impl Sub<Duration> for Moment {
     }
 }
 
-/// Serial line speed in bit/s, never zero.
+/// Serial line speed in bit/s. It is never zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Baud(u32);
 
@@ -60,7 +60,7 @@ impl Baud {
         self.0
     }
 
-    /// Returns the time that `bits` bits take on the line.
+    /// Returns the time that a number of bits takes on the line.
     pub fn time_of_bits(self, bits: u64) -> Duration {
         Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
     }
@@ -75,9 +75,9 @@ impl fmt::Display for Baud {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parity {
     None,
-    /// Even parity: the number of ones, including the parity bit, is even.
+    /// Even parity. The number of ones, including the parity bit, is even.
     Even,
-    /// Odd parity: the number of ones, including the parity bit, is odd.
+    /// Odd parity. The number of ones, including the parity bit, is odd.
     Odd,
 }
 
@@ -96,7 +96,7 @@ impl Parity {
         }
     }
 
-    /// Returns the letter that stands between the numbers of data bits and stop bits, as in `8E1`.
+    /// Returns the letter between the numbers of data bits and stop bits, such as the E in `8E1`.
     pub const fn parity_letter(self) -> char {
         match self {
             Parity::None => 'N',
@@ -112,8 +112,8 @@ impl fmt::Display for Parity {
     }
 }
 
-/// Character format of a serial line, on which both ends must agree. A character has one start bit, eight data bits and
-/// one stop bit.
+/// Character format of a serial line. Both ends must have the same one. A character has one start bit, eight data bits
+/// and one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
     pub baud: Baud,

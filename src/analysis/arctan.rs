@@ -12,10 +12,9 @@ pub const DEGREES: f64 = 360.0;
 pub struct Phase(f64);
 
 impl Phase {
-    /// Returns the phase of a position in periods, which is the fractional part of a position of either sign. Returns
-    /// `None` if the position is not finite.
+    /// Returns the phase of a position in periods, which may be negative. Returns `None` if the position is not finite.
     pub fn from_periods(periods: f64) -> Option<Self> {
-        // The remainder of -1e-20 rounds to 1.
+        // The remainder of a tiny negative number such as -1e-20 rounds to 1.
         let phase = periods.rem_euclid(1.0);
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
     }
@@ -29,8 +28,8 @@ impl Phase {
         self.0 * DEGREES
     }
 
-    /// Returns which of the 2^`bits` steps in one period contains the phase, as an interpolating counter would. The
-    /// upper bits equal the step at a lower resolution, and `bits` is limited to 32.
+    /// Returns the step that contains the phase when a period is divided into 2^`bits` steps, like an interpolating
+    /// counter. At a lower resolution, the result is the upper bits of the same step. `bits` is limited to 32.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
         let steps = 1_u64 << bits;
@@ -46,18 +45,18 @@ impl Phase {
     }
 }
 
-/// Returns the exact phase of a pair of offset-free voltages, or `None` without a signal, which means that both
-/// voltages are zero or one is not a number.
+/// Returns the exact phase of a pair of offset-free voltages. Returns `None` if both voltages are zero or one is not a
+/// number.
 pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::from_periods(sine.atan2(cosine) / TAU) }
 }
 
-/// Table of atan(t) at evenly spaced nodes from 0 to 1, with linear interpolation between them.
+/// Table of arctangents at evenly spaced nodes from 0 to 1, with linear interpolation between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OctantTable(Vec<f64>);
 
 impl OctantTable {
-    /// Number of intervals that is sufficient according to the manual. The largest error is 1/79 255 of a period.
+    /// Number of intervals that the manual considers sufficient. The largest error is 1/79 255 of a period.
     pub const INTERVALS: usize = 32;
 
     /// Creates a table with the given number of intervals, which is at least one.
@@ -66,8 +65,7 @@ impl OctantTable {
         OctantTable((0..=intervals).map(|node| (node as f64 / intervals as f64).atan()).collect())
     }
 
-    /// Returns the phase according to the table, or `None` without a signal, which means that both voltages are zero or
-    /// one is not finite.
+    /// Returns the phase according to the table. Returns `None` if both voltages are zero or one is not finite.
     pub fn phase(&self, sine: f64, cosine: f64) -> Option<Phase> {
         let (a, b) = (sine.abs(), cosine.abs());
         if (a == 0.0 && b == 0.0) || !a.is_finite() || !b.is_finite() {
@@ -86,7 +84,8 @@ impl OctantTable {
         Phase::from_periods(angle / TAU)
     }
 
-    /// Returns the largest error of linear interpolation between two nodes, in radians, which is h²/8 · 3√3/8.
+    /// Returns the largest error of linear interpolation between two nodes, in radians. It is h²/8 · 3√3/8 for nodes at
+    /// a distance h.
     pub fn largest_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)

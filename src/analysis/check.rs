@@ -1,5 +1,5 @@
-//! Result of a device check: a list of steps, each with a verdict. The steps and their findings are defined by each
-//! kind of device.
+//! Result of a device check: a list of steps, each with a verdict. Each kind of device defines its own steps and
+//! findings.
 
 /// Outcome of a check step. A worse verdict compares as greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -11,7 +11,7 @@ pub enum Verdict {
     Bad,
 }
 
-/// Result of one check step; `S` identifies the step, `F` its findings.
+/// Result of one check step. `S` identifies the step, and `F` is a finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepResult<S, F> {
     pub step: S,
@@ -30,14 +30,14 @@ impl<S, F> StepResult<S, F> {
 /// Known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wear {
-    /// Counted write cycles, or `None` if unknown.
+    /// Counted write cycles, if known.
     pub seen: Option<u64>,
     pub warning: u64,
     pub limit: u64,
 }
 
 impl Wear {
-    /// Returns the verdict on the counted write cycles and their number, or `None` if the count is unknown.
+    /// Returns the number of counted write cycles and the verdict on it. Returns `None` if the number is unknown.
     pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {

@@ -1,9 +1,9 @@
-//! Offset between a shaft position and a motor's electrical angle, determined by the two methods of the manual. SICK
-//! 8010701, commutation; section 5 of the project's sine/cosine reference.
+//! Offset between a shaft position and a motor's electrical angle, determined by the two methods of the manual. See
+//! SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
 
 use super::arctan::Phase;
 
-/// Angle inside one electrical period of a motor, as a fraction in units of 2⁻³².
+/// Angle within one electrical period of a motor, in units of 2⁻³² of the period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ElectricalAngle(u32);
 
@@ -13,13 +13,13 @@ pub struct Motor {
     pole_pairs: u32,
 }
 
-/// Result of energising a second vector.
+/// Evaluation of the movement after a second vector was energised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVectorResult {
-    /// Number of pole pairs derived from the movement, rounded; 0 if the shaft has moved by more than an electrical
+    /// Number of pole pairs derived from the movement, rounded. 0 if the shaft has moved by more than an electrical
     /// turn.
     pub pole_pairs: u32,
-    /// Ratio of the actual to the expected movement: 1 if correct, negative if two phases are exchanged.
+    /// Ratio of the actual to the expected movement. It is 1 if correct, and negative if two phases are exchanged.
     pub ratio: f64,
 }
 
@@ -48,14 +48,13 @@ impl ElectricalAngle {
 }
 
 impl Motor {
-    /// Creates a motor with the given numbers of signal periods per revolution and pole pairs. Returns `None` if either
-    /// is zero.
+    /// Creates a motor from its signal periods per revolution and its pole pairs. Returns `None` if either is zero.
     pub const fn new(periods: u32, pole_pairs: u32) -> Option<Self> {
         if periods == 0 || pole_pairs == 0 { None } else { Some(Motor { periods, pole_pairs }) }
     }
 
-    /// Returns the offset to store (method 1), from the fine position in periods at which the shaft rests in a static
-    /// vector. Returns `None` if the position is not finite.
+    /// Returns the offset to store (method 1). The argument is the fine position in periods at which the shaft rests in
+    /// a static vector. Returns `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
     }
@@ -76,8 +75,8 @@ impl Motor {
     }
 
     /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
-    /// The distance must be below ½, or the shaft may turn the other way. Returns `None` if the shaft has not moved or
-    /// the distance is zero.
+    /// The distance must be below ½, because the shaft may otherwise turn the other way. Returns `None` if the shaft
+    /// has not moved or the distance is zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVectorResult> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -86,14 +85,14 @@ impl Motor {
         sensible.then_some(SecondVectorResult { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Converts periods to the position within one revolution. Whole revolutions are dropped because they would cost
-    /// digits of the fraction.
+    /// Converts periods to the position within one revolution. Whole revolutions are dropped first, because they would
+    /// cost digits of the fraction.
     fn revolutions(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }
 }
 
-/// Returns the value for command 43h that sets the present position to period `period` (method 2). Its five lower bits
+/// Returns the value for command 43h that sets the present position to period `period` (method 2). The lowest five bits
 /// are the upper bits of the phase, as the encoder requires. Returns `None` beyond 2²⁷ periods.
 pub fn preset_position(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }

@@ -1,12 +1,12 @@
-//! Continuity of a capture's time stamps: missing samples, and times that go backwards. Values counted from sample to
-//! sample, such as the periods of a frequency, are counted within a continuous section only.
+//! Continuity of a capture's time stamps: missing samples, and times that go backwards. Quantities counted from sample
+//! to sample, such as the periods of a frequency, are counted within a continuous section only.
 //!
-//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, so that even
-//! samples can have steps of two lengths: a difference of one digit is not a gap.
+//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, and rounding can
+//! give even samples steps of two lengths. A difference of one digit is therefore not a gap.
 
-/// Multiple of the usual time step above which a step is considered a gap.
+/// Multiple of the usual time step above which a step is a gap.
 const GAP: f64 = 1.5;
-/// Approximate number of time steps sampled to obtain the usual step, which is their median.
+/// Approximate number of time steps from which the usual step is taken. The usual step is their median.
 const SAMPLED: usize = 1 << 14;
 /// Relative deviation from the usual time step within which a step counts as equal.
 const SAME: f64 = 0.01;
@@ -15,13 +15,13 @@ const MOSTLY: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
-    /// Missing samples, or `None` if the capture has no gap or no times.
+    /// Missing samples. `None` if the capture has no gap or no times.
     pub missing: Option<MissingSamples>,
     /// Index of the first sample with a time earlier than that of the previous sample, counted from 0.
     pub back: Option<usize>,
-    /// Total time in continuous sections in seconds, or `None` without times.
+    /// Total time of the continuous sections in seconds. `None` without times.
     pub stretches_s: Option<f64>,
-    /// Indices of the samples that begin a section, excluding the first sample.
+    /// Indices of the samples that begin a section, except the first sample.
     pub(super) breaks: Vec<usize>,
 }
 
@@ -59,9 +59,9 @@ impl Continuity {
     }
 }
 
-/// Returns the longest time step that is not a gap, in seconds, or `None` if no time passes.
+/// Returns the longest time step in seconds that is not a gap. Returns `None` if no time passes.
 fn longest_even_step(times_s: &[f64]) -> Option<f64> {
-    // An odd stride does not lock onto a pattern of length 2ⁿ.
+    // An odd stride does not fall in step with a pattern of length 2ⁿ.
     let stride = (times_s.len() / SAMPLED) | 1;
     let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
     let middle = steps.len() / 2;
@@ -83,7 +83,7 @@ fn step(pair: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the weight of the last decimal digit of the times, in seconds, or 0 below a nanosecond.
+/// Returns the weight of the last decimal digit of the times, in seconds. Returns 0 below a nanosecond.
 fn last_digit(times_s: &[f64], stride: usize) -> f64 {
     let is_whole = |value: f64| (value - value.round()).abs() <= 1e-3;
     let fits = |places: &i32| times_s.iter().step_by(stride).all(|time| is_whole(time * 10_f64.powi(*places)));

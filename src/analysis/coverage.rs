@@ -1,5 +1,5 @@
-//! Signal coverage of a capture: octants, periods, and the distance of the samples from the ellipse. The validity of a
-//! fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
+//! Signal coverage of a capture: octants, periods, and the distance of the samples from the ellipse. A fit is valid if
+//! the points lie in at least 6 of 8 octants. See section 7 of the project's sine/cosine reference.
 
 use std::ops::Range;
 
@@ -11,11 +11,11 @@ use super::outliers::kept;
 pub struct Coverage {
     /// Number of octants of the corrected angle that contain at least one sample, 0 to 8.
     pub octants: u32,
-    /// Periods from the lowest to the highest angle, including the fraction.
+    /// Periods from the lowest to the highest angle, as a number with a fraction.
     pub periods: f64,
-    /// Periods from the first to the last sample, excluding gaps; negative if the angle decreases.
+    /// Periods from the first to the last sample, without gaps. Negative if the angle decreases.
     pub travel_periods: f64,
-    /// Total path in periods, forward and back, excluding gaps.
+    /// Total path in periods in both directions, without gaps.
     pub path_periods: f64,
     /// Number of reversals by more than half a period.
     pub reversals: usize,
@@ -25,7 +25,8 @@ pub struct Coverage {
     pub vector_v: (f64, f64),
 }
 
-/// Angle accumulated over several periods, as the quarters so far and the vector within the current quarter.
+/// Angle that grows over several periods. It is stored as the number of whole quarters and the vector within the
+/// current quarter.
 #[derive(Clone, Copy)]
 pub(super) struct UnwrappedAngle {
     quarters: i64,
@@ -57,7 +58,7 @@ impl UnwrappedAngle {
 
     fn periods(&self) -> f64 {
         let phase = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
-        // Whole quarters are counted; only the part of the phase within the current quarter is added.
+        // Whole quarters are counted. Only the part of the phase within the current quarter is added.
         self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quadrant_of(self.sine, self.cosine)) / 4.0
     }
 }
@@ -86,7 +87,7 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Number of quarter periods that an angle must move back to count as a reversal, so that noise does not count.
+    /// Number of quarter periods that an angle must move back to count as a reversal. Noise moves it back less.
     const BACK: i64 = 3;
 
     fn from(first: UnwrappedAngle) -> Self {
@@ -118,7 +119,7 @@ impl AnglePath {
         }
     }
 
-    /// Records a direction that has become apparent or has changed at the angle `at`.
+    /// Records that the angle has a new direction since the angle `at`.
     fn turn_at(&mut self, at: UnwrappedAngle, direction: Direction) {
         self.update_extremes();
         if self.direction != Direction::Unknown {
@@ -161,8 +162,8 @@ fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize
     starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
 }
 
-/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Optimised for speed by comparisons
-/// without branches.
+/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Comparisons without branches make it
+/// fast.
 fn quadrant_of(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
@@ -175,14 +176,14 @@ fn quadrant_of(sine: f64, cosine: f64) -> i32 {
 }
 
 impl Coverage {
-    /// Follows the samples in order, or returns `None` without samples. The angle must move by less than half a period
-    /// between consecutive samples.
+    /// Follows the samples in order. The angle must move by less than half a period between consecutive samples.
+    /// Returns `None` without samples.
     pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
         Coverage::without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Follows the samples in order, skipping the ranges in `left_out`, which are ordered and do not overlap. The path
-    /// of the angle to each sample in `breaks` is unknown.
+    /// Follows the samples in order, except the ranges in `left_out`, which are ordered and do not overlap. Each index
+    /// in `breaks` is a sample that the angle reached by an unknown path.
     pub(super) fn without(
         sine: &[f64],
         cosine: &[f64],
@@ -190,7 +191,7 @@ impl Coverage {
         breaks: &[usize],
         ellipse: &Ellipse,
     ) -> Option<Self> {
-        /// Number of squares that are summed separately to reduce rounding errors.
+        /// Number of squares in a partial sum. Partial sums reduce rounding errors.
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
         let length = sine.len().min(cosine.len());

@@ -1,10 +1,10 @@
 //! Least-squares fit of the ellipse drawn by a pair of sine and cosine signals, and its deviations from a circle:
-//! offsets, gain ratio and phase error. P. L. M. Heydemann, Applied Optics 20, 3382 (1981); section 7 of the project's
-//! sine/cosine reference.
+//! offsets, gain ratio and phase error. See P. L. M. Heydemann, Applied Optics 20, 3382 (1981), and section 7 of the
+//! project's sine/cosine reference.
 //!
 //! Model, with θ the true angle: x = R·cos θ + p (cosine channel) and y = (R·sin θ·cos α − R·cos θ·sin α)/r + q (sine
-//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after moving the origin to the centre of the ellipse:
-//! the equation is then best conditioned, and signals with a large mean level can be fitted as well.
+//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after the origin was moved to the centre of the ellipse.
+//! The equation is best conditioned there, and signals with a large mean level can be fitted as well.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -20,13 +20,14 @@ pub struct Ellipse {
     pub offset_sine_v: f64,
     /// r: ratio of the cosine amplitude to the sine amplitude, above 0.
     pub gain_ratio: f64,
-    /// α: lag of the sine behind its nominal position, a quarter period after the cosine, in radians, within ±π/2.
+    /// α: lag of the sine behind its nominal position, in radians, within ±π/2. Nominally, the sine is a quarter period
+    /// after the cosine.
     pub phase_error_rad: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// The fit has too few points: an ellipse has five parameters, and one more point is needed to assess the fit.
+    /// The fit has too few points. An ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
     TooFew { points: usize },
     #[error("sample {index} is not a finite number")]
@@ -57,17 +58,17 @@ pub enum SignalChannel {
 
 pub const LEAST_POINTS: usize = 6;
 
-/// Fraction of the other channel's range below which a channel is considered dead. Noise may be that large.
+/// Fraction of the other channel's range below which a channel counts as dead. Noise may reach this range.
 const DEAD: f64 = 0.05;
-/// Ratio of the variance across a line to the variance along it, below which the points lie on the line.
+/// Ratio of the variance across a line to that along it. Below this ratio, the points lie on the line.
 const THIN: f64 = 1e-4;
-/// Ratio of the smallest to the largest eigenvalue of the normal equations, below which no unique solution exists.
+/// Ratio of the smallest to the largest eigenvalue of the normal equations. Below this ratio, there is no unique
+/// solution.
 const CONDITION: f64 = 1e-13;
 /// Number of times the origin is moved to the centre of the previous ellipse.
 const ROUNDS: usize = 4;
 
 impl SignalChannel {
-    /// Returns `sine` or `cosine`.
     pub const fn word(self) -> &'static str {
         match self {
             SignalChannel::Sine => "sine",
@@ -112,11 +113,12 @@ impl Conic {
 }
 
 impl Ellipse {
-    /// Fits an ellipse to points given as sine and cosine in volts, in two passes over the samples. Surplus values of
-    /// the longer slice are ignored.
+    /// Fits an ellipse to points given as sine and cosine in volts, in two passes over the samples. If one slice is
+    /// longer, its surplus values are ignored.
     ///
     /// # Errors
-    /// [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the period.
+    /// Returns a [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the
+    /// period.
     pub fn fit(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
         Ellipse::from_moments(&Moments::of(sine, cosine)?)
     }
@@ -124,7 +126,7 @@ impl Ellipse {
     /// Fits an ellipse to points given by their moments.
     ///
     /// # Errors
-    /// The same as for [`fit`](Self::fit).
+    /// Returns the same errors as [`fit`](Self::fit).
     pub fn from_moments(moments: &Moments) -> Result<Self, FitError> {
         if moments.count() < LEAST_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
@@ -134,7 +136,7 @@ impl Ellipse {
         let mut moments = around_mean;
         let mut found = solve(&moments)?;
         for _ in 1..ROUNDS {
-            // Without a good start the centre may be outside; the result is then the fit around the mean.
+            // After a poor start the centre may be outside. The fit around the mean is kept then.
             let moved = moments.moved_by(found.offset_cosine_v, found.offset_sine_v);
             let Ok(better) = solve(&moved) else { break };
             (moments, found) = (moved, better);
@@ -156,8 +158,7 @@ impl Ellipse {
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
     }
 
-    /// Returns the given number of points of the outline as (cosine, sine) in volts, with the first point repeated at
-    /// the end.
+    /// Returns points of the outline as (cosine, sine) in volts. The first point is repeated at the end.
     pub fn outline_points(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
             let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
@@ -202,7 +203,7 @@ impl EllipseCorrection {
     }
 
     /// Returns the factors by which changes in the cosine and the sine affect the corrected sine. The corrected cosine
-    /// changes by the same amount as the cosine.
+    /// changes exactly as the cosine does.
     pub(super) fn stretch(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
@@ -211,11 +212,11 @@ impl EllipseCorrection {
 /// Rejects points that enclose no area.
 ///
 /// # Errors
-/// Returns the reason why the points are rejected.
+/// Returns the reason for the rejection.
 fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
-    // Relative to the level: a constant of 2.5 V has a range of at most a few units in the last place.
+    // Relative to the level, because a constant 2.5 V still varies by a few units in the last place.
     if most <= around_mean.max_abs_voltage() * 1e-9 {
         return Err(FitError::Constant);
     }
@@ -226,7 +227,7 @@ fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
         return Err(FitError::Dead(SignalChannel::Sine));
     }
     let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
-    // Each channel is taken relative to its own spread, or a small gain would look like a line.
+    // Each channel is taken relative to its own spread. Otherwise, a small gain would look like a line.
     let correlation = (xy / (xx * yy).sqrt()).abs();
     if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
 }

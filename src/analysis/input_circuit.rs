@@ -1,6 +1,7 @@
 //! Effect of a drive's input circuit on the signals: signal frequency at a given speed, phase and gain of the input
-//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the
-//! input resistor in the text and the feedback resistor in the formula; the resistor across the capacitor counts.
+//! filter. See SICK 8010701, process data channel, and section 1 of the project's sine/cosine reference. The manual
+//! names the input resistor in the text and the feedback resistor in the formula. The relevant resistor is the one
+//! across the capacitor.
 
 use std::f64::consts::TAU;
 
@@ -29,20 +30,19 @@ impl InputFilter {
 }
 
 impl FilterResponse {
-    /// Returns the lag in steps of the absolute position of 1/32 period.
+    /// Returns the lag in steps of the absolute position, which are 1/32 of a period.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }
 }
 
-/// Returns the signal frequency in hertz for the given number of periods per revolution, at a speed in revolutions per
-/// minute.
+/// Returns the signal frequency in hertz at a speed in revolutions per minute.
 pub fn signal_frequency_hz(periods: u32, speed_rpm: f64) -> f64 {
     f64::from(periods) * speed_rpm / 60.0
 }
 
-/// Returns the speed in revolutions per minute at which a signal reaches a frequency in hertz, or `None` if `periods`
-/// is zero.
+/// Returns the speed in revolutions per minute at which a signal reaches a frequency in hertz. Returns `None` if
+/// `periods` is zero.
 pub fn speed_rpm_at(periods: u32, frequency_hz: f64) -> Option<f64> {
     if periods == 0 { None } else { Some(frequency_hz * 60.0 / f64::from(periods)) }
 }

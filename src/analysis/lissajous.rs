@@ -1,6 +1,6 @@
-//! Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope: the number of
-//! samples in each cell of a square, and the shortest and longest vector in each direction. Every sample is counted: in
-//! a cell, as outside, or as not a number. Independent of colours.
+//! Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope. It holds the
+//! number of samples in each cell of a square, and the shortest and longest vector in each direction. Every sample is
+//! counted: in a cell, as outside, or as not a number. The module is independent of colours.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ pub struct SampleDensity {
     bad: u64,
 }
 
-/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts, or (∞, 0) without samples.
+/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts. Without samples, it is (∞, 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VectorLengths {
     pub least_v: f64,
@@ -40,7 +40,7 @@ pub const MOST_CELLS: usize = 2048;
 
 /// Margin around the samples, as a fraction of their range.
 const MARGIN: f64 = 0.05;
-/// Minimum half side of the square in volts, for samples that are all equal.
+/// Minimum distance from the centre to an edge in volts, for samples that are all equal.
 const LEAST_HALF_V: f64 = 1e-3;
 
 impl PlotSquare {
@@ -49,7 +49,7 @@ impl PlotSquare {
         PlotSquare { cosine_v: 0.0, sine_v: 0.0, half_v }
     }
 
-    /// Returns a square around all finite samples, with a margin, or `None` if a channel has no finite value.
+    /// Returns a square around all finite samples, with a margin. Returns `None` if a channel has no finite value.
     pub fn around(sine: &[f64], cosine: &[f64]) -> Option<Self> {
         let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
         let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
@@ -59,8 +59,8 @@ impl PlotSquare {
 }
 
 impl SampleDensity {
-    /// Creates an empty picture of `side` × `side` cells, limited to 1 to [`MOST_CELLS`] per side. Returns `None` for
-    /// an empty square.
+    /// Creates an empty picture of `side` × `side` cells. `side` is limited to the range 1 to [`MOST_CELLS`]. Returns
+    /// `None` for an empty square.
     pub fn new(square: PlotSquare, side: usize) -> Option<Self> {
         let PlotSquare { cosine_v, sine_v, half_v } = square;
         if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
@@ -84,7 +84,7 @@ impl SampleDensity {
         Some(density)
     }
 
-    /// Adds samples in volts. Surplus values of the longer channel are ignored.
+    /// Adds samples in volts. If one channel is longer, its surplus values are ignored.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
         let PlotSquare { cosine_v, sine_v, half_v } = self.square;
         let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
@@ -92,7 +92,7 @@ impl SampleDensity {
         let scale = side / (2.0 * half_v);
         for (y, x) in sine.iter().zip(cosine) {
             let (column, row) = ((x - left) * scale, (y - bottom) * scale);
-            // Also false for NaN.
+            // The comparison is also false for NaN.
             let inside = column >= 0.0 && column < side && row >= 0.0 && row < side;
             let length = y * y + x * x;
             let direction = if inside {
@@ -129,13 +129,12 @@ impl SampleDensity {
         self.side
     }
 
-    /// Returns the number of samples in each cell, row by row in ascending order of sine. Each row is in ascending
-    /// order of cosine.
+    /// Returns the number of samples in each cell, row by row. The sine increases from row to row, and the cosine
+    /// within a row.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// Returns the number of samples in the fullest cell.
     pub fn max_count(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
@@ -166,7 +165,7 @@ fn sector_of(sine: f64, cosine: f64) -> usize {
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
-/// Returns the minimum and maximum of the finite values, or `None` if there are none.
+/// Returns the minimum and maximum of the finite values. Returns `None` if there are none.
 fn range(values: &[f64]) -> Option<(f64, f64)> {
     let finite = |value: f64| value.abs() < f64::INFINITY;
     let (groups, rest) = values.as_chunks::<4>();

@@ -1,17 +1,17 @@
-//! Sums of powers of two signals up to the fourth, sufficient for fitting an ellipse (Heydemann 1981) to any number of
-//! samples. The sums are accumulated at a scale near one, so that no digits are lost to the unit, and can be moved to
-//! another origin afterwards.
+//! Sums of powers of two signals up to the fourth. They suffice for fitting an ellipse to any number of samples
+//! (Heydemann 1981). The sums are accumulated at a scale near one, where no digits are lost to the unit, and can be
+//! moved to another origin afterwards.
 
 use super::ellipse::{Ellipse, FitError};
 
-/// Highest power.
+/// Highest sum of both powers.
 const ORDER: usize = 4;
 /// Number of powers in a row of the table.
 const ROW: usize = ORDER + 1;
-/// Number of samples summed before their sums are added to the total. Rounding errors then grow with the square root of
-/// the number of blocks, not of samples.
+/// Number of samples in a partial sum. With partial sums, rounding errors grow with the square root of the number of
+/// blocks instead of the number of samples.
 const BLOCK: usize = 4096;
-/// Number of parallel sums, so that the processor can perform several additions at a time.
+/// Number of parallel sums. The processor performs their additions at the same time.
 const LANES: usize = 2;
 /// Powers of x and y for each sum.
 const POWERS: [(usize, usize); 14] =
@@ -55,10 +55,10 @@ impl Moments {
         Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }
     }
 
-    /// Returns the sums over all samples at the best scale. Surplus values of the longer channel are ignored.
+    /// Returns the sums over all samples at the best scale. If one channel is longer, its surplus values are ignored.
     ///
     /// # Errors
-    /// [`FitError::NotFinite`] with the index of the first sample that is not finite.
+    /// Returns [`FitError::NotFinite`] with the index of the first sample that is not finite.
     pub fn of(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
         let Extremes { least, most } = Extremes::of(sine, cosine);
         let middle = |low: f64, high: f64| low + (high - low) / 2.0;
@@ -69,18 +69,18 @@ impl Moments {
         Ok(moments)
     }
 
-    /// Adds samples in volts. Surplus values of the longer channel are ignored.
+    /// Adds samples in volts. If one channel is longer, its surplus values are ignored.
     ///
     /// # Errors
-    /// [`FitError::NotFinite`] if a sample is not finite; the moments are then unchanged, except for whole blocks
-    /// before that sample.
+    /// Returns [`FitError::NotFinite`] if a sample is not finite. Whole blocks before that sample have then been added,
+    /// and nothing else.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
         let length = sine.len().min(cosine.len());
         let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());
         for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
             let sums = self.block(xs, ys);
             let extremes = Extremes::of(ys, xs);
-            // A sample that is not finite, or too large for its fourth power, affects these sums.
+            // A sample that is not finite shows in these sums, and so does one that is too large for its fourth power.
             if !sums.iter().all(|sum| sum.is_finite()) {
                 let bad = xs.iter().zip(ys).position(|(x, y)| !x.is_finite() || !y.is_finite());
                 return Err(FitError::NotFinite { index: block * BLOCK + bad.unwrap_or_default() });
@@ -124,8 +124,8 @@ impl Moments {
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
-    /// Returns the moments with the origin moved to (x, y), in the unit of the scale. (x − a)ⁱ·(y − b)ʲ is expanded by
-    /// the binomial theorem.
+    /// Returns the moments with the origin moved to (x, y), in the unit of the scale. The binomial theorem expands (x −
+    /// a)ⁱ·(y − b)ʲ.
     pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],

@@ -1,11 +1,10 @@
-//! Speed and acceleration from unwrapped positions: differences over a time range, not over a number of samples, so
-//! that a faster poll does not make them noisier. Breaks are never crossed.
+//! Speed and acceleration from unwrapped positions. The differences cover a time range and not a number of samples, so
+//! a faster poll does not make them noisier. A difference never crosses a break.
 
 use std::collections::VecDeque;
 
 use super::SampleTime;
 
-/// Calculates speed and acceleration from unwrapped positions.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Averaging window in nanoseconds, at least 1.
@@ -16,24 +15,25 @@ pub struct Motion {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionRates {
-    /// Speed in steps/s, averaged over the last window and thus valid for its middle, or `None` until a window has
-    /// passed.
+    /// Speed in steps/s, averaged over the last window. It applies to the middle of the window. `None` until a window
+    /// has passed.
     pub speed: Option<f64>,
-    /// Acceleration in steps/s² from the last two windows, or `None` until two windows have passed.
+    /// Acceleration in steps/s² from the last two windows. `None` until two windows have passed.
     pub acceleration: Option<f64>,
 }
 
 impl Motion {
-    /// Divisor of the window below which close positions are not all kept, which limits memory at any sample
-    /// rate.
+    /// Divisor of the window. Of positions closer together than the result, not all are kept, which limits memory at
+    /// any sample rate.
     const RESOLUTION: i64 = 1024;
 
-    /// Creates averages over `window` nanoseconds (at least 1), or over one sample if samples arrive more slowly.
+    /// Creates averages over `window` nanoseconds (at least 1). If samples arrive more slowly, an average covers one
+    /// sample.
     pub fn over(window: i64) -> Self {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Resets the averages, so that the next position is not connected with the previous one.
+    /// Resets the averages. The next position is then not connected with the previous one.
     pub fn reset(&mut self) {
         self.recent.clear();
     }
@@ -49,7 +49,7 @@ impl Motion {
         let speed = middle.map(|middle| slope(middle, (time, steps)));
         let acceleration = match (speed, middle, oldest) {
             (Some(speed), Some(middle), Some(oldest)) => {
-                // The two slopes are valid for the middles of their ranges.
+                // The two slopes apply to the middles of their ranges.
                 let apart = time.seconds_since(oldest.0) / 2.0;
                 Some((speed - slope(oldest, middle)) / apart)
             }
@@ -66,8 +66,8 @@ impl Motion {
     }
 
     fn push(&mut self, time: SampleTime, steps: i64) {
-        // The last position but one represents those close to it; the last one is always kept, since the next may come
-        // much later.
+        // The last position but one represents those close to it. The last one is always kept, because the next may
+        // come much later.
         let crowded = self
             .recent
             .len()
@@ -78,7 +78,7 @@ impl Motion {
             self.recent.pop_back();
         }
         self.recent.push_back((time, steps));
-        // One position older than two windows must stay, because a range starts at it.
+        // One position older than two windows must stay, because a range starts there.
         let start = self.before(time.plus(-self.window)).and_then(|(middle, _)| self.before(middle.plus(-self.window)));
         while let (Some(start), Some(first)) = (start, self.recent.front())
             && first.0 < start.0
@@ -88,7 +88,7 @@ impl Motion {
     }
 }
 
-/// Returns the speed in steps/s between two positions, the earlier of which is `from`. The differences are exact before
+/// Returns the speed in steps/s between two positions. `from` is the earlier one. The differences are exact before the
 /// division.
 fn slope(from: (SampleTime, i64), to: (SampleTime, i64)) -> f64 {
     to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)

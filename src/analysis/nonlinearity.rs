@@ -1,8 +1,8 @@
-//! Differential and integral non-linearity against a reference: the deviation inside one signal period (offset, gain,
-//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors. The
-//! evaluation follows section 6 of the project's sine/cosine reference: the mean over one period around each sample is
-//! the integral part, the rest is the differential part. Both values are half of the peak-to-peak range, that is, ±
-//! values.
+//! Differential and integral non-linearity against a reference. The deviation inside one signal period has its causes
+//! in offset, gain, phase and harmonics. The deviation over the revolution has its causes in eccentricity, coupling and
+//! scale. The mean over one period around each sample is the integral part, and the rest is the differential part. Both
+//! are given as ± values, which are half of the peak-to-peak range. See SICK 8010701, definitions of errors, and
+//! section 6 of the project's sine/cosine reference.
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearity {
@@ -10,10 +10,10 @@ pub struct Nonlinearity {
     pub differential_deg: f64,
     /// INL: ± deviation of the mean over one period, in mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and both parts of the deviation with the mean removed, in mechanical degrees; includes only
-    /// samples surrounded by a whole period.
+    /// Reference angle and both parts of the deviation with the mean removed, in mechanical degrees. Only samples
+    /// surrounded by a whole period are included.
     pub curve: Vec<Deviation>,
-    /// Number of revolutions covered by the curve. The INL applies to a whole revolution only if at least 1.
+    /// Number of revolutions covered by the curve. The INL applies to a whole revolution only if this is at least 1.
     pub revolutions: f64,
 }
 
@@ -47,7 +47,7 @@ pub enum NonlinearityError {
 /// periods per revolution.
 ///
 /// # Errors
-/// [`NonlinearityError`] if the reference reverses, or the data are too short or invalid.
+/// Returns a [`NonlinearityError`] if the reference reverses, or the data are too short or invalid.
 pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result<Nonlinearity, NonlinearityError> {
     let count = measured.len().min(reference.len());
     let (measured, reference) = (measured.get(..count).unwrap_or_default(), reference.get(..count).unwrap_or_default());
@@ -86,7 +86,7 @@ pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result
 }
 
 /// Splits the error at each sample that is surrounded by a whole period. The mean over the period integrates the
-/// straight lines between samples, so the positions of the samples in the period make no difference.
+/// straight lines between samples. It is therefore independent of where the samples are in the period.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);
     // Angles from the start, increasing in either direction of rotation.
@@ -102,7 +102,7 @@ fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> 
         areas.push(area);
     }
     let end = place(errors.len().saturating_sub(1)).unwrap_or(0.0);
-    // Area up to a given angle; `from` advances with the angle.
+    // Area up to an angle. `from` advances with the angle.
     let area_to = |angle: f64, from: &mut usize| {
         while place(*from + 1).is_some_and(|next| next <= angle) {
             *from += 1;

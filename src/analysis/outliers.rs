@@ -1,6 +1,6 @@
-//! Detection of samples far off the ellipse, caused by a relay's spark or a loose contact: a few of them would distort
-//! an ellipse fitted by least squares. Outliers are found by a robust deviation (the median of the distances), left out
-//! of a second fit, and reported.
+//! Detection of samples far off the ellipse, caused by a relay's spark or a loose contact. A few of them would distort
+//! an ellipse fitted by least squares. Outliers are found by a robust deviation, which is the median of the distances.
+//! They are left out of a second fit, and reported.
 
 use std::ops::Range;
 
@@ -11,13 +11,13 @@ use super::moments::{Moments, Scale};
 /// Samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
-    /// Ordered ranges of outliers by sample index, counted from 0. No two ranges touch.
+    /// Ranges of outliers by sample index from 0, in order. No two ranges touch.
     pub stretches: Vec<Range<usize>>,
     pub count: usize,
     pub longest: usize,
     /// Largest distance of an outlier from the ellipse, in volts.
     pub farthest_v: f64,
-    /// Ellipse through all samples and their coverage, or `None` if the samples do not determine an ellipse.
+    /// Ellipse through all samples and their coverage. `None` if the samples do not determine an ellipse.
     pub all: Option<(Ellipse, Coverage)>,
 }
 
@@ -26,21 +26,21 @@ pub struct Outliers {
 pub const DEVIATIONS: f64 = 8.0;
 /// Fraction of the amplitude within which a sample is never an outlier, however low the noise is.
 pub const LEAST_SHARE: f64 = 0.02;
-/// Share of samples above which deviating samples are a property of the signal instead of outliers.
+/// Share of deviating samples above which the cause is the signal itself. The samples are then not outliers.
 pub const MOST: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
 pub const LEAST_SAMPLES: usize = 50;
 
 /// Approximate number of evenly spread samples from which medians are taken.
 const SAMPLED: usize = 1 << 15;
-/// Maximum number of fits without outliers. Fewer are needed once the outliers no longer change.
+/// Maximum number of fits without outliers. The search ends earlier if the outliers no longer change.
 const ROUNDS: usize = 4;
 /// Ratio of a normal distribution's standard deviation to the median of its distances from zero.
 const NORMAL: f64 = 1.4826;
 /// Median distance from an upright ellipse, as a fraction of its amplitude, above which the samples lie on no ellipse.
-/// A cloud has 0.3.
+/// A cloud of samples has 0.3.
 const UPRIGHT: f64 = 0.15;
-/// Fraction of the other channel's range below which a channel is considered constant.
+/// Fraction of the other channel's range below which a channel counts as constant.
 const DEAD: f64 = 0.05;
 
 pub(super) enum OutlierResult {
@@ -49,7 +49,7 @@ pub(super) enum OutlierResult {
     Outliers(Ellipse, Outliers),
 }
 
-/// Searches for outliers; `all` is the ellipse through all samples, if known.
+/// Searches for outliers. `all` is the ellipse through all samples, if known.
 pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierResult {
     let count = sine.len().min(cosine.len());
     if count < LEAST_SAMPLES {
@@ -59,7 +59,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     let stride = (count / SAMPLED) | 1;
     let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
     let (ys, xs) = (sampled(sine), sampled(cosine));
-    // An ellipse distorted by an outlier misses the other samples; the upright ellipse is used if it fits them better.
+    // An ellipse distorted by an outlier misses the other samples. The upright ellipse is used if it fits them better.
     let upright = boxed(&ys, &xs).ok().filter(|boxed| median_deviation(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
@@ -103,13 +103,13 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     OutlierResult::Outliers(ellipse, outliers)
 }
 
-/// Returns the channel that is constant apart from single samples, or `None` if both channels move.
+/// Returns the channel that is constant apart from single samples. Returns `None` if both channels move.
 pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<SignalChannel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }
 
-/// Returns the remaining ranges of `length` samples after removing the ranges in `left_out`.
+/// Returns the ranges of `length` samples that remain after the ranges in `left_out` are removed.
 pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
@@ -124,12 +124,12 @@ fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: S
     Ellipse::from_moments(&moments)
 }
 
-/// Returns an upright ellipse derived from quantiles, which a few samples do not affect.
+/// Returns an upright ellipse derived from quantiles. A few samples do not affect them.
 ///
 /// # Errors
 /// Returns the constant channel, or `None` if both channels are constant.
 fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>> {
-    /// Share of samples beyond each quantile. For a tenth of the time, a sine is outside cos(0.05·π) of its amplitude.
+    /// Share of samples beyond each quantile. A sine is outside cos(0.05·π) of its amplitude for a tenth of the time.
     const SHARE: f64 = 0.05;
     let reach = (SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
@@ -141,7 +141,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>>
     };
     let ((offset_sine_v, sine_v), (offset_cosine_v, amplitude_v)) = (channel(sine), channel(cosine));
     let most = sine_v.max(amplitude_v);
-    // A constant of 2.5 V has a range of at most a few units in the last place.
+    // A constant 2.5 V still varies by a few units in the last place.
     if most <= 1e-9 * offset_sine_v.abs().max(offset_cosine_v.abs()) {
         Err(None)
     } else if sine_v < DEAD * most {

@@ -1,11 +1,11 @@
 //! Position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
-//! SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period); section 6 of
-//! the project's sine/cosine reference.
+//! See SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period), and
+//! section 6 of the project's sine/cosine reference.
 //!
-//! Without a reference encoder the motion is the reference: over a few periods a shaft follows a straight line or a
+//! Without a reference encoder, the motion is the reference. Over a few periods a shaft follows a straight line or a
 //! parabola in time, so deviations that repeat with the period are errors. Both are fitted at once: a motion for each
 //! segment of the capture, and eight harmonics of the corrected angle for all segments. If the motion does not fit such
-//! a curve, or is too short, the distance from the ellipse serves as the error: a disturbance changes both by the same
+//! a curve, or is too short, the distance from the ellipse serves as the error. A disturbance changes both by the same
 //! amount.
 
 use std::f64::consts::TAU;
@@ -34,7 +34,8 @@ pub struct PositionError {
 /// Basis on which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorBasis {
-    /// The motion was steady, so the error is the deviation of samples that the harmonics do not explain.
+    /// The motion was steady. The error is the deviation of the samples, and the noise is the part that the harmonics
+    /// do not explain.
     Motion { noise_deg: f64 },
     /// The distance from the ellipse was used, because the motion was not steady or the capture was too short.
     Ellipse,
@@ -44,17 +45,18 @@ pub const POINTS: usize = 720;
 
 /// Number of terms: a sine and a cosine for each harmonic.
 const TERMS: usize = 2 * HARMONICS;
-/// Number of periods in a segment, each of which is fitted with its own motion.
+/// Number of periods in a segment. Each segment is fitted with its own motion.
 const SEGMENT_PERIODS: f64 = 4.0;
-/// Maximum number of segments examined, which are distributed over the capture.
+/// Maximum number of segments examined. They are distributed over the capture.
 const SEGMENTS: usize = 32;
-/// Maximum number of samples per segment. Larger segments are thinned out.
+/// Maximum number of samples per segment. A segment with more samples is thinned out.
 const SEGMENT_SAMPLES: usize = 4096;
 /// Minimum number of samples for a fit of the motion with all harmonics.
 const LEAST_SAMPLES: usize = 3 * TERMS;
-/// Minimum number of periods, below which harmonics and motion cannot be separated.
+/// Minimum number of periods. With fewer, harmonics and motion cannot be separated.
 const LEAST_PERIODS: f64 = 0.95;
-/// Ratio of the noise to the value expected from the distance to the ellipse, above which the motion was not steady.
+/// Ratio of the noise to the value expected from the distance to the ellipse. Above this ratio, the motion was not
+/// steady.
 const STEADY: f64 = 3.0;
 
 type Normal = SMatrix<f64, TERMS, TERMS>;
@@ -62,15 +64,15 @@ type Terms = SVector<f64, TERMS>;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times in seconds. If they do not increase, they are ignored and samples are assumed to be equidistant.
+    /// Times in seconds. If they do not increase, they are ignored, and the samples count as equidistant.
     pub time_s: &'a [f64],
     pub sine_v: &'a [f64],
     pub cosine_v: &'a [f64],
 }
 
 impl PositionError {
-    /// Calculates the error of samples relative to their ellipse, excluding the ranges in `left_out`, which are ordered
-    /// and do not overlap.
+    /// Calculates the error of samples relative to their ellipse. The ranges in `left_out` are excluded. They are
+    /// ordered and do not overlap.
     pub(super) fn of(samples: Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, coverage: &Coverage) -> Self {
         let expected_deg = coverage.residual_rms.to_degrees();
         let found = fit(&samples, left_out, ellipse, coverage.periods)
@@ -89,7 +91,7 @@ impl PositionError {
         raw_deg.iter_mut().for_each(|error| *error -= mean);
         let (basis, corrected_pp_deg) = match found {
             Some((_, noise_deg)) => (ErrorBasis::Motion { noise_deg }, peak_to_peak(&corrected_deg)),
-            // One sine with this rms.
+            // This is the peak to peak of a single sine with this rms.
             None => (ErrorBasis::Ellipse, 2.0 * 2.0_f64.sqrt() * expected_deg),
         };
         PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
@@ -137,7 +139,8 @@ fn harmonics_at(angle: f64) -> Terms {
     terms
 }
 
-/// Returns the harmonics in radians and the rms of the residual in degrees, or `None` if there are too few samples.
+/// Returns the harmonics in radians and the rms of the residual in degrees. Returns `None` if there are too few
+/// samples.
 fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
     if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
@@ -172,7 +175,7 @@ impl Segment {
     fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
         let from = left_out.partition_point(|stretch| stretch.end <= range.start);
         let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);
-        // In the range's own indices.
+        // Convert an index to one within the range.
         let own = |index: usize| index.clamp(range.start, range.end) - range.start;
         let inside: Vec<Range<usize>> = inside.map(|stretch| own(stretch.start)..own(stretch.end)).collect();
         let parts = |values: &[f64]| {
@@ -187,7 +190,7 @@ impl Segment {
     }
 }
 
-/// Normal equations of the harmonics, with the motions already removed.
+/// Normal equations of the harmonics. The motions are already removed.
 struct NormalEquations {
     normal: Normal,
     right: Terms,
@@ -202,7 +205,7 @@ impl NormalEquations {
         let stride = (times.len() / SEGMENT_SAMPLES).max(1);
         let (Some(begin), Some(end)) = (times.first(), times.last()) else { return };
         let (middle, half) = ((begin + end) / 2.0, ((end - begin) / 2.0).max(f64::MIN_POSITIVE));
-        // Motion: 1, t, t² with t from −1 to 1.
+        // Terms of the motion: 1, t, t² with t from −1 to 1.
         let mut motion = SMatrix::<f64, 3, 3>::zeros();
         let mut mixed = SMatrix::<f64, 3, TERMS>::zeros();
         let mut of_motion = SVector::<f64, 3>::zeros();

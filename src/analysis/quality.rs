@@ -1,5 +1,5 @@
 //! Signal quality of sine and cosine: the length of the amplitude vector √(sin² + cos²), the offsets, the gain ratio
-//! and the phase error, each compared with its limits. Amplitude limits are from SICK 8010701; all other limits are
+//! and the phase error, each compared with its limits. Amplitude limits are from SICK 8010701. All other limits are
 //! assumptions (U) from section 2 of the project's sine/cosine reference and can be changed here.
 
 use super::ellipse::Ellipse;
@@ -11,7 +11,7 @@ pub enum Verdict {
     Ok,
     /// The signal is outside its limits, but the position is still correct.
     Warn,
-    /// The signal is so far outside its limits that a wire is broken or the angle is wrong.
+    /// The signal is far outside its limits. A wire is broken, or the angle is wrong.
     Fault,
 }
 
@@ -53,8 +53,8 @@ impl Family {
         }
     }
 
-    /// Returns the supply voltage of the family's encoders, according to HIPERFACE description 8010701, or 4.5 to 5.5 V
-    /// for AFS and AFM60 with sine and cosine.
+    /// Returns the supply voltage of the family's encoders. It is from the HIPERFACE description 8010701, or 4.5 to 5.5
+    /// V for AFS and AFM60 with sine and cosine.
     pub const fn supply(self) -> SupplyVoltage {
         match self {
             Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
@@ -74,9 +74,9 @@ impl Family {
 /// A quantity that is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
-    /// Peak amplitude in volts of the channel with the smaller or larger amplitude.
+    /// The amplitude is outside its limits, given for the channel with the smaller or the larger amplitude.
     Amplitude {
-        /// Found, peak, in volts.
+        /// Peak amplitude found, in volts.
         volts: f64,
         /// Minimum and maximum good amplitude in volts.
         ok_v: (f64, f64),
@@ -86,12 +86,12 @@ pub enum QualityFinding {
     OffsetCosine(f64),
     GainRatio(f64),
     PhaseError(f64),
-    /// Rms distance of the samples from the ellipse, relative to the amplitude, caused by noise, interference and
+    /// Rms distance of the samples from the ellipse, relative to the amplitude. It is caused by noise, interference and
     /// harmonics.
     Residual(f64),
 }
 
-/// Tolerance that keeps rounding from moving a value on the limit beyond it.
+/// Tolerance of the limits. Without it, rounding could move a value at the limit beyond it.
 const SLACK: f64 = 1e-9;
 
 impl Limits {
@@ -112,8 +112,8 @@ impl Limits {
     /// Limits for TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
-    /// Judges the length of a single amplitude vector; `None` without a signal. A single vector also contains offset
-    /// and gain errors, so judge the minimum and maximum over a period.
+    /// Judges the length of a single amplitude vector. A single vector also contains offset and gain errors, so judge
+    /// the minimum and maximum over a period. Returns `None` without a signal.
     pub fn vector_verdict(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude_verdict(length)) }
@@ -130,8 +130,8 @@ impl Limits {
         }
     }
 
-    /// Returns the quantities of an ellipse that are outside their limits, in the order of section 2. `residual_rms` is
-    /// relative to the amplitude.
+    /// Returns the quantities of an ellipse that are outside their limits, in the order of section 2 of the project's
+    /// sine/cosine reference. `residual_rms` is relative to the amplitude.
     pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
         let amplitude = ellipse.amplitude_v;
         let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude_verdict(volts), volts));

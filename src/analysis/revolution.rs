@@ -1,6 +1,6 @@
 //! Comparison of a capture with a reference encoder: the non-linearity over one revolution, as measured and after
-//! correction. The measured angle is the one that a drive interpolates from sine and cosine (section 6 of the project's
-//! sine/cosine reference).
+//! correction. The measured angle is the one that a drive interpolates from sine and cosine. See section 6 of the
+//! project's sine/cosine reference.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -12,7 +12,6 @@ use super::outliers::kept;
 /// Nonlinearity with and without the correction of the ellipse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Revolution {
-    /// As measured.
     pub raw: Nonlinearity,
     /// Nonlinearity with offsets, gain ratio and phase error corrected.
     pub corrected: Nonlinearity,
@@ -32,12 +31,13 @@ pub enum RevolutionError {
     },
 }
 
-/// Tolerated deviation of the counted from the given number of periods, as a fraction.
+/// Largest permitted deviation of the counted from the given number of periods, as a fraction.
 const CLOSE: f64 = 0.02;
 
 impl Revolution {
-    /// Compares sine and cosine in volts with the reference angle in mechanical degrees, wrapped or not, in either
-    /// direction. Samples in `left_out`, and those taken while the reference is at rest, are ignored.
+    /// Compares sine and cosine in volts with the reference angle in mechanical degrees. The reference may be wrapped
+    /// or not, and turn in either direction. Samples in `left_out` are ignored, and so are samples taken while the
+    /// reference is at rest.
     ///
     /// # Errors
     /// Returns a [`RevolutionError`] if the signals and the reference are unsuitable or do not match.
@@ -74,11 +74,11 @@ impl Revolution {
         if !found.is_finite() {
             return Err(NonlinearityError::TooLittle.into());
         }
-        // Less than a period does not tell their number.
+        // Less than a period does not show how many there are.
         if turned.abs() >= 1.0 && (found.abs() / f64::from(periods) - 1.0).abs() > CLOSE.max(1.0 / turned.abs()) {
             return Err(RevolutionError::Periods { found: found.abs(), given: periods });
         }
-        // Mounted the other way round, the reference counts in the other direction.
+        // A reference that is mounted the other way round counts in the other direction.
         let factor = 360.0 / TAU / f64::from(periods) * found.signum();
         let mechanical = |angles: &[f64]| angles.iter().map(|angle| angle * factor).collect::<Vec<f64>>();
         Ok(Revolution {
@@ -88,7 +88,7 @@ impl Revolution {
     }
 }
 
-/// Follows an angle beyond the wraps of the measured value.
+/// Angle that continues beyond the wraps of the measured value.
 struct AngleUnwrapper {
     whole: f64,
     last: Option<f64>,

@@ -1,6 +1,6 @@
 //! Complete analysis of a sine/cosine capture: the ellipse (Heydemann 1981), the quality of its fit, its coverage of
-//! the period, and the resulting position error. See sections 2, 6 and 7 of the project's sine/cosine reference. Single
-//! outliers are excluded throughout and reported.
+//! the period, and the resulting position error. Single outliers are excluded throughout and reported. See sections 2,
+//! 6 and 7 of the project's sine/cosine reference.
 
 use super::continuity::Continuity;
 use super::coverage::Coverage;
@@ -11,11 +11,11 @@ use super::position_error::{PositionError, Samples};
 /// Minimum number of octants of a period that must contain samples (U).
 pub const LEAST_OCTANTS: u32 = 6;
 /// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse. A cloud of noise around
-/// one point has 0.4 or more, while a signal with a residual of 0.02 is already poor.
+/// one point has 0.4 or more, while a residual of 0.02 is already a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
 /// Median angle between samples, in degrees, above which the direction is uncertain. With fewer than four samples per
-/// period, noise or an uneven motion easily turns it into half a period (U).
+/// period, noise or an uneven motion easily makes it half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -28,9 +28,9 @@ pub struct Analysis {
     pub error: PositionError,
     /// Number of samples, including excluded ones.
     pub samples: usize,
-    /// Time between the first and last sample in seconds, or `None` if times do not increase.
+    /// Time between the first and last sample in seconds. `None` if times do not increase.
     pub duration_s: Option<f64>,
-    /// Excluded outliers with the ellipse that would include them, or `None` without outliers.
+    /// Excluded outliers and the ellipse that would include them. `None` without outliers.
     pub outliers: Option<Outliers>,
 }
 
@@ -42,7 +42,7 @@ pub enum AnalysisError {
     /// The capture covers too little of a period for a reliable ellipse.
     #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
     Coverage { octants: u32 },
-    /// All samples lie around one point away from zero, so the signal is present and the shaft is at rest.
+    /// All samples lie around one point away from zero. The signal is present, and the shaft is at rest.
     #[error("all samples lie around one point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
@@ -54,16 +54,17 @@ pub enum AnalysisError {
 }
 
 impl Analysis {
-    /// Analyses samples. Surplus values of columns with different lengths are ignored.
+    /// Analyses samples. If columns differ in length, surplus values are ignored.
     ///
     /// # Errors
-    /// [`AnalysisError`] if the samples do not determine an ellipse or cover fewer than six octants of a period.
+    /// Returns an [`AnalysisError`] if the samples do not determine an ellipse or cover fewer than six octants of a
+    /// period.
     pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         Self::attempt(samples).map_err(|error| match error {
-            // Few samples and NaN tell nothing more; equal points may also be a dead cable.
+            // For few samples or NaN, there is nothing more to find out. Equal points may also be a dead cable.
             AnalysisError::Fit(FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant) => error,
             _ if is_at_rest(samples.sine_v, samples.cosine_v) => AnalysisError::AtRest,
-            // One spark on a dead channel makes it look alive, and the resulting error does not show the cause.
+            // One spark on a dead channel makes it look alive. The resulting error does not show the cause.
             AnalysisError::Fit(FitError::NotAnEllipse)
             | AnalysisError::Coverage { .. }
             | AnalysisError::NoSignal { .. } => outliers::dead_channel(samples.sine_v, samples.cosine_v)
@@ -105,14 +106,14 @@ impl Analysis {
         })
     }
 
-    /// Returns the average number of periods per second over continuous sections, negative if the angle falls. After a
-    /// reversal, returns the positive mean of both directions. Returns `None` without times.
+    /// Returns the average number of periods per second over continuous sections. It is negative if the angle falls.
+    /// After a reversal, it is the positive mean of both directions. Returns `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// Returns whether there are enough samples per period to track the angle, and therefore the frequency.
+    /// Returns whether there are enough samples per period to track the angle. Only then is the frequency known.
     pub fn is_angle_tracked(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }
@@ -120,7 +121,7 @@ impl Analysis {
 
 /// Returns whether the samples scatter only slightly around a point other than zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
-    /// Rms scatter of one channel, relative to the distance of the point from zero; the value is 6° of a signal (U).
+    /// Rms scatter of one channel, relative to the distance of the point from zero. The value is 6° of a signal (U).
     const SCATTER: f64 = 0.1;
     /// Distance from zero in volts below which there may be no signal (U).
     const LEAST_V: f64 = 0.1;
@@ -138,7 +139,7 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
     const SAMPLED: usize = 1 << 13;
     let correction = ellipse.correction();
-    // An odd stride is not synchronous with a period of 2ⁿ samples.
+    // An odd stride does not fall in step with a period of 2ⁿ samples.
     let stride = (sine_v.len() / SAMPLED) | 1;
     let step = |pair: (&[f64], &[f64])| match pair {
         ([y, later_y], [x, later_x]) => {

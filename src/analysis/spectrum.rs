@@ -1,4 +1,4 @@
-//! Amplitude spectrum of a sine/cosine channel, computed with realfft and a Hann window; it shows interference,
+//! Amplitude spectrum of a sine/cosine channel, computed with realfft and a Hann window. It shows interference,
 //! harmonics and noise. The gain of the window is compensated, so a sine appears with its peak amplitude.
 
 use std::f64::consts::TAU;
@@ -29,20 +29,20 @@ pub enum SpectrumError {
         /// Index of the sample before the uneven step, counted from 0.
         index: usize,
     },
-    /// A sample or the rate is not a finite number, or the rate is not above zero.
+    /// A sample or the rate is not a finite number, or the rate is not positive.
     #[error("a sample or the sample rate is not a number")]
     NotFinite,
 }
 
 const LEAST: usize = 8;
-/// Number of lines on each side of a peak that belong to the peak with a Hann window.
+/// Number of lines on each side of a peak that belong to it in a Hann window.
 const PEAK_REACH: usize = 2;
 
 impl Spectrum {
     /// Calculates the spectrum of samples taken at `rate_hz`, after removing their mean.
     ///
     /// # Errors
-    /// [`SpectrumError`] if there are too few samples, or if a sample is not finite.
+    /// Returns a [`SpectrumError`] if there are too few samples, or if a sample is not finite.
     pub fn of(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
         let count = samples.len();
         if count < LEAST {
@@ -56,14 +56,14 @@ impl Spectrum {
         let mut windowed: Vec<f64> = samples.iter().enumerate().map(|(at, value)| (value - mean) * hann(at)).collect();
         let transform = RealFftPlanner::new().plan_fft_forward(count);
         let mut lines = transform.make_output_vec();
-        // The buffers are made for this transform, so it cannot fail; an overflow shows in the lines.
+        // The buffers are made for this transform, so it cannot fail. An overflow shows in the lines.
         transform.process(&mut windowed, &mut lines).map_err(|_| SpectrumError::NotFinite)?;
         // A sine has half its amplitude in each of its two lines, and the window has the mean ½.
         let amplitudes_v = lines.iter().map(|line| line.norm() * 4.0 / count as f64).collect();
         Ok(Spectrum { spacing_hz: rate_hz / count as f64, amplitudes_v })
     }
 
-    /// Returns the distance between lines in hertz, the reciprocal of the duration.
+    /// Returns the distance between lines in hertz. It is the reciprocal of the duration.
     pub fn spacing_hz(&self) -> f64 {
         self.spacing_hz
     }
@@ -73,8 +73,8 @@ impl Spectrum {
         &self.amplitudes_v
     }
 
-    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines of peaks
-    /// that were already found and those around 0 Hz (the mean) are skipped.
+    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines of a peak
+    /// found before are skipped, and so are those around 0 Hz, which belong to the mean.
     pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
@@ -116,7 +116,7 @@ impl Spectrum {
 /// with few digits.
 ///
 /// # Errors
-/// [`SpectrumError`] if there are fewer than eight times, or if they do not increase evenly.
+/// Returns a [`SpectrumError`] if there are fewer than eight times, or if they do not increase evenly.
 pub fn sample_rate_hz(times_s: &[f64]) -> Result<f64, SpectrumError> {
     let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= LEAST) else {
         return Err(SpectrumError::TooFew { samples: times_s.len() });

@@ -3,7 +3,7 @@
 //!
 //! Both positions resolve 1/32 of a period. The coarse value is corrected by at most one period towards the smaller
 //! difference, which tolerates half a period of drift and delay. The manual does not define the offset between the two
-//! zero points (U): set it or [measure](measure_offset) it.
+//! zero points (U). It can be set or [measured](measure_offset).
 
 use std::f64::consts::TAU;
 
@@ -15,11 +15,11 @@ pub const STEPS: u64 = 32;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
-    /// Number of periods in the whole range, which is periods per revolution times revolutions, at least 1.
+    /// Number of periods in the whole range, at least 1. It is the product of periods per revolution and revolutions.
     pub periods: u64,
-    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period; 0 if unknown.
+    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period. It is 0 if unknown.
     pub offset_steps: f64,
-    /// Whether the absolute position refers to the middle of its step instead of the beginning.
+    /// Whether the absolute position refers to the middle of its step. It refers to the beginning otherwise.
     pub half_step: bool,
 }
 
@@ -31,12 +31,12 @@ pub struct SynchronisedPosition {
     /// Correction of the absolute position in periods: −1, 0 or 1.
     pub correction: i8,
     pub residual_periods: f64,
-    /// Verdict on the difference between the positions. Warns above 8/32 (the encoder's own drift is up to 4/32) and
-    /// reports a fault above 14/32 (U).
+    /// Verdict on the difference between the positions. A difference above 8/32 is a warning (the encoder's own drift
+    /// is up to 4/32), and above 14/32 a fault (U).
     pub verdict: Verdict,
 }
 
-/// The positions differ by exactly half a period, so either neighbour could be correct.
+/// Difference of exactly half a period between the positions. Either neighbouring period could be correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
 pub struct AmbiguousPeriodError;
@@ -52,14 +52,14 @@ impl Synchroniser {
     /// Combines an absolute position in steps of 1/32 period with an analogue phase.
     ///
     /// # Errors
-    /// [`AmbiguousPeriodError`] at exactly half a period.
+    /// Returns an [`AmbiguousPeriodError`] at exactly half a period.
     pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriodError> {
         /// Tolerance in steps for rounding at half a period.
         const SLACK: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
         let difference = low - STEPS as f64 * phase.periods();
-        // With an offset the difference may be several periods; only the last one is to be decided.
+        // The offset may add several periods to the difference. Only the last one is to be decided.
         let periods = difference / STEPS as f64;
         let nearest = periods.round();
         let residual = periods - nearest;
@@ -82,7 +82,7 @@ impl Synchroniser {
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
         let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
         let range = u128::from(self.periods.max(1));
-        // −1, 0 or 1: one range more keeps it positive.
+        // `nearest` is −1, 0 or 1. Adding the range once keeps the sum positive.
         let period = (u128::from(quarters / 4) + range).saturating_add_signed(nearest as i128) % range;
         (period as u64, phase)
     }
@@ -100,7 +100,7 @@ impl SynchronisedPosition {
 }
 
 /// Returns the average lead of the absolute position in steps of 1/32 period over at least one turn. Differences are
-/// averaged as angles, so that 31 steps equal −1. Returns `None` without samples, or if they cancel each other out.
+/// averaged as angles, for which 31 steps equal −1. Returns `None` without samples, or if they cancel each other out.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {

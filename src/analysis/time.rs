@@ -1,9 +1,11 @@
-//! Time stamps of samples in whole nanoseconds, so that differences stay exact after days. Independent of any clock.
+//! Time stamps of samples in whole nanoseconds. Differences therefore stay exact after days. The module is independent
+//! of any clock.
 
 use crate::units::Moment;
 
-/// Point in time in whole nanoseconds from an origin that the samples of one history share, such as the start of a
-/// session's clock or the trigger of a capture (earlier times are negative). Covers 292 years in both directions.
+/// Point in time in whole nanoseconds from the origin that the samples of one history share. The origin is the start of
+/// a session's clock or the trigger of a capture, for example. Earlier times are negative. Covers 292 years in both
+/// directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct SampleTime(i64);
@@ -24,7 +26,7 @@ impl SampleTime {
         SampleTime(self.0.saturating_add(nanoseconds))
     }
 
-    /// Returns the exact number of nanoseconds since `origin`, or a negative number if `origin` is later.
+    /// Returns the exact number of nanoseconds since `origin`. It is negative if `origin` is later.
     pub const fn nanoseconds_since(self, origin: SampleTime) -> i64 {
         self.0.saturating_sub(origin.0)
     }
@@ -37,7 +39,7 @@ impl SampleTime {
 }
 
 impl From<Moment> for SampleTime {
-    /// Converts a moment of a clock. The origin is the start of the clock.
+    /// Converts a moment of a clock. The origin is the start of that clock.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);

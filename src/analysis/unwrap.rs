@@ -1,5 +1,5 @@
-//! Unwrapping of positions: a rotary encoder wraps from the end of its range to 0, which a plot would show as a spike
-//! of thousands of turns. Used for display and speed only, never for values written to a device.
+//! Unwrapping of positions. A rotary encoder wraps from the end of its range to 0, which a plot would show as a spike
+//! of thousands of turns. Unwrapped positions serve display and speed only and are never written to a device.
 
 #[derive(Clone, Copy, Debug)]
 pub struct PositionUnwrapper {
@@ -11,20 +11,20 @@ pub struct PositionUnwrapper {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnwrappedPosition {
-    /// Unwrapped position in steps; beyond the range after a wrap, negative below zero.
+    /// Unwrapped position in steps. It exceeds the range after a wrap, and is negative below zero.
     pub steps: i64,
-    /// Whether the path from the previous sample is unknown because of a gap or an ambiguous step of half the range.
-    /// Not set for the first position.
+    /// Whether the path from the previous sample is unknown, because of a gap or an ambiguous step of half the range.
+    /// False for the first position.
     pub broken: bool,
 }
 
 impl PositionUnwrapper {
-    /// Creates the state for an encoder that wraps from `range` − 1 to 0, or returns `None` for a range below 2.
+    /// Creates the state for an encoder that wraps from `range` − 1 to 0. Returns `None` for a range below 2.
     pub fn rotary(range: i64) -> Option<Self> {
         (range >= 2).then_some(PositionUnwrapper { range: Some(range), last: None, gap: false })
     }
 
-    /// Creates the state for an encoder that does not wrap, whose positions are unchanged.
+    /// Creates the state for an encoder that does not wrap. Its positions stay unchanged.
     pub fn without_wrap() -> Self {
         PositionUnwrapper { range: None, last: None, gap: false }
     }
@@ -34,8 +34,8 @@ impl PositionUnwrapper {
         self.gap = true;
     }
 
-    /// Unwraps the next position word along the shortest path from the previous word, so that a wrap is an ordinary
-    /// step. Returns `None` for a word outside the range, which counts as a gap.
+    /// Unwraps the next position word along the shortest path from the previous word. A wrap is then an ordinary step.
+    /// Returns `None` for a word outside the range, which counts as a gap.
     pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.gap();
@@ -46,7 +46,8 @@ impl PositionUnwrapper {
             (None, _) => UnwrappedPosition { steps: word, broken: false },
             (Some(_), None) => UnwrappedPosition { steps: word, broken: gap },
             (Some((before, steps)), Some(range)) => {
-                // 0…range − 1, and the shorter way round; both ways are equally long at exactly half.
+                // The forward distance is 0…range − 1, and the shorter way round is taken. Both ways are equally long
+                // at exactly half.
                 let forward = (word - before).rem_euclid(range);
                 let backward = range - forward;
                 let step = if forward <= backward { forward } else { -backward };

@@ -1,5 +1,5 @@
-//! The four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and REFCOS.
-//! Contains the samples of an analogue source without their times.
+//! The four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and REFCOS. They
+//! hold the samples of an analogue source without their times.
 
 /// Voltages of the four wires. All columns have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Wire {
 impl Wire {
     pub const ALL: [Wire; 4] = [Wire::Sin, Wire::Refsin, Wire::Cos, Wire::Refcos];
 
-    /// Returns the manual's spelling.
+    /// Returns the name as spelled in the manual.
     pub const fn name(self) -> &'static str {
         match self {
             Wire::Sin => "SIN",
@@ -43,7 +43,7 @@ impl Wires {
         self.sin_v.is_empty()
     }
 
-    /// Returns SIN − REFSIN in volts, as received by a differential receiver.
+    /// Returns SIN − REFSIN in volts, as seen by a differential receiver.
     pub fn sine_v(&self) -> Vec<f64> {
         difference(&self.sin_v, &self.refsin_v)
     }

@@ -9,12 +9,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 use crate::link::LineQuality;
 
-/// Prints the results of the check, and returns an error if they include a fault.
+/// Prints the results of the check. Returns an error if they include a fault.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_check(output, lines, None)
 }
 
-/// Prints the results of the check like `show`, with the line quality if it was measured.
+/// Prints the results of the check, with the line quality if it was measured. Returns an error if they include a fault.
 pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal_text).collect::<Vec<_>>();
@@ -24,7 +24,7 @@ pub(crate) fn show_check(output: &Output, lines: &[CheckLine], quality: Option<&
         let (step, word) = (line.step.terminal_text(), word(line.verdict));
         let verdict = verdict(line.verdict).terminal_text();
         let found = findings(line);
-        // A sentence ends with the line, not in the middle of it.
+        // A full stop is only at the end of the line, not between two findings.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
         let found = found.join("; ");
         text.add(&step, format!("{verdict:9}  {found}").trim_end());

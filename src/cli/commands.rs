@@ -1,5 +1,5 @@
-//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; this
-//! module names no device.
+//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list. This module names no
+//! device.
 
 #![warn(missing_docs)]
 
@@ -36,7 +36,7 @@ pub enum CommandId {
     Restore,
     /// Write values.
     Write,
-    /// Execute another action of the device.
+    /// Perform another action of the device.
     Do,
     /// Explain captured bytes.
     Decode,
@@ -80,7 +80,7 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that the kind does not support is refused as incorrect usage.
+/// A kind of device on the command line. A command that the kind does not support is incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
     /// Returns the name of the kind on the command line and in profiles.
     fn name(&self) -> &'static str;
@@ -111,7 +111,7 @@ pub trait DeviceCommands: ProfileCommands {
     /// Adds the values of the common options, and values from the environment that replace them.
     ///
     /// # Errors
-    /// A value is invalid.
+    /// Returns an error if a value is invalid.
     fn given(&self, _options: &KindOptions, given: Given) -> Result<Given> {
         Ok(given)
     }
@@ -126,12 +126,12 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the options of `simulate` that abbreviate a `--set` option with the same name.
+    /// Returns the options of `simulate` that stand for a `--set` option with the same name.
     fn setting_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns the reason why an option of this kind is refused for another kind, or `None` without a special reason.
+    /// Returns the reason why an option of this kind is refused for another kind. `None` without a special reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -159,7 +159,8 @@ pub trait ProfileCommands: Sync {
     /// Writes a profile to a device after review and consent.
     fn restore(&self, common: &CommonArgs, output: &Output, restore: &Restore, profile: Body) -> Result;
 
-    /// Reads a device for comparison. Reads everything, or at least the items in the profile.
+    /// Reads a device for comparison with a profile. Without a profile, everything is read. With one, at least its
+    /// items are read.
     fn present(&self, common: &CommonArgs, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Returns a note that applies to every use of a profile.
@@ -182,7 +183,7 @@ pub trait CliCommand: Sync {
     fn run(&self, common: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result;
 }
 
-/// A protocol that several kinds of device may share, and whose captured bytes `decode` explains.
+/// A protocol whose captured bytes `decode` explains. Several kinds of device may share it.
 pub trait ProtocolDecoder: Sync {
     /// Returns the name of the protocol on the command line.
     fn name(&self) -> &'static str;
@@ -212,7 +213,7 @@ impl std::fmt::Debug for Commands {
 }
 
 impl Commands {
-    /// The core alone.
+    /// The commands of the core alone.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
     /// Creates the list of commands.
@@ -237,13 +238,13 @@ impl Commands {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Returns an explanation why an option is refused for a kind of device that does not have it.
+    /// Returns an explanation for an option that the chosen kind of device does not have.
     pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns a refusal if a given common option does not exist for the chosen kind of device.
+    /// Returns a refusal if a common option does not exist for the chosen kind of device.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &KindOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -252,7 +253,7 @@ impl Commands {
         Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
-    /// Returns the commands that do not belong to the core.
+    /// Returns the commands that are not part of the core.
     pub(super) fn own(self) -> impl Iterator<Item = &'static dyn CliCommand> {
         let of_devices = self.devices.iter().flat_map(|device| device.extra_commands());
         of_devices.chain(self.further).copied()
@@ -265,13 +266,13 @@ impl Commands {
     /// Returns the kind of device with this name.
     ///
     /// # Errors
-    /// The name is unknown.
+    /// Returns an error if the name is unknown.
     pub fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
         let named = self.devices.iter().copied().find(|device| device.name() == name);
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns a refusal if a given option does not exist for the chosen kind of device or protocol.
+    /// Returns a refusal if an option does not exist for the chosen kind of device or protocol.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &KindOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -323,7 +324,7 @@ pub(crate) fn enum_values<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
-/// The options are added once the list of kinds is known.
+/// The options are added later, when the list of kinds is known.
 impl clap::Args for KindOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command

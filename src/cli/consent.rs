@@ -1,4 +1,4 @@
-//! Consent to a write: by `--yes`, or on a terminal after the plan was shown.
+//! Consent to a write, by `--yes` or by an answer on a terminal after the plan was shown.
 
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
@@ -11,8 +11,8 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, Planned};
 use crate::worker::{self, NotBegun};
 
-/// Requires consent. Without a terminal the user cannot be asked, so the command is refused before anything is
-/// opened.
+/// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is refused before
+/// anything is opened.
 pub fn require_consent(consent: &ConsentArgs) -> Result<()> {
     if consent.yes || can_prompt() {
         return Ok(());
@@ -25,8 +25,8 @@ pub(crate) fn can_prompt() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan and all other points that require consent, and asks about each unless the command line has already
-/// consented. Returns the approved plan.
+/// Shows the plan and all other points that require consent. Asks about each of them unless the command line has
+/// already consented. Returns the approved plan.
 pub fn confirm_plan<P: Planned>(
     output: &Output,
     consent: &ConsentArgs,
@@ -43,8 +43,8 @@ pub fn confirm_plan<P: Planned>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
-/// Refuses, before consent is requested, a write to a device that has reached its limit of write cycles or whose write
-/// cycles are unknown.
+/// Refuses a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This
+/// happens before consent is requested.
 pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
@@ -56,9 +56,9 @@ where
 }
 
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal the file
-/// is replaced, as other tools do, and [`ReplacementNotice::report`] states so.
+/// is replaced, as other tools do. [`ReplacementNotice::report`] then says so.
 pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<ReplacementNotice> {
-    // A pipe or a device is written to, and has no content to replace.
+    // A pipe or a device file has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
     if !is_there || force {
         return Ok(ReplacementNotice { message: None });
@@ -73,13 +73,12 @@ pub(super) fn confirm_replacement(path: &Path, force: bool) -> Result<Replacemen
     Err(Failure::Failed(vec![format!("Not confirmed; {name} was not changed.")]))
 }
 
-/// Message to print after a file was written.
 pub(super) struct ReplacementNotice {
     message: Option<String>,
 }
 
 impl ReplacementNotice {
-    /// Reports that a file was replaced if the user was not asked.
+    /// Reports that a file was replaced, unless the user was asked before.
     pub(super) fn report(&self, output: &Output) {
         if let Some(message) = &self.message {
             output.remark(message);
@@ -91,7 +90,7 @@ pub(crate) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 
-/// Asks the user at the terminal. If the terminal cannot be read, the answer is empty.
+/// Asks the user at the terminal. The answer is empty if the terminal cannot be read.
 pub(crate) fn answer(question: &str) -> String {
     say(question);
     let mut answer = String::new();

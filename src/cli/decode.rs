@@ -10,14 +10,13 @@ use crate::bits::parse_hex;
 pub(crate) struct Explained {
     /// Captured frame in readable form.
     pub(crate) shown: String,
-    /// Captured frame as printed in JSON.
     pub(crate) compact: String,
-    /// Meaning of the frame, one string per line, or the reason why the bytes are not a frame.
+    /// Meaning of the frame, one string per line. The error is the reason why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
     pub(crate) more: Map<String, Json>,
 }
 
-/// Prints the meaning of frames. An invalid frame makes the command fail after all frames have been printed.
+/// Prints the meaning of frames. If a frame is invalid, the command fails after all frames have been printed.
 pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
@@ -54,8 +53,7 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hex bytes. Arguments of three bytes or more are separate frames; shorter arguments are combined into one
-/// frame.
+/// Parses hex bytes. An argument of three bytes or more is a frame. Shorter arguments are combined into one frame.
 pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {

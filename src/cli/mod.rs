@@ -1,5 +1,5 @@
-//! The command line: the same jobs as in the window. It parses arguments, asks for consent and prints results; the
-//! worker executes the jobs.
+//! The command line, with the same jobs as the window. It parses arguments, asks for consent and prints results. The
+//! worker carries out the jobs.
 
 pub(crate) mod args;
 pub(crate) mod check;
@@ -41,25 +41,25 @@ use crate::profile::ProfileFormats;
 /// Ways in which a command can succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Done {
-    /// Status 0: there were no errors, and no differences were found.
+    /// The command found no errors and no differences. The exit status is 0.
     Well,
-    /// Status 3: `diff` or `verify` has found differences.
+    /// `diff` or `verify` has found differences. The exit status is 3.
     Differs,
 }
 
 #[derive(Debug)]
 pub enum Failure {
-    /// Status 2: incorrect usage.
+    /// The command line was used incorrectly. The exit status is 2.
     Usage(String),
-    /// Status 1: the device or the operation has failed, described in one to four lines.
+    /// The device or the operation has failed, described in one to four lines. The exit status is 1.
     Failed(Vec<String>),
-    /// The reader of the output has closed it, so nothing more can be reported.
+    /// The reader has closed the output. Nothing more can be reported.
     NobodyReads,
 }
 
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// What the program arguments request.
+/// Action that the program arguments request.
 pub enum Invocation {
     Command(u8),
     Window(Window),
@@ -72,7 +72,7 @@ pub struct Window {
     pub given: Given,
 }
 
-/// Runs the command given by the arguments of a process, starting with the program name; without a command, requests
+/// Runs the command given by the arguments of a process, which start with the program name. Without a command, requests
 /// the window. `formats` are the readable profiles, and `commands` are the available commands.
 pub fn run(words: impl IntoIterator<Item = OsString>, formats: ProfileFormats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {

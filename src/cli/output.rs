@@ -13,7 +13,7 @@ pub struct Output {
     commands: Commands,
 }
 
-/// Aligned lines with a label and a value each.
+/// Aligned lines, each with a label and a value.
 #[derive(Default)]
 pub struct Lines(Vec<(String, String)>);
 
@@ -59,7 +59,8 @@ impl Output {
         }
     }
 
-    /// Prints a result like [`show`](Self::show) after a write. The write must be reported even if the output fails.
+    /// Prints the result of a write like [`show`](Self::show). An error of the output is reported together with the
+    /// write, because the write has taken place.
     pub(super) fn show_write_result(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
@@ -82,11 +83,11 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help unchanged, and argument errors in at most four lines, the last of which is the usage.
+/// Prints help unchanged. Argument errors have at most four lines, the last of which is the usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
-        // If help cannot be printed, that cannot be reported either.
+        // An error while printing the help cannot be reported either.
         let _ = error.print();
         return;
     }
@@ -99,14 +100,14 @@ pub(super) fn print_usage_error(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr and ignores errors, since they cannot be reported anywhere.
+/// Writes to stderr. Errors are ignored, because they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(show_control_characters(text).as_bytes()).and_then(|()| err.flush());
 }
 
-/// Replaces control characters with visible ones, because text from a file, a device or an argument must not control
-/// the terminal.
+/// Replaces control characters with visible ones. Text from a file, a device or an argument must not control the
+/// terminal.
 fn show_control_characters(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -115,7 +116,7 @@ fn show_control_characters(text: &str) -> String {
     shown
 }
 
-/// Prints the program's own warnings to stderr. Details are only written to the log file of the window.
+/// Prints the program's own warnings to stderr. Details go to the log file of the window only.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)
@@ -125,7 +126,7 @@ pub(super) fn log_to_stderr() {
         .log_internal_errors(false)
         .with_max_level(tracing::Level::WARN)
         .finish();
-    // A second subscriber cannot be set; the first one remains.
+    // If another subscriber is already set, that one remains.
     let _ = tracing::subscriber::set_global_default(subscriber);
 }
 

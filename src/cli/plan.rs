@@ -1,4 +1,4 @@
-//! Plans on the command line, for every kind of device: old → new line by line, cost and result.
+//! Plans on the command line, for every kind of device: the old and new value of each line, the cost and the result.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,6 @@ use crate::worker::Committed;
 
 pub struct PlanReport {
     pub operations: Vec<Json>,
-    /// Plan and its cost as text.
     pub text: String,
     pub write_cycles: u64,
 }
@@ -38,7 +37,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Number of write cycles, or zero for an operation that is saved together with others.
+    /// Number of write cycles. It is zero for an operation that is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -60,8 +59,8 @@ pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan with its lines, its cost in addition to the write cycles known to this computer, and the limit, if
-/// any.
+/// Formats a plan with its lines and its cost. The cost is shown with the write cycles known to this computer, and with
+/// the limit, if any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
@@ -84,12 +83,12 @@ pub struct WriteSummary {
     pub written: u64,
     pub verified: u64,
     pub write_cycles: u64,
-    /// Path of the backup, or `None` if there was nothing to write.
+    /// Path of the backup. `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
 }
 
 impl WriteSummary {
-    /// Summarises an executed plan and prints what could not be recorded in the logbook.
+    /// Summarises an executed plan. Prints a warning if the result could not be recorded in the logbook.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());

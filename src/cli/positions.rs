@@ -1,4 +1,4 @@
-//! `position`: repeated readings for every kind of device, with count, interval and end.
+//! Repeated readings of `position`, for every kind of device, with count, interval and end.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::JobInterruption as _;
 
-/// Runs `job` repeatedly and prints each result with `show`. A failed job ends the loop.
+/// Runs `job` repeatedly and prints each result with `show`. The loop ends when a job fails.
 pub fn readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -19,7 +19,7 @@ pub fn readings<D: Runs>(
     })
 }
 
-/// Runs `job` repeatedly and passes each result or error to `show`, which returns whether it printed a line.
+/// Runs `job` repeatedly and passes each result or error to `show`. `show` returns whether it printed a line.
 pub fn try_readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -28,7 +28,7 @@ pub fn try_readings<D: Runs>(
 ) -> Result {
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
-    // A table without a fixed length ends with Ctrl-C, which is then no failure.
+    // Ctrl-C is the normal end of a table without a fixed length, and no failure.
     let endless = position.csv && position.count.is_none();
     let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
     let (mut lines, mut first) = (0, true);

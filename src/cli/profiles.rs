@@ -1,5 +1,5 @@
-//! Profile commands for every kind of device: `diff`, `verify`, and the common parts of `save` and `restore`. The file
-//! determines the kind.
+//! Profile commands for every kind of device: `diff`, `verify`, and the common parts of `save` and `restore`. The
+//! content of the file determines the kind.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     Ok(document.body)
 }
 
-/// Reads a profile that is to be written to a device. Its schema must therefore be fully known.
+/// Reads a profile that is to be written to a device. All parts of its schema must be known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?
         .known()
@@ -74,13 +74,13 @@ pub(super) fn verify(common: &CommonArgs, output: &Output, file: &Path) -> Resul
     let profile = load(output, file)?;
     let kind = output.commands().device(profile.kind())?;
     let device = kind.present(common, output, Some(&profile))?;
-    // Comparing two devices is allowed, but is reported.
+    // Two different devices may be compared, but this is reported.
     if let Some(words) = kind.device_mismatch(&profile, &device) {
         output.remark(&words);
     }
     let comparison =
         profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))?;
-    // Items that only the device has are not part of the profile.
+    // Items that only the device has do not count, because they are not part of the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
 }
@@ -90,7 +90,7 @@ pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile to restore. If consent cannot be given, the restore is refused before anything is opened.
+/// Returns the profile to restore. If consent cannot be given, refuses the restore before anything is opened.
 pub fn profile_to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
@@ -104,7 +104,7 @@ pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Reports which mounting values of another device are left unchanged.
+/// Reports the mounting values of another device that are left unchanged.
 pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!(
@@ -113,7 +113,7 @@ pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Writes the plan that restores a profile, or only prints it.
+/// Writes the plan that restores a profile, or only prints it if this is a dry run.
 pub fn write_restore(
     output: &Output,
     restore: &Restore,
@@ -171,7 +171,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 
 /// Items that a restore leaves unchanged.
 pub struct UnrestoredItems {
-    /// Number of items that already have the value from the profile.
+    /// Number of items that already have the value in the profile.
     pub unchanged: u64,
     /// Items that are present only in the profile or only in the device.
     pub missing: Vec<String>,
@@ -180,7 +180,6 @@ pub struct UnrestoredItems {
 }
 
 impl UnrestoredItems {
-    /// Prints the values that must be set up again.
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {
@@ -189,7 +188,6 @@ impl UnrestoredItems {
     }
 }
 
-/// Prints the plan of a restore without executing it.
 fn show_dry_run(output: &Output, plan: &PlanReport, left: &UnrestoredItems) -> Result {
     let json = json!({
         "dry_run": true,
@@ -226,12 +224,12 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
         lines.add("backup", backup.display());
     }
     output.show_write_result(&json, &lines.text())?;
-    // Printed before the write as well, because it lists what remains to be done.
+    // They are also printed before the write, because they list the remaining work.
     left.warn(output);
     Ok(Done::Well)
 }
 
-/// Prints the result of writing an item, with the executed `operations` and the old and new values in `changes`.
+/// Prints the result of writing an item. `operations` were executed, and `changes` has the old and new values.
 pub(crate) fn show_changed(
     output: &Output,
     item: &str,

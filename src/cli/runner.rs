@@ -1,4 +1,4 @@
-//! Opening a link and running jobs: progress and codes go to stderr, Ctrl-C goes to the worker.
+//! Opening a link and running jobs. Progress and codes go to stderr, and Ctrl-C goes to the worker.
 
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
@@ -24,15 +24,15 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
 pub trait Runs: Kind {
-    /// Part of a session that is kept outside the session's thread.
+    /// Part of a session that stays outside its thread.
     type Context;
-    /// Whether the line allows only one master, which may be a connected drive. `--only-master` confirms that no drive
-    /// is connected.
+    /// Whether the line allows only one master. A connected drive may be such a master. `--only-master` confirms that
+    /// no drive is connected.
     const HAS_ONE_MASTER: bool = false;
-    /// Command-line part of the kind of device.
+    /// Commands of this kind of device.
     const COMMANDS: &'static dyn DeviceCommands;
 
-    /// Returns whether another master may be on the line of a link. If so, the user is asked before the first byte is
+    /// Returns whether the line of a link may have another master. If so, the user is asked before the first byte is
     /// sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
@@ -41,7 +41,7 @@ pub trait Runs: Kind {
     /// Prepares a session with the options that every command has.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
-    /// Prints a message of the device immediately; by default, nothing is printed.
+    /// Prints a message of the device immediately. The default prints nothing.
     fn print_message(_remark: &Self::DeviceMessage) {}
 
     /// Describes a step for the progress bar on a terminal.
@@ -52,13 +52,13 @@ pub trait Runs: Kind {
         None
     }
 
-    /// Returns the reply times, if they are measured and the link has a time-out.
+    /// Returns the reply times. `None` if they are not measured or the link has no time-out.
     fn reply_times(_session: &Session<Self>) -> Option<Pace> {
         None
     }
 
-    /// Returns a function that is called for each Ctrl-C. Its argument is `true` for the second Ctrl-C, after which
-    /// the program ends.
+    /// Returns a function that is called for each Ctrl-C. Its argument is `true` for the second Ctrl-C, which ends the
+    /// program.
     fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
     }
@@ -66,11 +66,12 @@ pub trait Runs: Kind {
 
 pub struct Runner<D: Runs> {
     worker: Worker<D>,
-    /// Whether Ctrl-C was pressed. Separate from the worker's cancellation flag, which applies to a single job.
+    /// Whether Ctrl-C was pressed. This is independent of the worker's cancellation flag, which applies to a single
+    /// job.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
     pub remarks: Vec<D::DeviceMessage>,
-    /// Part of the session that is kept outside the session's thread.
+    /// Part of the session that stays outside its thread.
     pub kept: D::Context,
 }
 
@@ -81,8 +82,8 @@ pub enum JobFailure<D: Runs> {
     Worker,
 }
 
-/// Maximum time for leaving a state that must not remain, such as a drive under control or a supply that was switched
-/// on.
+/// Maximum time for leaving a state that must not remain. Examples are a drive under control and a supply that was
+/// switched on.
 const LEAVING: Duration = Duration::from_secs(4);
 
 impl<D: Runs> Drop for Runner<D> {
@@ -140,12 +141,12 @@ impl<D: Runs> Runner<D> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
 
-    /// Runs a job to its end and leaves its error to the caller.
+    /// Runs a job to its end. The caller handles its error.
     pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
         if self.is_interrupted() {
-            // Ctrl-C arrived before the job and applies to it as well.
+            // Ctrl-C came before the job began and applies to it as well.
             self.worker.stop();
         }
         let bar = Bar::default();
@@ -179,7 +180,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Returns the next event, or `None` when a check is due.
+    /// Returns the next event. Returns `None` when a check is due.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.left() else {
@@ -231,7 +232,8 @@ impl<D: Runs> JobFailure<D> {
     }
 }
 
-/// Combines sentences into at most four lines. If there are more sentences, all but the first and last share a line.
+/// Combines sentences into at most four lines. If there are more sentences, those between the first and the last share
+/// one line.
 fn lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -246,8 +248,8 @@ pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal_text()])
 }
 
-/// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of
-/// another type ends the function with an error.
+/// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. If the result has
+/// another type, the calling function returns an error.
 #[macro_export]
 macro_rules! result_of {
     ($result:expr, $wanted:pat => $value:expr) => {
@@ -258,13 +260,13 @@ macro_rules! result_of {
     };
 }
 
-/// Returns the failure for a job result of an unexpected type, which is a defect of this program and is reported as
-/// such.
+/// Returns the failure for a job result of an unexpected type. Such a result is a defect of this program and is
+/// reported as one.
 pub fn unexpected_output(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line if the program runs on a terminal and the user has not confirmed yet.
+/// Asks whether a drive is on the line. Does nothing without a terminal or if the user has already confirmed.
 fn ask_for_other_master(common: &CommonArgs) -> Result<()> {
     if common.only_master || !can_prompt() {
         return Ok(());
@@ -285,7 +287,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     let name = path.display().to_string();
     let mut works = true;
     session.watch(move |entry| {
-        // Flushed after each frame, so that a trace is complete however the program ends.
+        // Every frame is flushed. The trace is then complete however the program ends.
         if works && write_entry(&mut file, entry).and_then(|()| file.flush()).is_err() {
             works = false;
             tracing::warn!("{name}: the trace is incomplete because a write to the file failed");
@@ -294,7 +296,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A progress bar that is drawn only on a terminal.
+/// A progress bar, drawn on a terminal only.
 pub(crate) struct Bar(ProgressBar);
 
 impl Default for Bar {
@@ -317,7 +319,7 @@ impl Bar {
 }
 
 impl Bar {
-    /// Prints a line above the bar, or at the future position of the bar.
+    /// Prints a line above the bar, or where the bar will be.
     fn print_line(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),

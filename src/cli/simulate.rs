@@ -1,5 +1,5 @@
-//! `simulate`: serves a virtual device to other programs, on a pseudo-terminal or a TCP port, with UDP for devices that
-//! require it. Only this module runs virtual devices by the clock of the computer.
+//! Serves a virtual device to other programs, on a pseudo-terminal or a TCP port, with UDP for devices that require it.
+//! Only this module runs virtual devices by the clock of the computer.
 
 mod datagrams;
 
@@ -16,20 +16,20 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// Time to wait for bytes while the device is idle. Also limits how long an interrupt takes.
+/// Time to wait for bytes while the device is idle. It is also the longest delay of an interrupt.
 const PATIENCE: Duration = Duration::from_millis(20);
-/// Waiting time below which the thread sleeps, because socket time-outs only have the resolution of the system tick.
+/// Waiting time below which the thread sleeps. Socket time-outs only have the resolution of the system tick.
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// Returns the line format at `now`, or `None` without a serial line or while the device does not receive.
+    /// Returns the line format at `now`. Returns `None` without a serial line or while the device does not receive.
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// Returns a device for another simultaneous client at the given address, or `None` if the device has a single line
-    /// and clients are served one after another.
+    /// Returns a device for another simultaneous client at the given address. Returns `None` if the device has a single
+    /// line, for which clients are served one after another.
     fn duplicate(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
     }
@@ -100,8 +100,8 @@ impl Device {
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
-    /// Serves a client until it disconnects or the program is interrupted. The baud rate of the client's end is
-    /// followed if it can be read.
+    /// Serves a client until it disconnects or the program is interrupted. The device follows the baud rate of the
+    /// client if it can be read.
     fn serve(&mut self, client: &mut impl SimulatorClient, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -127,8 +127,8 @@ impl Device {
         Ok(())
     }
 
-    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate,
-    /// so the client's format is then assumed to be correct.
+    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate.
+    /// Properties that cannot be read are assumed to be correct.
     fn apply_client_baud(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.format(now) {
@@ -137,7 +137,7 @@ impl Device {
         }
     }
 
-    /// Prints the line that scripts wait for.
+    /// Prints the address of the device. Scripts wait for this line.
     fn print_ready(&self, place: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
         writeln!(out, "ready {} {place}", self.kind)
@@ -170,7 +170,7 @@ impl SimulatorClient for TcpStream {
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         match self.write_all(bytes) {
-            // A client that does not read streamed data loses them.
+            // A client that does not read streamed data loses it.
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
             ended => ended,
         }
@@ -213,7 +213,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
         None => (TcpListener::bind(address).map_err(cannot)?, None),
     };
     listener.set_nonblocking(true).map_err(cannot)?;
-    // The scope ends when all clients have disconnected.
+    // The scope ends after all clients have disconnected.
     std::thread::scope(|scope| {
         let begun = packets
             .iter()
@@ -221,7 +221,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
             .and_then(|()| listener.local_addr())
             .map_err(cannot)
             .and_then(|at| device.print_ready(&at.to_string()));
-        // The program has not started, so no thread waits for its end.
+        // Without this, the thread of the packets would run forever, because the program has not started.
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
             let Ok((client, peer)) = listener.accept() else {
@@ -232,7 +232,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
                 None => attend(device, client, ended),
                 Some(mut own) => {
                     let attended = move || attend(&mut own, client, ended);
-                    // If no thread can be started, the connection of the client is closed.
+                    // If no thread can be started, the client is disconnected.
                     let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
                 }
             }
@@ -241,7 +241,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     })
 }
 
-/// Serves a client over TCP. A client that cannot be served is disconnected, and the next client may connect.
+/// Serves a client over TCP. A client that cannot be served is disconnected, and the next one may connect.
 fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
     let _ = client
         .set_nonblocking(false)
@@ -252,8 +252,8 @@ fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
 
 #[cfg(unix)]
 mod terminal {
-    //! Pseudo-terminals. Only the client opens the other end: when it closes that end, this end detects a hang-up, and
-    //! the virtual device is powered again for the next client.
+    //! Pseudo-terminals. Only the client opens the other end. When the client closes it, this end detects a hang-up,
+    //! and the virtual device is powered again for the next client.
 
     use std::io::{ErrorKind, Read, Write};
     use std::os::unix::fs::symlink;
@@ -270,7 +270,7 @@ mod terminal {
         let cannot = |what: String| Failure::Failed(vec![format!("{}: {what}.", path.display())]);
         let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
         let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
-        // Until a client sets another speed, the terminal has the speed of the encoder.
+        // The terminal has the speed of the encoder until a client sets another.
         if let Some(own) = device.simulated.format(device.clock.now()) {
             let _ = slave.set_baud_rate(own.baud.bits_per_second());
         }
@@ -295,8 +295,8 @@ mod terminal {
     }
 
     impl SymbolicLink {
-        /// Creates the link. A dangling link is left over from an earlier run and is replaced; anything else belongs to
-        /// another program and is refused.
+        /// Creates the link. A dangling link is left over from an earlier run and is replaced. Anything else belongs to
+        /// another program, and the link is refused.
         fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;
@@ -309,7 +309,7 @@ mod terminal {
     impl Drop for SymbolicLink {
         fn drop(&mut self) {
             if std::fs::read_link(&self.path).is_ok_and(|target| target == self.target) {
-                // The program's own link; if it cannot be removed, the next run replaces it.
+                // This is the program's own link. If it cannot be removed, the next run replaces it.
                 let _ = std::fs::remove_file(&self.path);
             }
         }
@@ -344,7 +344,7 @@ mod terminal {
         }
 
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-            // A client that disconnected in between does not receive the reply, as on a real line.
+            // A client that disconnects meanwhile does not receive the reply, as on a real line.
             let _ = self.write_all(bytes);
             Ok(())
         }

@@ -1,4 +1,4 @@
-//! Notice on a terminal while a device replies slowly, so that a slow network is not mistaken for a hang.
+//! Notice on a terminal while a device replies slowly. Without it, a slow network would look like a hang.
 
 use std::time::{Duration, Instant};
 
@@ -8,35 +8,35 @@ use crate::link::ReplyTimes;
 const WONDERS: Duration = Duration::from_secs(3);
 /// Interval between checks after the first notice.
 const LOOKS: Duration = Duration::from_millis(500);
-/// Minimum reply time that is considered slow.
+/// Reply time from which a device counts as slow.
 const SLOW: Duration = Duration::from_millis(100);
 
 pub struct Pace {
     pub(crate) replies: ReplyTimes,
     /// Time-out for a reply, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
-    /// The longest `timeout=`.
+    /// Largest possible value of `timeout=`.
     pub(crate) longest: Duration,
 }
 
-/// Monitor that reports once that a long command is slow.
+/// Monitor of a long command. It reports once if the command is slow because of the replies.
 pub(super) struct SlowReplyNotice {
     pace: Option<Pace>,
     look: Instant,
 }
 
 impl SlowReplyNotice {
-    /// Starts measuring time now. A kind of device without a pace is never reported as slow.
+    /// Starts to measure the time. Without a pace, a device is never reported as slow.
     pub(super) fn begin(pace: Option<Pace>) -> Self {
         SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
 
-    /// Returns the time until the next check, or `None` without a limit.
+    /// Returns the time until the next check. Returns `None` without a limit.
     pub(super) fn left(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
 
-    /// Returns the notice, if it is due.
+    /// Returns the notice if it is due.
     pub(super) fn words(&mut self) -> Option<String> {
         let now = Instant::now();
         let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);
@@ -50,7 +50,7 @@ impl SlowReplyNotice {
 }
 
 impl Pace {
-    /// Returns the message, including how to allow more time if that may help.
+    /// Returns the message. It tells how to allow more time if that may help.
     fn words(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest_reply_time());
         let more = if timeout < self.longest {

@@ -10,8 +10,8 @@ use crate::ui::{DeviceView, TabViews, ToolView};
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// The virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
-    /// offers the program's built-in list (`kinds::attachable_kinds`), which excludes external kinds.
+    /// The virtual device for the virtual adapter. `None` for a kind that uses no adapter. The adapter only offers the
+    /// built-in list (`kinds::attachable_kinds`), which has no external kinds.
     pub at_adapter: Option<&'static dyn AttachableKind>,
 }
 
@@ -20,7 +20,7 @@ pub struct ToolTab {
     pub view: &'static dyn ToolView,
 }
 
-/// The device kinds and tools that make up the program, for use by the studio, the window and the command line.
+/// The device kinds and tools that make up the program. The studio, the window and the command line use them.
 #[derive(Clone, Copy)]
 pub struct Program {
     pub studio: KindRegistry,
@@ -29,9 +29,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates a program with the given device kinds and tools, in the order used for navigation and help. `protocols`
-    /// adds protocols to decode, and `further` adds commands to those of the devices. The lists are kept for the
-    /// lifetime of the process.
+    /// Creates a program with the given device kinds and tools, in the order of the navigation and the help.
+    /// `protocols` adds protocols to decode, and `further` adds commands to those of the devices. The lists are kept
+    /// for the lifetime of the process.
     pub fn new(
         kinds: &[Kind],
         tools: &[ToolTab],

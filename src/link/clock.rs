@@ -1,4 +1,4 @@
-//! Clocks: a real one for hardware and for virtual devices in the window, and a virtual one for tests.
+//! Clocks. The real clock is used for hardware and for virtual devices in the window, the virtual clock in tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -14,12 +14,12 @@ pub trait Clock: Send + Sync {
     fn sleep_until(&self, moment: Moment);
 }
 
-/// The monotonic clock of the computer, counted from its creation.
+/// The monotonic clock of the computer. It starts at zero when it is created.
 #[derive(Debug)]
 pub struct RealClock(Instant);
 
 impl RealClock {
-    /// Creates a clock that starts at zero now.
+    /// Creates a clock that starts at zero.
     pub fn start() -> Self {
         RealClock(Instant::now())
     }
@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that advances only while a thread waits on it, so that waiting an hour takes no real time.
+/// A clock that advances only while a thread waits on it. Waiting an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Error for a connection that cannot be opened or was lost.
+/// An error of a connection that cannot be opened or was lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{target}: {kind}")]
 pub struct LinkError {
@@ -21,7 +21,7 @@ pub enum LinkErrorKind {
     /// The user has no permission to open the target.
     #[error("permission denied")]
     Permission {
-        /// Group whose members have permission, if the system reports one.
+        /// User group with permission, if the system reports one.
         group: Option<String>,
     },
     /// Another program is using the target.
@@ -33,13 +33,13 @@ pub enum LinkErrorKind {
     /// Nothing listens at the address, or the address cannot be reached.
     #[error("cannot be reached: {0}")]
     Unreachable(String),
-    /// The connection was lost because it was unplugged or closed by the remote end.
+    /// The cable was unplugged, or the remote end closed the connection.
     #[error("connection lost")]
     Lost,
     /// The port cannot be set to the requested format.
     #[error("cannot be set to {0}")]
     Format(String),
-    /// The port cannot be set to the requested format.
+    /// The replayed recording contains no reply to the request.
     #[error("the recording has no answer to {0}")]
     NotRecorded(String),
     /// Any other error reported by the system.
@@ -53,8 +53,7 @@ impl LinkError {
         LinkError { target: target.into(), kind }
     }
 
-    /// Converts an I/O error on an open connection. Any error that does not clearly have another cause is treated as a
-    /// lost connection.
+    /// Converts an I/O error of an open connection. An error of unknown cause is treated as a lost connection.
     pub(super) fn from_io_error(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),

@@ -1,5 +1,5 @@
-//! Behaviour common to lines with frames: silence, echoes, late replies, repetition and time-outs. Decoding frames is
-//! up to the device folders; no byte is interpreted here except for the echo.
+//! The parts of a frame exchange that all serial protocols share: silence, echoes, late replies, retries and time-outs.
+//! The device modules decode the frames. Here, only the echo is interpreted.
 
 mod echo;
 mod quality;
@@ -18,29 +18,27 @@ use super::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::bits::MaskedBytes;
 use crate::units::Moment;
 
-/// Number of attempts before a reading command fails.
+/// Maximum number of attempts of a read command.
 pub(crate) const TRIES: u32 = 5;
-/// Time without a valid reply after which no further attempt is made, because a command must finish within ten seconds.
+/// Time without a valid reply after which no further attempt is made. A command must finish within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Duration of continuous reception after which a line is considered never to be silent.
+/// Duration of continuous reception after which the wait for silence ends with an error.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
-/// Maximum number of bytes kept that belong to no frame, because a socket can deliver unlimited noise.
+/// Maximum number of unexpected bytes to keep. A socket can deliver unlimited noise.
 pub(crate) const MOST_KEPT: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
-    /// The user has cancelled the exchange.
     Cancelled,
-    /// Bytes keep arriving during the required silence.
+    /// Bytes kept arriving although the line should have been silent.
     NeverSilent,
-    /// The connection failed.
     Link(LinkError),
 }
 
 impl LineError {
-    /// Converts a line error to the error type of the device on the line.
+    /// Converts the error to the error type of a device.
     pub(crate) fn into_device_error<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
         match self {
             LineError::Cancelled => cancelled,
@@ -58,7 +56,7 @@ impl From<LinkError> for LineError {
 
 pub(crate) struct SerialLine<'a> {
     pub(crate) ctx: Ctx<'a>,
-    /// Time during which unanswered requests are repeated, if not the default.
+    /// Time during which unanswered requests are repeated, or `None` for the default.
     pub(crate) patience: Option<Duration>,
     shielded: bool,
     /// Skipped bytes, or `None` if they are not being recorded.
@@ -79,18 +77,12 @@ impl<'a> SerialLine<'a> {
         std::mem::replace(&mut self.shielded, shielded)
     }
 
-    /// Checks whether the user has cancelled.
-    ///
-    /// # Errors
     /// Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Waits for the given duration, or until the user cancels.
-    ///
-    /// # Errors
-    /// Returns [`LineError::Cancelled`] if the user cancels.
+    /// Waits for the given duration. Returns [`LineError::Cancelled`] if the user cancels.
     pub(crate) fn wait(&mut self, duration: Duration) -> Result<(), LineError> {
         let end = self.now() + duration;
         while self.now() < end {
@@ -101,11 +93,7 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Receives for the given duration without sending anything. If the noise is continuous, only its first bytes are
-    /// returned.
-    ///
-    /// # Errors
-    /// Returns connection errors, or [`LineError::Cancelled`].
+    /// Receives for the given duration without sending. At most [`MOST_KEPT`] bytes are returned.
     pub(crate) fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
@@ -119,23 +107,20 @@ impl<'a> SerialLine<'a> {
         Ok(heard)
     }
 
-    /// Checks whether the user has cancelled before an exchange starts.
-    ///
-    /// # Errors
-    /// Returns [`LineError::Cancelled`] if the user has cancelled.
+    /// Begins a transaction. Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn start(&mut self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Prepares an exchange on a line without packets by checking for cancellation and waiting for silence. On a busy
-    /// line, the silence has to last for `quiet`.
+    /// Begins an exchange and skips bytes that arrived earlier. If there are any, the line must then be silent for
+    /// `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels or the line stays busy.
     pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
-        // Checks at least once: bytes that arrived before the request do not belong to its reply.
+        // Bytes that arrived before the request do not belong to its reply, so the line is read at least once.
         loop {
             self.ctx.wire.receive(state.quiet_until.max(self.now()), &mut stray)?;
             if stray.is_empty() {
@@ -148,11 +133,8 @@ impl<'a> SerialLine<'a> {
         }
     }
 
-    /// Sends a frame and traces it as `shown`, with masked bytes. The error for a frame that is not part of a recording
-    /// contains only the masked bytes.
-    ///
-    /// # Errors
-    /// Returns connection errors.
+    /// Sends a frame and records `shown`, its masked form, in the trace. If a replayed recording does not contain the
+    /// frame, the error shows only the masked bytes.
     pub(crate) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
         let text = shown.to_string();
         self.ctx.trace.record(at, Direction::Sent, shown);
@@ -164,25 +146,21 @@ impl<'a> SerialLine<'a> {
         })
     }
 
-    /// Receives bytes until `until` at the latest.
-    ///
-    /// # Errors
-    /// Returns connection errors.
     pub(crate) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         self.ctx.wire.receive(until, into)
     }
 
-    /// Starts recording bytes that arrive too late or after a reply.
+    /// Starts recording the bytes that belong to no reply.
     pub(crate) fn record_late_bytes(&mut self) {
         self.passed = Some(Vec::new());
     }
 
-    /// Returns the recorded bytes that arrived too late or after a reply, and stops recording.
+    /// Stops recording, and returns the recorded bytes.
     pub(crate) fn take_late_bytes(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Skips bytes that are not part of the reply. If the noise is continuous, only its first bytes are kept.
+    /// Skips bytes that belong to no reply. During recording, the first [`MOST_KEPT`] bytes are kept.
     pub(crate) fn skip_bytes(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
@@ -202,7 +180,7 @@ impl<'a> SerialLine<'a> {
     pub(crate) fn may_retry(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
-        // The first try counts as well: at 600 bit/s it alone may take three seconds.
+        // The first attempt counts as well. At 600 bit/s, it alone may take three seconds.
         let since = *state.troubled_since.get_or_insert(now - longest);
         let next_end = (now + longest).since(since);
         let again = match self.patience {
@@ -213,18 +191,18 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now answer an earlier request on a
-    /// connection slower than its margin, and must not be taken for the reply to the next request.
+    /// Waits for a late reply after a time-out, longer after each attempt. A late reply is skipped, because it must not
+    /// be taken for the reply to the next request.
     ///
     /// # Errors
-    /// See [`LineError`].
+    /// Returns a [`LineError`] if the user cancels, the line is never silent or the connection fails.
     pub(crate) fn receive_late_bytes(
         &mut self,
         state: &mut LineState,
         tries: u32,
         quiet: Duration,
     ) -> Result<(), LineError> {
-        // A device known to be silent for a long time is requested often.
+        // A device that is expected to be silent for a long time is polled at short intervals.
         let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
         let end = self.now() + patience;
@@ -233,7 +211,7 @@ impl<'a> SerialLine<'a> {
             if self.now() >= end {
                 return Ok(());
             }
-            // On a slow connection this takes seconds: cancellation is checked meanwhile.
+            // On a slow connection this takes seconds, so cancellation is checked in between.
             self.check_cancel()?;
             let slice = (self.now() + SLICE).min(end);
             self.ctx.wire.receive(slice, &mut late)?;
@@ -243,11 +221,11 @@ impl<'a> SerialLine<'a> {
         self.discard_late_answers(state, quiet)
     }
 
-    /// Skips late bytes, since every unanswered request may still get a reply. The first late byte shows the maximum
-    /// delay of the connection, and nothing is sent until that much time has passed after the last late byte.
+    /// Skips the late replies to all unanswered requests. The first late byte shows the delay of the connection. Bytes
+    /// are skipped until that delay has passed since the last request and the line is silent for `quiet`.
     ///
     /// # Errors
-    /// See [`LineError`].
+    /// Returns a [`LineError`] if the line is never silent or the connection fails.
     pub(crate) fn discard_late_answers(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let now = self.now();
         let lateness = now.since(state.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
@@ -263,10 +241,8 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Receives bytes until the line is silent for `quiet`.
-    ///
-    /// # Errors
-    /// Returns connection errors, or [`LineError::NeverSilent`].
+    /// Skips bytes until the line has been silent for `quiet`. Returns [`LineError::NeverSilent`] if bytes keep
+    /// arriving.
     pub(crate) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let give_up = self.now() + NEVER_SILENT;
         let mut stray = Vec::new();

@@ -1,7 +1,7 @@
-//! Connections, clocks, and the execution context of procedures.
+//! Connections, clocks, and the context in which procedures run.
 //!
-//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams
-//! ([`DatagramChannel`]). Protocols with registers, process data or explicit messages share the same [`Ctx`].
+//! Most devices need a byte stream ([`ByteLink`]). Some also exchange cyclic data as datagrams ([`DatagramChannel`]).
+//! The procedures of all protocols use the same [`Ctx`].
 
 #![warn(missing_docs)]
 
@@ -43,46 +43,46 @@ use crate::units::{CharacterFormat, Moment};
 
 /// A connection that transports bytes in both directions.
 pub trait ByteLink: Send {
-    /// Writes bytes in a single call, so that there is no gap within a frame. May return before the last bit has been
+    /// Sends bytes in one call, without a gap within a frame. This function may return before the last bit has been
     /// sent.
     ///
     /// # Errors
-    /// The line was lost.
+    /// Returns an error if the connection was lost.
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits until `until` for bytes and appends them to `into`. Appends nothing on time-out.
+    /// Waits for bytes and appends them to `into`. Appends nothing if no bytes arrive before `until`.
     ///
     /// # Errors
-    /// The line was lost.
+    /// Returns an error if the connection was lost.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError>;
 
     /// Sets baud rate and parity.
     ///
     /// # Errors
-    /// The line was lost, or the format cannot be set.
+    /// Returns an error if the connection was lost or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
-    /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
-    /// not visible here, so a reply through it proves nothing about baud rate and parity.
+    /// Returns whether [`set_format`](Self::set_format) has an effect. It has none on a device server, whose own
+    /// settings apply. A reply through such a server proves nothing about baud rate and parity.
     fn can_set_format(&self) -> bool {
         true
     }
 
-    /// Checks that the line still exists, without sending or receiving.
+    /// Checks that the connection still exists, without sending or receiving.
     ///
     /// # Errors
-    /// The line was lost.
+    /// Returns an error if the connection was lost.
     fn check(&mut self) -> Result<(), LinkError>;
 }
 
-/// A cancellation flag shared by its clones.
+/// A cancellation flag. All clones share the same flag.
 #[derive(Clone, Debug, Default)]
 pub struct CancelToken(Arc<CancelState>);
 
 #[derive(Debug)]
 struct CancelState {
     requested: AtomicBool,
-    /// Number of transactions left before cancellation is requested automatically.
+    /// Number of transactions before automatic cancellation, or `u64::MAX` for no limit.
     fuse: AtomicU64,
 }
 
@@ -105,7 +105,7 @@ impl CancelToken {
         self.0.requested.store(true, Ordering::SeqCst);
     }
 
-    /// Clears the request before the next job.
+    /// Resets the flag for the next job.
     pub fn reset(&self) {
         self.0.requested.store(false, Ordering::SeqCst);
     }
@@ -115,7 +115,8 @@ impl CancelToken {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Returns whether the next transaction must not begin. Must be called before each transaction.
+    /// Counts a transaction that is about to begin, and returns whether it must not begin. This function must be called
+    /// before each transaction.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -127,7 +128,7 @@ impl CancelToken {
     }
 }
 
-/// Execution context of a procedure, with connection, clock, cancellation and trace.
+/// The resources available to a procedure: connection, clock, cancellation flag and trace.
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     /// Connection to the device.
     pub wire: &'a mut W,
@@ -135,6 +136,6 @@ pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     pub clock: &'a dyn Clock,
     /// Cancellation flag.
     pub cancel: &'a CancelToken,
-    /// Trace of the line.
+    /// Trace of the frames on the connection.
     pub trace: &'a mut Trace,
 }

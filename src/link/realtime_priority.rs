@@ -1,10 +1,10 @@
-//! Threads that must wake up at exact times. Packets of a cyclic connection are due every few milliseconds, and
-//! ordinary threads on a busy computer may wait longer than that.
+//! Real-time priority for the threads of cyclic connections. Their packets are due every few milliseconds, and ordinary
+//! threads on a busy computer may wait longer.
 
 use thread_priority::{Error, ThreadPriority};
 
-/// Asks the system to schedule the calling thread before all ordinary threads until it ends. Returns whether the system
-/// agreed, which on Linux requires a permission (`rtprio` among the user's limits).
+/// Requests real-time priority for the calling thread until it ends. Returns whether the system granted the request. On
+/// Linux, the user needs the `rtprio` permission.
 pub fn wake_before_others() -> bool {
     let asked = ask();
     if let Err(error) = &asked {

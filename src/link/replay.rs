@@ -8,11 +8,11 @@ use crate::units::{CharacterFormat, Moment};
 
 struct RecordedExchange {
     request: MaskedBytes,
-    /// Recorded reply, or `None` if it never arrived or was masked.
+    /// Recorded reply, or `None` if none arrived or it was masked.
     reply: Option<Vec<u8>>,
 }
 
-/// Playback of a recording. Each request is searched for from the position of the previous one, wrapping around once.
+/// Playback of a recording. The search for a request starts at the position of the previous one and wraps around once.
 /// Masked bytes match anything.
 pub struct ReplayLink {
     target: String,
@@ -23,7 +23,7 @@ pub struct ReplayLink {
 }
 
 impl ReplayLink {
-    /// Creates the playback of `entries` under the name `target`.
+    /// Creates the playback of a recording. Errors refer to it as `target`.
     pub fn new(target: &str, entries: Vec<TraceEntry>, clock: Arc<dyn Clock>) -> Self {
         let mut exchanges: Vec<RecordedExchange> = Vec::new();
         for entry in entries {

@@ -1,4 +1,4 @@
-//! Reply times of a device, readable outside the thread of its session.
+//! Reply times of a device, which any thread can read.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,18 +11,17 @@ pub struct ReplyTimes(Arc<Measured>);
 #[derive(Debug, Default)]
 struct Measured {
     count: AtomicU64,
-    /// Sum of all reply times in microseconds.
     sum: AtomicU64,
     longest: AtomicU64,
 }
 
 impl ReplyTimes {
-    /// Records the time between a request and its reply, even if the reply was late.
+    /// Records the time between a request and its reply. Late replies count as well.
     pub(crate) fn note(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);
         self.0.longest.fetch_max(took, Ordering::Relaxed);
-        // Last: a reader of the count finds the other values.
+        // The count is increased last, so a thread that reads it also sees the other values.
         self.0.count.fetch_add(1, Ordering::Release);
     }
 

@@ -1,5 +1,5 @@
-//! `serial:PATH`: a serial port, usually a USB–RS-485 converter; and `bridge:PATH`, the port of an adapter. DTR and RTS
-//! keep the state they have after opening.
+//! Serial ports, usually of a USB–RS-485 converter (`serial:PATH`) or of an adapter (`bridge:PATH`). DTR and RTS keep
+//! the state they have after opening.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -21,10 +21,10 @@ pub struct PortInfo {
     pub serial_number: Option<String>,
 }
 
-/// Returns the serial ports of this computer, ordered by name. Pseudo-terminals are never listed but can be opened.
+/// Returns the serial ports of this computer, ordered by name. Pseudo-terminals can be opened but are not listed.
 ///
 /// # Errors
-/// The system does not provide a list of ports.
+/// Returns an error if the system does not list its ports.
 pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
     if !platform::lists_ports() {
         return Ok(Vec::new());
@@ -56,20 +56,20 @@ pub struct SerialLink {
 }
 
 impl SerialLink {
-    /// Opens a port exclusively.
+    /// Opens a port for exclusive use.
     ///
     /// # Errors
-    /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
+    /// Returns [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
     /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or another error of the system.
     pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_configured(path, format, clock, |builder| builder)
     }
 
-    /// Opens the port of an adapter and keeps DTR asserted, because an edge of DTR resets many microcontrollers. Linux
-    /// asserts DTR automatically, other systems on request.
+    /// Opens the port of an adapter with DTR asserted, because an edge of DTR resets many microcontrollers. Linux
+    /// always asserts DTR on opening. Other systems do so on request.
     ///
     /// # Errors
-    /// The same as for [`open`](Self::open).
+    /// Returns the same errors as [`open`](Self::open).
     pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_configured(path, format, clock, |builder| builder.dtr_on_open(true))
     }
@@ -86,8 +86,8 @@ impl SerialLink {
         let port = lines(builder).open().map_err(|error| LinkError::new(path, open_error_kind(path, &error)))?;
         let link = SerialLink { port, target: path.to_owned(), clock };
         link.warn_of_parity(format);
-        // Bytes from before the opening belong to no reply; if they cannot be cleared, the first frame is damaged and
-        // requested again.
+        // Bytes from before the opening belong to no reply. If they cannot be cleared, they damage the first frame,
+        // which is then requested again.
         let _ = link.port.clear(ClearBuffer::Input);
         Ok(link)
     }
@@ -163,7 +163,7 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
-/// System error message for a device without a baud rate, such as /dev/null.
+/// Error message of the system for a file without a baud rate, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
 fn open_error_kind(path: &str, error: &serialport::Error) -> LinkErrorKind {
@@ -187,8 +187,7 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    /// Returns whether `serialport` can list ports. The crate reads this folder without checking that the folder
-    /// exists.
+    /// Returns whether `serialport` can list ports. The crate reads this folder without checking that it exists.
     pub(super) fn lists_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
@@ -206,7 +205,7 @@ mod platform {
         LinkErrorKind::Permission { group }
     }
 
-    /// Returns the name of a group, or `None` for the root group, which must not be recommended.
+    /// Returns the name of a group, or `None` for `root`, because users must not be told to join that group.
     fn group_name(gid: u32) -> Option<String> {
         let groups = std::fs::read_to_string("/etc/group").ok()?;
         let id = gid.to_string();
@@ -221,7 +220,7 @@ mod platform {
 
 #[cfg(not(unix))]
 mod platform {
-    //! Systems on which ports have names (`COM3`) and no owner, and a port in use causes "access denied".
+    //! Systems on which ports have names such as `COM3` and no owner. A port in use causes "access denied".
 
     use super::LinkErrorKind;
 

@@ -1,4 +1,4 @@
-//! `sim:`: a virtual device in this process. In virtual time, waiting for a reply takes no time.
+//! `sim:`: a virtual device in this process. With a virtual clock, waiting for a reply takes no time.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -8,7 +8,7 @@ use super::{ByteLink, Clock, DatagramChannel, DatagramPort, LinkError};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
-/// A connection to a virtual device. The device can be shared with a test that inspects it, or with the next link.
+/// A connection to a virtual device. Tests and other links can share the device.
 pub struct SimLink {
     device: Arc<Mutex<dyn ByteDevice>>,
     clock: Arc<dyn Clock>,
@@ -24,7 +24,7 @@ impl SimLink {
     }
 
     fn with_device<T>(&self, work: impl FnOnce(&mut dyn ByteDevice) -> T) -> T {
-        // A virtual device after the panic of a test is still valid.
+        // After a panic in a test, the virtual device is still valid.
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut *device)
     }
@@ -70,7 +70,7 @@ pub struct SimPort {
     next: u16,
 }
 
-/// First port to be assigned, chosen arbitrarily.
+/// Port of the first channel, chosen arbitrarily.
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {

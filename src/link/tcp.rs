@@ -1,5 +1,4 @@
-//! `tcp:HOST:PORT`: the same bytes through a serial device server in raw mode. Baud rate and parity are set at the
-//! server.
+//! `tcp:HOST:PORT`: a serial device server in raw mode. Baud rate and parity are set on the server.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -9,7 +8,7 @@ use std::time::Duration;
 use super::{ByteLink, Clock, LinkError, LinkErrorKind};
 use crate::units::{CharacterFormat, Moment};
 
-/// A raw TCP connection.
+/// A raw TCP connection to a serial device server.
 pub struct TcpLink {
     stream: TcpStream,
     target: String,
@@ -18,14 +17,15 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// Longest wait that is polled, because the time-out of a socket only has the resolution of the system tick.
+    /// Wait below which the socket is polled, because its time-out is only as precise as the system tick.
     const SHORT: Duration = Duration::from_millis(10);
     const GLANCE: Duration = Duration::from_micros(500);
 
     /// Connects to `host:port`.
     ///
     /// # Errors
-    /// [`LinkErrorKind::NotFound`] for an unknown name, [`LinkErrorKind::Unreachable`] if there is no response.
+    /// Returns [`LinkErrorKind::NotFound`] for an unknown name, or [`LinkErrorKind::Unreachable`] if there is no
+    /// response.
     pub fn connect(target: &str, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let fail = |kind| LinkError::new(target, kind);
         let addresses = target.to_socket_addrs().map_err(|_| fail(LinkErrorKind::NotFound))?;
@@ -33,7 +33,8 @@ impl TcpLink {
         for address in addresses {
             match TcpStream::connect_timeout(&address, Self::CONNECT_TIME) {
                 Ok(stream) => {
-                    // A frame must not wait for more bytes; if this option cannot be set, the connection is only slower.
+                    // Frames are sent without waiting for more bytes. Without this option, the connection is only
+                    // slower.
                     let _ = stream.set_nodelay(true);
                     return Ok(TcpLink { stream, target: target.to_owned(), clock });
                 }

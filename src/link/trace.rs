@@ -1,12 +1,12 @@
-//! The trace of all frames on a connection, with secrets masked, and its text format, which `replay:` reads.
+//! A trace of all frames on a connection, with secrets masked. A `replay:` link reads its text format.
 //!
 //! ```text
 //! # encoder-studio trace 1
 //! 0.031204 > 40 42 02
 //! 0.047511 < 40 42 00 0E 05 31 38
 //! ```
-//! A line consists of seconds, `>` sent or `<` received, and bytes; `**` is a masked byte. Lines starting with `#` are
-//! comments.
+//! Each line consists of a time in seconds, `>` for sent or `<` for received, and the bytes. `**` is a masked byte.
+//! Lines that start with `#` are comments.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -18,26 +18,26 @@ use crate::units::Moment;
 /// Direction of transmission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From the computer.
+    /// From the computer to the device.
     Sent,
-    /// To the computer.
+    /// From the device to the computer.
     Received,
 }
 
-/// A recorded frame on the line.
+/// A recorded frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
     /// Time at which the first byte was sent or received.
     pub at: Moment,
     /// Direction of transmission.
     pub direction: Direction,
-    /// Bytes with secrets masked.
+    /// Bytes of the frame, with secrets masked.
     pub bytes: MaskedBytes,
 }
 
 type Watcher = Box<dyn FnMut(&TraceEntry) + Send>;
 
-/// A trace of the frames on a line.
+/// A recorder that reports every frame on a connection to its watchers.
 #[derive(Default)]
 pub struct Trace {
     watchers: Vec<Watcher>,
@@ -73,7 +73,7 @@ pub const HEADER: &str = "# encoder-studio trace 1";
 /// Writes the header of a trace file.
 ///
 /// # Errors
-/// Returns errors of the writer.
+/// Returns an error if writing fails.
 pub fn write_header(file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{HEADER}")
 }
@@ -81,12 +81,12 @@ pub fn write_header(file: &mut impl Write) -> io::Result<()> {
 /// Appends a line to a trace file.
 ///
 /// # Errors
-/// Returns errors of the writer.
+/// Returns an error if writing fails.
 pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> {
     writeln!(file, "{}", entry_line(entry.at, entry.direction, &entry.bytes))
 }
 
-/// Returns a line of a trace file, without the line end. `bytes` are hexadecimal, with `**` for masked bytes.
+/// Formats a line of a trace file, without the line end. `bytes` are hexadecimal, with `**` for masked bytes.
 pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) -> String {
     let sign = match direction {
         Direction::Sent => '>',
@@ -95,7 +95,7 @@ pub fn entry_line(at: Moment, direction: Direction, bytes: impl fmt::Display) ->
     format!("{:.6} {sign} {bytes}", at.since_start().as_secs_f64())
 }
 
-/// Reason why a string is not a trace.
+/// The reason why a text is not a valid trace.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceFileError {
     /// The first line is not the header of a trace file.
@@ -120,7 +120,7 @@ pub enum TraceFileError {
 /// Parses a trace file.
 ///
 /// # Errors
-/// Returns the number of the first invalid line.
+/// Returns an error if the header is missing, or the number of the first invalid line.
 pub fn read_trace(text: &str) -> Result<Vec<TraceEntry>, TraceFileError> {
     let mut lines = text.lines().zip(1..);
     if lines.next().map(|(line, _)| line.trim_end()) != Some(HEADER) {

@@ -11,21 +11,22 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use super::{BroadcastChannel, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
-/// Maximum accepted packet length in bytes; process data are much shorter.
+/// Maximum accepted packet length in bytes. Process data are much shorter.
 const LONGEST: usize = 1500;
-/// Maximum number of received packets waiting to be read; further packets are dropped.
+/// Maximum number of received packets waiting to be read. Further packets are dropped.
 const WAITING: usize = 64;
 /// Maximum time until a receiver thread notices that its channel has been dropped.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// UDP channels to the target of a TCP connection, bound to the local address used to reach it.
+/// A factory for UDP channels to the target of a TCP connection. Channels use the local address from which the target
+/// is reached.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,
 }
 
 impl UdpPort {
-    /// Creates a factory for channels to a target, which is given as the `host:port` of its TCP connection.
+    /// Creates a factory for channels to `target`, the `host:port` of a TCP connection.
     pub fn new(target: &str, clock: Arc<dyn Clock>) -> Self {
         UdpPort { target: target.to_owned(), clock }
     }
@@ -67,7 +68,7 @@ impl DatagramPort for UdpPort {
 /// Returns the local address from which packets to the target are sent.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
-    // Sends nothing, and selects the network interface.
+    // Connecting a UDP socket sends nothing, but selects the network interface.
     socket.connect(target)?;
     match socket.local_addr()? {
         SocketAddr::V4(address) => Ok(*address.ip()),
@@ -75,8 +76,8 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// A channel for packets to and from a single target. A dedicated thread receives packets, so that a wait ends exactly
-/// when a packet arrives or the time is up.
+/// A channel for packets to and from a single target. A dedicated thread receives packets, so a wait ends as soon as
+/// one arrives.
 struct UdpChannel {
     name: String,
     target: SocketAddrV4,
@@ -115,14 +116,14 @@ impl UdpChannel {
             let mut buffer = [0; LONGEST];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {
-                    // Packets of other senders are dropped, and so are those without a receiver.
+                    // Packets from other senders are dropped, and so are packets that the queue cannot hold.
                     Ok((count, SocketAddr::V4(sent_by))) if *sent_by.ip() == from => {
                         let _ = sender.try_send(buffer.iter().take(count).copied().collect());
                     }
                     Ok(_) => {}
-                    // A closed port of the target is reported here; it may be opened again.
+                    // The system reports a closed port of the target as an error. The target may open it again.
                     Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-                    // This may repeat without limit, so other threads are given time to run.
+                    // The error may repeat without limit, so the thread pauses.
                     Err(error) if is_transient(&error) => std::thread::sleep(Duration::from_millis(1)),
                     Err(_) => return,
                 }
@@ -157,7 +158,7 @@ impl DatagramChannel for UdpChannel {
     fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {
         match self.socket.send_to(packet, self.target) {
             Ok(_) => Ok(()),
-            // The error belongs to an earlier packet.
+            // The system reports an error of an earlier packet.
             Err(error) if is_transient(&error) => Ok(()),
             Err(error) => Err(LinkError::from_io_error(&self.name, &error)),
         }
@@ -175,7 +176,7 @@ impl DatagramChannel for UdpChannel {
     }
 }
 
-/// Broadcast requests to a port on all networks of this computer.
+/// A channel for broadcast requests to a port.
 pub struct UdpBroadcast {
     socket: UdpSocket,
     to: Vec<SocketAddrV4>,
@@ -186,7 +187,7 @@ impl UdpBroadcast {
     /// Creates a channel that broadcasts on every network.
     ///
     /// # Errors
-    /// The system has no free socket.
+    /// Returns an error if the system has no free socket.
     pub fn on_all_networks(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(local_networks());
@@ -197,7 +198,7 @@ impl UdpBroadcast {
     /// Creates a channel that sends to the given addresses.
     ///
     /// # Errors
-    /// The system has no free socket.
+    /// Returns an error if the system has no free socket.
     pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
@@ -214,13 +215,13 @@ impl UdpBroadcast {
     }
 }
 
-/// Returns the broadcast addresses of the directly connected networks, if the system lists any.
+/// Returns the broadcast addresses of the directly connected networks, or an empty list if they are unknown.
 fn local_networks() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcast_addresses(&table)).unwrap_or_default()
 }
 
-/// Returns the broadcast addresses in Linux's routing table, whose columns include interface, destination, gateway,
-/// flags, and, as the eighth, the mask.
+/// Returns the broadcast addresses in Linux's routing table. The second column is the destination, the third the
+/// gateway, and the eighth the mask.
 fn broadcast_addresses(table: &str) -> Vec<Ipv4Addr> {
     let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
     let mut found = Vec::new();
@@ -228,7 +229,8 @@ fn broadcast_addresses(table: &str) -> Vec<Ipv4Addr> {
         let fields: Vec<&str> = line.split_whitespace().collect();
         let &[_, network, "00000000", _, _, _, _, mask, ..] = fields.as_slice() else { continue };
         let (Some(network), Some(mask)) = (address(network), address(mask)) else { continue };
-        // A network of one address has no other members, and the network of all is asked anyway.
+        // A network of one address contains no other device. Mask 0 would yield 255.255.255.255, which is always
+        // included.
         if mask != 0 && mask != u32::MAX {
             found.push(Ipv4Addr::from(network | !mask));
         }

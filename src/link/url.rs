@@ -1,5 +1,5 @@
-//! Link URLs such as `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; the code that opens the link
-//! interprets the parameters.
+//! Link URLs, for example `serial:/dev/ttyUSB0?baud=9600&parity=even`. The code that opens a link interprets the
+//! parameters.
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,11 +18,11 @@ pub enum LinkScheme {
     Tcp,
     /// A recorded trace.
     Replay,
-    /// An open adapter for clocked buses, at a serial port or a TCP address.
+    /// An adapter for clocked buses, at a serial port or a TCP address.
     Bridge,
-    /// A Modbus/TCP gateway to process data.
+    /// A Modbus/TCP gateway that gives access to process data.
     Modbus,
-    /// EtherNet/IP, with explicit messages over TCP and cyclic data as datagrams.
+    /// EtherNet/IP. Explicit messages use TCP, and cyclic data are datagrams.
     Enip,
 }
 
@@ -42,7 +42,7 @@ impl LinkScheme {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// Returns a description of what has to follow the colon, with an example.
+    /// Describes what must follow the colon, with an example.
     fn requirements(self) -> &'static str {
         match self {
             LinkScheme::Tcp => "a host and a port, as in tcp:192.168.0.7:4001",
@@ -57,22 +57,24 @@ impl LinkScheme {
     }
 }
 
-/// A link as written by the user, in the same form on the command line and in the window.
+/// A parsed link. The command line and the window use the same syntax.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkUrl {
     /// Kind of connection.
     pub scheme: LinkScheme,
-    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`. For
-    /// `modbus:` and `enip:`, the port is always included and defaults to 502 or 44818.
+    /// Path, host and port, or file. Empty for `sim:`.
+    ///
+    /// For `bridge:`, this is a path, or `tcp:` followed by host and port. For `modbus:` and `enip:`, the port is
+    /// always included and defaults to 502 or 44818.
     pub target: String,
     /// Parameters after the question mark.
     pub query: UrlQuery,
 }
 
-/// A resource of the computer that a link uses and that several links may share.
+/// The port, host or file that a link opens. Several links may use the same one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
-    /// A device in this process, without a connection.
+    /// A virtual device in this process, which needs no connection.
     Inside,
     /// A serial port.
     Port(&'a str),
@@ -82,17 +84,17 @@ pub enum Wire<'a> {
     File(&'a str),
 }
 
-/// Parameters in the order in which they were written. Names are lower case and unique.
+/// The parameters of a link in the order in which they were written. Names are lower case and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UrlQuery(Vec<(String, String)>);
 
-/// Reason why a string is not a link.
+/// The reason why a text is not a valid link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// The colon is missing, or the keyword before it is unknown.
     #[error("{0:?} is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
-    /// This kind of link cannot reach the device.
+    /// This kind of link cannot be used for the device.
     #[error("{scheme}: links cannot be used for this device; valid links begin with {known}")]
     Device {
         /// Keyword before the colon.
@@ -127,7 +129,7 @@ pub enum UrlError {
         name: String,
         /// Keyword before the colon.
         scheme: &'static str,
-        /// Known names.
+        /// Valid parameter names.
         known: String,
     },
     /// A value is invalid.
@@ -174,12 +176,12 @@ impl FromStr for LinkUrl {
 }
 
 impl LinkUrl {
-    /// Returns the link to the virtual device with default settings.
+    /// Returns a link to the virtual device with default settings.
     pub fn sim() -> Self {
         LinkUrl { scheme: LinkScheme::Sim, target: String::new(), query: UrlQuery::default() }
     }
 
-    /// Returns the resource that must be opened for the link.
+    /// Returns the resource that the link opens.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
@@ -274,7 +276,7 @@ impl UrlQuery {
     /// Parses a parameter, or returns `None` if it is missing.
     ///
     /// # Errors
-    /// The value is not allowed.
+    /// Returns an error if the value is not allowed.
     pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
         Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
     }

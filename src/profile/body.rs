@@ -1,5 +1,5 @@
-//! Profile content for any kind of device. A device implements [`Profile`] for its own type; this module derives the
-//! untyped traits that documents use.
+//! Profile content for any kind of device. A device module implements [`Profile`] for its own type. This module derives
+//! the untyped traits that documents use.
 
 use std::any::Any;
 use std::fmt;
@@ -8,15 +8,15 @@ use std::marker::PhantomData;
 use super::ron_text::{Entries, Writer};
 use super::{Comparison, ProfileError};
 
-/// A profile of one kind of device, implemented by the device.
+/// The profile type of one kind of device.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Keyword for the kind of device on the command line and in profiles.
     const KIND: &'static str;
 
-    /// Entry of the format in [`ProfileFormats`].
+    /// Format of this kind, for use in [`ProfileFormats`].
     const FORMAT: &'static dyn ProfileFormat = &ProfileFormatAdapter::<Self>(PhantomData);
 
-    /// Profile formats restricted to this kind, for callers that accept no other kind.
+    /// Formats with this kind only, for callers that accept no other kind.
     const FORMATS: ProfileFormats = ProfileFormats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
@@ -44,7 +44,7 @@ pub trait ProfileFormat: fmt::Debug + Sync {
     fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
 }
 
-/// Saved content of a device. Implemented for every [`Profile`].
+/// The untyped content of a profile. This trait is implemented for every [`Profile`].
 pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Returns the keyword for the kind of device.
     fn kind(&self) -> &'static str;
@@ -58,7 +58,7 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Returns whether this body equals another one.
     fn dyn_eq(&self, other: &dyn ProfileBody) -> bool;
 
-    /// Compares this body with another one, or returns `None` if the other is of a different kind of device.
+    /// Compares this body with another one. Returns `None` if the other body is for a different kind of device.
     fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
@@ -104,11 +104,11 @@ impl<P: Profile> ProfileFormat for ProfileFormatAdapter<P> {
     }
 }
 
-/// The content of a profile for any kind of device.
+/// The untyped content of a profile, for any kind of device.
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {
-    /// Wraps the profile of a kind of device.
+    /// Wraps the profile of one kind of device.
     pub fn new<P: Profile>(profile: P) -> Self {
         Body(Box::new(profile))
     }
@@ -125,12 +125,12 @@ impl Body {
     /// Compares this profile with another one.
     ///
     /// # Errors
-    /// [`ProfileError::OtherKind`].
+    /// Returns [`ProfileError::OtherKind`] if the other profile is for a different kind of device.
     pub fn compare(&self, other: &Body) -> Result<Comparison, ProfileError> {
         self.0.compared(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
     }
 
-    /// Returns the error for a profile of a kind of device other than `wanted`.
+    /// Returns the error that the profile is not for a `wanted` device.
     pub fn wrong_kind_error(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
@@ -141,7 +141,7 @@ impl Body {
         any.downcast_ref()
     }
 
-    /// Returns the profile as `P`, mutably.
+    /// Returns the profile as mutable `P`, or `None` if the profile is of another kind of device.
     pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
         let any: &mut dyn Any = self.0.as_mut();
         any.downcast_mut()
@@ -150,7 +150,7 @@ impl Body {
     /// Converts the profile to `P`.
     ///
     /// # Errors
-    /// [`ProfileError::OtherKind`].
+    /// Returns [`ProfileError::OtherKind`] if the profile is for a different kind of device.
     pub fn into_profile<P: Profile>(self) -> Result<P, ProfileError> {
         let found = self.kind();
         let any: Box<dyn Any> = self.0;
@@ -176,7 +176,7 @@ impl PartialEq for Body {
     }
 }
 
-/// Readable profile formats, in the order in which messages list them.
+/// The readable profile formats. Messages list them in this order.
 #[derive(Clone, Copy, Debug)]
 pub struct ProfileFormats(&'static [&'static dyn ProfileFormat]);
 

@@ -1,11 +1,10 @@
-//! Device-specific errors on their way through code that knows no device.
+//! Device-specific errors in code that is common to all devices.
 
 use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// The device-specific reason why a profile entry is refused. Displays like the wrapped error and compares equal to
-/// that error.
+/// The device-specific reason why a profile entry is invalid. It displays and compares like the wrapped error.
 pub struct Cause(Box<dyn DynCause>);
 
 trait DynCause: Any + Error + Send + Sync {

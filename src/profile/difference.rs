@@ -16,18 +16,18 @@ pub struct Difference {
 /// Result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// Differences in device memory order.
+    /// Differences in the order of the device memory.
     pub differences: Vec<Difference>,
-    /// Number of values compared. Each byte of a data field counts as one, and so does its status byte.
+    /// Number of compared values. In a data field, every byte counts as one value, including the status byte.
     pub compared: u64,
-    /// Items that are only present, or only readable, on the left side.
+    /// Items that are present or readable only on the left side.
     pub only_left: Vec<String>,
-    /// Items that are only present, or only readable, on the right side.
+    /// Items that are present or readable only on the right side.
     pub only_right: Vec<String>,
 }
 
 impl Comparison {
-    /// Compares an item that counts as one value if both sides have the item.
+    /// Compares an item that counts as one value. `None` means that a side does not have the item.
     pub fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
@@ -48,7 +48,7 @@ impl Comparison {
     }
 }
 
-/// Returns the ranges of consecutive differing bytes, up to the length of the shorter side.
+/// Returns the ranges of consecutive bytes that differ. Bytes beyond the shorter side are ignored.
 pub(crate) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {

@@ -17,25 +17,25 @@ use crate::expected::AllowedValues;
 /// Version of the profile schema that this program writes.
 pub const SCHEMA: u32 = 1;
 
-/// A profile document as stored in a file.
+/// A profile document, as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDocument {
-    /// Time at which the profile was read from a device, RFC 3339.
+    /// Time at which the profile was read from a device, in the format of RFC 3339.
     pub saved: Option<String>,
-    /// Note of the user.
+    /// Note by the user.
     pub note: Option<String>,
     /// Saved content.
     pub body: Body,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
-    /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, since saving would lose its unknown parts.
+    /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, because saving would lose its unknown parts.
     pub schema: u32,
-    /// Paths of entries that the schema does not define. Such entries in an older file are moved into `extra`.
+    /// Paths of entries that the schema does not define. In an older file, such entries are moved into `extra`.
     pub beyond: Vec<String>,
 }
 
 impl ProfileDocument {
-    /// Creates a document with the given time at which the profile was read.
+    /// Creates a document. `saved` is the time at which the profile was read.
     pub fn new(saved: String, body: Body) -> Self {
         ProfileDocument {
             saved: Some(saved),
@@ -47,10 +47,10 @@ impl ProfileDocument {
         }
     }
 
-    /// Parses a profile using one of the formats in `formats`.
+    /// Parses a profile in one of the given formats.
     ///
     /// # Errors
-    /// Returns line and column if the file is not valid RON, otherwise the invalid entry.
+    /// Returns an error with line and column if the file is not valid RON, or an error that names the invalid entry.
     pub fn parse(text: &str, formats: ProfileFormats) -> Result<Self, ProfileError> {
         let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
@@ -58,7 +58,7 @@ impl ProfileDocument {
             column: error.span.start.col,
             what: match (error.code, twice.take()) {
                 (_, Some(name)) => SyntaxErrorKind::Twice(name),
-                // The messages of the crate are written for programmers.
+                // The crate's own message is written for programmers.
                 (ron::Error::ExceededRecursionLimit, None) => SyntaxErrorKind::TooDeep,
                 (code, None) => SyntaxErrorKind::Parser(code.to_string()),
             },
@@ -92,8 +92,8 @@ impl ProfileDocument {
         Ok(ProfileDocument { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
-    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared, but neither saved
-    /// nor written to a device.
+    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared. It cannot be
+    /// saved or written to a device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }
@@ -101,12 +101,12 @@ impl ProfileDocument {
     /// Returns the document if its schema is supported.
     ///
     /// # Errors
-    /// [`ProfileError::Schema`] for a newer schema.
+    /// Returns [`ProfileError::Schema`] if the schema is newer.
     pub fn known(self) -> Result<Self, ProfileError> {
         if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
-    /// Returns the file content.
+    /// Formats the document as the content of a file.
     pub fn emit(&self) -> String {
         let mut writer = Writer::default();
         writer.open("", '(');

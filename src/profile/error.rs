@@ -17,7 +17,7 @@ pub enum ProfileError {
         /// Description of the problem.
         what: SyntaxErrorKind,
     },
-    /// The name of an entry is unknown, and an entry with a similar name is missing.
+    /// The name of an entry is unknown and resembles the name of a missing entry.
     #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
     Misspelt {
         /// Line number, starting at 1.
@@ -29,7 +29,8 @@ pub enum ProfileError {
         /// Name of the missing entry.
         intended: String,
     },
-    /// The schema version is missing, or is newer than supported although the whole profile must be understood.
+    /// The schema version is missing or newer than supported. A newer version is an error only if the whole profile
+    /// must be understood.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
         /// Version in the file.
@@ -37,7 +38,7 @@ pub enum ProfileError {
         /// Newest supported version.
         known: u32,
     },
-    /// This program has no profiles for this kind of device.
+    /// The profile is for an unknown kind of device.
     #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
         /// Kind of device in the file.
@@ -64,7 +65,7 @@ pub enum ProfileError {
     Shape {
         /// Path of the entry.
         path: String,
-        /// Expected value.
+        /// Description of the expected value.
         expected: AllowedValues,
     },
     /// An entry does not contain valid bytes.
@@ -75,12 +76,12 @@ pub enum ProfileError {
         /// Description of the problem.
         problem: HexError,
     },
-    /// A value, or a combination of values, is invalid according to the device.
+    /// A value, or a combination of values, is invalid for the kind of device.
     #[error("{path}: {cause}")]
     Refused {
         /// Path of the entry.
         path: String,
-        /// Reason given by the device.
+        /// Device-specific reason.
         cause: Cause,
     },
 }
@@ -100,7 +101,7 @@ pub enum SyntaxErrorKind {
 }
 
 impl ProfileError {
-    /// Creates the error for an entry that the device refuses.
+    /// Creates an error for an entry that is invalid for the kind of device.
     pub fn refused<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
         ProfileError::Refused { path, cause: Cause::new(error) }
     }

@@ -1,4 +1,4 @@
-//! Detection of misspelt entry names, and of entries that the schema does not define, while a profile is read.
+//! Detection of misspelt and undefined entries while a profile is read.
 
 use std::cell::{Cell, RefCell};
 
@@ -7,15 +7,14 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// Schema of the file if newer than supported, in which case unknown entries are kept.
+    /// Schema version of the file if it is newer than supported. Unknown entries are then kept.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
-    /// A misspelt name found where an entry is missing, which explains an error about that entry.
+    /// Misspelt name that may explain an error about a missing entry.
     slip: RefCell<Option<Misspelling>>,
 }
 
-/// A name that differs from an expected one by a typing error. Misspellings are ordered by the number of differing
-/// letters.
+/// A misspelt entry name. Misspellings are ordered by the number of wrong letters.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
     pub(super) letters: usize,
@@ -24,7 +23,7 @@ pub(super) struct Misspelling {
 }
 
 impl Misspelling {
-    /// Returns the error without its line number, which is added later.
+    /// Converts the misspelling to an error. The line number is added later.
     pub(super) fn error(self) -> ProfileError {
         let Misspelling { path, intended, .. } = self;
         ProfileError::Misspelt { line: 0, column: 0, path, intended }
@@ -32,7 +31,6 @@ impl Misspelling {
 }
 
 impl Reading {
-    /// Records that the file uses the given newer schema.
     pub(super) fn set_newer_schema(&self, schema: u32) {
         self.newer.set(Some(schema));
     }
@@ -41,24 +39,24 @@ impl Reading {
         self.newer.get().is_some()
     }
 
-    /// Records that the entry at this path is not part of the known schema.
+    /// Records that the schema does not define the entry at this path.
     pub(super) fn is_beyond(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }
 
-    /// Returns the paths of the entries that are not part of the known schema, in reading order.
+    /// Returns the paths of the entries that the schema does not define, in reading order.
     pub(super) fn beyond(&self) -> Vec<String> {
         self.beyond.borrow().clone()
     }
 
-    /// Records a misspelt name where reading ended early. The innermost structure takes precedence.
+    /// Records a misspelt name, unless one has been recorded before. The innermost structure is the first to report.
     pub(super) fn record_misspelling(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report, which is the misspelt name if that is the cause, or the schema if the file has a
-    /// newer schema. An error about another entry is attributed to a misspelt name only if no more than one letter
-    /// differs.
+    /// Returns the error to report. In a file with a newer schema, this is the schema error. A misspelt name replaces
+    /// the error that it caused. An error about another entry is attributed to a misspelt name only if at most one
+    /// letter differs.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -73,9 +71,8 @@ impl Reading {
     }
 }
 
-/// Returns how many letters differ between a name and the intended one if the difference looks like a typing error,
-/// which means that only a few letters differ or one name is a prefix of the other. Case, hyphens and underscores are
-/// ignored.
+/// Returns the number of wrong letters if the name looks like a misspelling of `intended`, or `None` otherwise. Only a
+/// few letters may be wrong, or one name must be a prefix of the other. Case, hyphens and underscores are ignored.
 pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
@@ -87,8 +84,7 @@ pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 
-/// Returns the number of letters that must be inserted, removed, replaced or swapped with a neighbour to turn one name
-/// into the other.
+/// Returns the edit distance between two names. Swapping two adjacent letters counts as one edit.
 fn distance(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();

@@ -1,4 +1,5 @@
-//! Profiles, differences and plans. No I/O: files are opened by `store`, devices are accessed by their procedures.
+//! Profiles, differences and plans. This module does no I/O. The `store` module opens files, and the procedures of a
+//! device access the device.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Marks in profiles for values that belong to the mounting of a device on one machine.
+//! Marks in profiles for values that are valid only for one device on one machine.
 
 use std::error::Error;
 
@@ -6,10 +6,10 @@ use super::ProfileError;
 use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::expected::AllowedValues;
 
-/// A mark on a value that is valid for one device on one machine only.
+/// A mark on a value that is valid only for one device on one machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// The marked item, which is writable.
+    /// Marked item. It is always writable.
     pub item: Item,
     /// Meaning of the item.
     pub meaning: String,
@@ -20,8 +20,8 @@ pub struct MountingMark<Item> {
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` parses a marked item or returns the reason why it is invalid, and
-    /// `expected` describes the form of an item.
+    /// Reads all marks of a profile. `item` parses a marked item, or returns the reason why it is invalid. `expected`
+    /// describes the form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: AllowedValues,
@@ -44,7 +44,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile with a comment on their purpose, or nothing if the list is empty.
+    /// Writes all marks of a profile with a comment. Writes nothing if the list is empty.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;

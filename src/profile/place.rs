@@ -1,19 +1,19 @@
-//! Source locations of profile entries, which the values of the parser do not contain.
+//! Source locations of profile entries. The parser's values do not contain them.
 
 use std::fmt;
 
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Returns the line and column of an entry's name, counted from 1, or `None` if there is no entry at the path (such
-/// as `fields[2].status`).
+/// Returns the line and column of an entry's name, counted from 1. Returns `None` if there is no entry at `path`, for
+/// example `fields[2].status`.
 pub(super) fn location_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
     if found.code != ron::Error::Message(FOUND.to_owned()) {
         return None;
     }
-    // The parser is after the name, or after the text that follows it.
+    // The parser stops after the name, or after the text that follows the name.
     let name = path.rsplit('.').next()?;
     let line = found.span.end.line;
     let before: String = text.lines().nth(line.checked_sub(1)?)?.chars().take(found.span.end.col).collect();

@@ -1,4 +1,4 @@
-//! The only way to write: read → difference → plan → consent to *this* plan → write → read back.
+//! Plans, the only way to write to a device: read → difference → plan → consent to this plan → write → read back.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -13,16 +13,16 @@ pub struct Plan<Base, Op> {
 
 /// An operation of a plan.
 pub trait Operation {
-    /// Returns the number of persistent writes that the operation requires if nothing is repeated.
+    /// Returns the number of persistent writes of the operation, without repetitions.
     fn write_cycles(&self) -> u64;
 }
 
-/// The identifier of a plan, to which a consent applies.
+/// The identifier of a plan. A consent refers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 
 impl<Base: Hash, Op: Hash> Plan<Base, Op> {
-    /// Returns the ID of the plan, which depends on its base and operations.
+    /// Returns the identifier of the plan, which depends on its base and its operations.
     pub fn id(&self) -> PlanId {
         let mut hasher = DefaultHasher::new();
         self.hash(&mut hasher);
@@ -38,18 +38,18 @@ impl<Base, Op> Plan<Base, Op> {
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Returns the number of persistent writes that the plan requires if nothing is repeated.
+    /// Returns the number of persistent writes of the plan, without repetitions.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }
 }
 
-/// A user's consent to a plan. Only the window and the command line create one.
+/// The user's consent to a plan. Only the window and the command line create one.
 #[derive(Clone, Copy, Debug)]
 pub struct Consent(PlanId);
 
 impl Consent {
-    /// Creates the consent of a user who has seen and approved the plan with this ID.
+    /// Creates the consent of a user who has seen and approved the plan with this identifier.
     pub fn to(plan: PlanId) -> Self {
         Consent(plan)
     }

@@ -7,7 +7,7 @@ pub struct RestoreOptions {
     pub allow_other_device: bool,
     /// Whether the profile may be written to a device of another type.
     pub allow_other_type: bool,
-    /// Whether mounting values may be written to another device.
+    /// Whether mounting-specific values may be written to another device.
     pub with_mounting: bool,
 }
 
@@ -18,10 +18,10 @@ pub struct Restore<Plan, Item, Missing = String> {
     pub plan: Plan,
     /// Number of values that already match the profile, counted as in a comparison.
     pub unchanged: u64,
-    /// Items left unchanged because one side lacks them or cannot read them.
+    /// Items that stay unchanged because one side lacks them or cannot read them.
     pub missing: Vec<Missing>,
-    /// Differing mounting values that are left unchanged.
+    /// Mounting-specific items that differ and stay unchanged.
     pub mounting_left: Vec<Item>,
-    /// Mounting values of another device that are written and must be readjusted.
+    /// Mounting-specific items that are copied from another device and must be readjusted.
     pub mounting_written: Vec<Item>,
 }

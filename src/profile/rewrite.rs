@@ -1,11 +1,11 @@
-//! Saving a profile over a file edited by a user, and merging the profiles of two users.
+//! Saving a profile over a file that a user has edited, and merging the profiles of two users.
 
 use super::source::{Carried, Change, apply_all, carry, changes, lost};
 use super::{ProfileDocument, ProfileError, ProfileFormats};
 
 impl ProfileDocument {
-    /// Returns `text` updated to the content of the document. Unchanged entries remain as written, with comments, order
-    /// and line endings.
+    /// Updates `text` to the content of the document. Unchanged entries keep their notation, comments, order and line
+    /// endings.
     pub fn rewrite_text(&self, text: &str, formats: ProfileFormats) -> Carried {
         let own = self.emit();
         let before = ProfileDocument::parse(text, formats).map(|before| before.emit());
@@ -21,15 +21,15 @@ impl ProfileDocument {
         }
     }
 
-    /// Returns the changes that turn this document into `other`, entry by entry.
+    /// Returns the changes, entry by entry, that turn this document into `other`.
     pub fn changes_to(&self, other: &ProfileDocument) -> Vec<Change> {
         changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
 
-    /// Applies changes to the document.
+    /// Returns the document with the changes applied.
     ///
     /// # Errors
-    /// Returns the error if the result is not a valid profile, or `None` if a change does not apply.
+    /// Returns the error if the result is not a valid profile, or `None` if a change cannot be applied.
     pub fn changed(
         &self,
         changes: &[Change],
@@ -39,14 +39,14 @@ impl ProfileDocument {
     }
 }
 
-/// The side that has changed an entry since both sides had the same profile.
+/// The side that has changed an entry of the common base profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangedSide {
-    /// Only the other side.
+    /// Only the other side changed the entry.
     There,
-    /// Only this side.
+    /// Only this side changed the entry.
     Here,
-    /// Both sides.
+    /// Both sides changed the entry.
     Both,
 }
 

@@ -1,5 +1,5 @@
-//! RON for profiles. The `ron` crate reads, and unknown entries are preserved as read. Writing is implemented here to
-//! produce readable files: hexadecimal numbers, sixteen bytes per line, comments.
+//! RON for profiles. The `ron` crate parses the text, and unknown entries are preserved. Writing is implemented here
+//! for readable files: hexadecimal numbers, sixteen bytes per line, and comments.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,17 +13,17 @@ use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::AllowedValues;
 
-/// Unknown entries by name, which are either the user's own or part of a newer schema.
+/// Unknown entries by name. They were added by the user or belong to a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
 
 /// Name of the structure that holds the user's own entries.
 const EXTRA: &str = "extra";
 
-/// The entries of a structure, which are taken out one by one. Those that remain are the user's own or misspelt.
+/// The entries of a structure. Parsing takes them out one by one. Those that remain are the user's own or misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
-    /// Requested names for which there is no entry.
+    /// Names that were requested but are missing.
     missed: Vec<String>,
     reading: Rc<Reading>,
 }
@@ -32,7 +32,7 @@ impl Entries {
     pub(super) fn open(path: &str, value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
         let map = match unwrap_value(value) {
             Value::Map(map) => map,
-            // The crate reads an empty structure, `()` or `( )`, like this.
+            // The crate returns this for an empty structure, `()` or `( )`.
             Value::Unit => ron::Map::new(),
             Value::Seq(values) if values.is_empty() => ron::Map::new(),
             _ => {
@@ -49,7 +49,7 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
     }
 
-    /// Takes an entry for reading, and records its name if the entry is missing.
+    /// Takes an entry, and records its name if the entry is missing.
     fn take(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {
@@ -58,7 +58,7 @@ impl Entries {
         value
     }
 
-    /// Returns the remaining entry most similar to a missing name, if no more than `most` letters differ.
+    /// Returns the remaining entry most similar to a missing name. At most `most` letters may differ.
     fn find_misspelling(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
@@ -82,7 +82,7 @@ impl Entries {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Takes a plain value, or returns `None` if the value is missing.
+    /// Parses a simple value, or returns `None` if the entry is missing.
     pub fn take_optional<T: DeserializeOwned>(
         &mut self,
         name: &str,
@@ -98,7 +98,7 @@ impl Entries {
             .map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
     }
 
-    /// Takes a required plain value.
+    /// Parses a required simple value.
     pub fn take_required<T: DeserializeOwned>(
         &mut self,
         name: &str,
@@ -123,7 +123,7 @@ impl Entries {
         }
     }
 
-    /// Takes bytes, given as one hex string or a list of hex strings.
+    /// Parses bytes, written as one hex string or as a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.path_of(name);
         let Some(value) = self.take_optional::<Value>(name, AllowedValues::HexLines)? else { return Ok(None) };
@@ -160,7 +160,7 @@ impl Entries {
         }
     }
 
-    /// Takes a map with arbitrary keys, preserving their order, or returns an empty map if the entry is missing.
+    /// Takes a map with arbitrary keys and preserves their order. Returns an empty map if the entry is missing.
     pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
@@ -169,11 +169,11 @@ impl Entries {
         }
     }
 
-    /// Returns the entries that have not been taken, which are the user's own or unknown ones of a newer schema.
-    /// Entries outside `extra`, where older files have them, are moved into `extra`.
+    /// Returns the remaining entries, which are the user's own or belong to a newer schema. The user's entries outside
+    /// `extra`, as in older files, are moved into `extra`.
     ///
     /// # Errors
-    /// [`ProfileError::Misspelt`] if one of them is the misspelt name of a missing entry.
+    /// Returns [`ProfileError::Misspelt`] if a remaining entry is a misspelling of a missing one.
     pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
@@ -207,7 +207,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Looks for a misspelt name if reading ended before all names were requested.
+    /// Records a misspelt name, in case an error ended the reading early.
     fn drop(&mut self) {
         if let Some(slip) = self.find_misspelling(2) {
             self.reading.record_misspelling(slip);
@@ -215,7 +215,8 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two hex digits each, so that a digit lost in an editor does not yield a different byte.
+/// Parses bytes of two hex digits each. A single digit is an error, because the other one may have been lost in an
+/// editor.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -223,7 +224,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// Returns `x` for `Some(x)`, which is also allowed, and any other value unchanged.
+/// Returns `x` for `Some(x)`, and any other value unchanged. Profiles may contain either form.
 fn unwrap_value(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -231,7 +232,7 @@ fn unwrap_value(value: Value) -> Value {
     }
 }
 
-/// Writer for profile files.
+/// A writer for profile files.
 #[derive(Default)]
 pub struct Writer {
     out: String,
@@ -244,7 +245,7 @@ impl Writer {
         self.line(&format!("// {text}"));
     }
 
-    /// Writes `name: value,` with the value verbatim, followed by a comment.
+    /// Writes `name: value,` followed by a comment. The value is written as given.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.line(&format!("{name}: {value},{behind}"));
@@ -278,7 +279,7 @@ impl Writer {
         }
     }
 
-    /// Begins a structure or list. The name is empty within a list and at the top level.
+    /// Begins a structure or list. In a list and at the top level, the name is empty.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.line(&head);
@@ -306,8 +307,7 @@ pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Formats the user's own entries so that they follow the known entries of a single-line structure, as in
-/// `, extra: {…}`.
+/// Formats the user's own entries for the end of a single-line structure, as in `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &Unknown) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
 }
@@ -318,7 +318,7 @@ fn extra_text(unknown: &Unknown) -> String {
     format!("{{{}}}", entries.join(", "))
 }
 
-/// Formats a value as RON, with structures as `(name: value)` if their names allow it.
+/// Formats a value as RON. A structure becomes `(name: value)` if its names allow it.
 pub(crate) fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

@@ -2,7 +2,7 @@
 
 use super::{Carried, Profile, ProfileDocument};
 
-/// Edits a profile and its note, and saves the profile over the text from which the profile was read.
+/// Edits a profile and its note, and saves it over the text from which it was read.
 pub(crate) fn edited<P: Profile>(
     text: &str,
     edit: impl FnOnce(&mut Option<String>, &mut P),
@@ -14,12 +14,12 @@ pub(crate) fn edited<P: Profile>(
     (document, carried)
 }
 
-/// Checks that an edit only replaces `from` with `to` in the text, or changes nothing if neither is given.
+/// Checks that an edit replaces only `from` with `to` in the text. If both are empty, the text must not change.
 pub(crate) fn assert_edit_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edited(text, |_, _: &mut P| {});
     assert_eq!(same, Carried { text: text.to_owned(), lost: Vec::new() });
     let (_, carried) = edited(text, |_, own| edit(own));
-    // A new entry is written in the form and at the place that this program chooses.
+    // This program chooses the form and the place of a new entry.
     let squeezed = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     assert_eq!(squeezed(&carried.text), squeezed(&text.replace(from, to)));
     assert_eq!(carried.lost, Vec::<String>::new());

@@ -1,5 +1,5 @@
-//! Detection of names that occur twice in a structure. The `ron` crate silently keeps the last one, which would drop
-//! the other from a file edited by hand.
+//! Detection of names that occur twice in a structure. The `ron` crate keeps only the last one. This would silently
+//! drop an entry from a file edited by hand.
 
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -8,7 +8,7 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// A visitor for any RON document that rejects duplicate names in a structure and discards the content.
+/// A visitor that rejects duplicate names in the structures of any RON document. The content is discarded.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
     /// First duplicate name, if any.

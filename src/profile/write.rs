@@ -1,44 +1,45 @@
-//! Execution of a plan, the same for every kind of device: reads its base again, carries out the operations in order,
-//! and restores the mode of the device. A kind supplies a [`Write`]. Only `worker::commit` calls this module, because
-//! it saves the backup in between.
+//! Execution of a plan, the same for every kind of device. The base of the plan is read again, the operations are
+//! carried out in order, and the mode of the device is restored. A kind of device implements [`Write`].
+//!
+//! Only `worker::commit` uses this module, because it saves the backup in between.
 
 use std::fmt;
 use std::hash::Hash;
 
 use super::{Consent, Operation, Plan, WriteRecord};
 
-/// A device to which a plan is written, with the operations that differ between device kinds.
+/// The device-specific part of writing a plan.
 pub trait Write {
     /// Device values on which a plan is based.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
-    /// Reason why an operation failed.
+    /// Error of an operation.
     type Error: OperationError;
-    /// Record of a write.
+    /// Record of what was written.
     type Written: WriteRecord;
-    /// State in which an interrupted write left the device.
+    /// State of the device after an interrupted write.
     type EndState;
 
-    /// Reads the base of the plan again without writing, after checking that the device is the one for which the plan
-    /// was made.
+    /// Reads the base of the plan again, without writing. First, it checks that the device is the one for which the
+    /// plan was made.
     ///
     /// # Errors
-    /// The device or the values have changed.
+    /// Returns an error if the device or the values have changed.
     fn confirm(&mut self, plan: &Plan<Self::Base, Self::Op>) -> Result<(), <Self::Error as OperationError>::Device>;
 
     /// Prepares the device for the first operation.
     ///
     /// # Errors
-    /// Preparation failed, and no operation has begun.
+    /// Returns an error if the preparation failed. No operation has begun in this case.
     fn begin(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Carries out an operation, reads back the result if possible, and counts the operation.
+    /// Carries out an operation, counts it, and reads back the result if possible.
     ///
     /// # Errors
-    /// The operation failed, and subsequent operations do not begin.
+    /// Returns an error if the operation failed. No further operation begins in this case.
     fn apply(
         &mut self,
         op: &Self::Op,
@@ -46,10 +47,10 @@ pub trait Write {
         done: &mut Self::Written,
     ) -> Result<(), Self::Error>;
 
-    /// Reads back the values that are only readable after all operations.
+    /// Reads back the values that are readable only after all operations.
     ///
     /// # Errors
-    /// A value differs from the plan.
+    /// Returns an error if a value differs from the plan.
     fn finish(
         &mut self,
         _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
@@ -58,7 +59,7 @@ pub trait Write {
         Ok(())
     }
 
-    /// Returns the device to a safe state, however the operations ended.
+    /// Returns the device to a safe state after the operations, whether they succeeded or failed.
     ///
     /// # Errors
     /// Returns the reason why the operations ended early, or why the mode of the device cannot be restored.
@@ -71,11 +72,11 @@ pub trait Write {
         ended
     }
 
-    /// Returns the state in which a write that ended early has left the device.
+    /// Returns the state of the device after a write that ended early.
     fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 
-/// The reason why an operation of a plan ended early.
+/// The error of an operation that ended early.
 pub trait OperationError: fmt::Display {
     /// Error type of the device and its connection.
     type Device;
@@ -110,7 +111,7 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan with the user's consent and an unchanged base, required for every operation.
+/// A plan that the user approved and whose base is unchanged. Every operation requires one.
 pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
@@ -120,7 +121,7 @@ pub struct Confirmed<'p, Base, Op> {
 pub struct Interrupted<Op, E, Done, Left> {
     /// Changes that were written before the interruption.
     pub done: Done,
-    /// Operation that was not completed and may have begun, or `None` if all operations were carried out.
+    /// Operation that was interrupted and may have begun. `None` if all operations were completed.
     pub unfinished: Option<Op>,
     /// Cause of the interruption.
     pub cause: E,
@@ -128,13 +129,12 @@ pub struct Interrupted<Op, E, Done, Left> {
     pub end_state: Left,
 }
 
-/// [`Interrupted`] for one kind of device.
 pub(crate) type InterruptedWrite<W> =
     Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
-    /// Checks the consent and makes the device read the plan's base values again. Returns `None` if the consent was
-    /// given for another plan.
+    /// Checks the consent and reads the base of the plan again. Returns `None` if the consent was given for another
+    /// plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
         plan: &'p Plan<Base, Op>,
         consent: Consent,
@@ -148,10 +148,10 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         self.plan
     }
 
-    /// Executes the plan. Each operation is reported with its index, starting at 0, before it begins.
+    /// Executes the plan. Before each operation, `tell` is called with the operation and its index.
     ///
     /// # Errors
-    /// Returns the progress of the interrupted write.
+    /// Returns the progress and the cause if the write was interrupted.
     pub(crate) fn carry_out<W: Write<Base = Base, Op = Op>>(
         &self,
         write: &mut W,

@@ -1,23 +1,23 @@
-//! Result of a write whose operations are complete or not started, never partial.
+//! Result of a write. Each operation is either complete or not started.
 
 /// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Written {
     /// Number of operations of the plan that were carried out.
     pub ops: usize,
-    /// Number of changed values, counted as in a comparison, or otherwise one per operation.
+    /// Number of changed values, counted as in a comparison. Some operations count as one value.
     pub written: u64,
-    /// Number of values that were read back and are correct.
+    /// Number of values that were read back and found correct.
     pub verified: u64,
-    /// Number of persistent writes performed or possibly performed, including repetitions.
+    /// Number of persistent writes, including repetitions and writes that may not have taken place.
     pub write_cycles: u64,
 }
 
-/// The record of a write kept by a kind of device.
+/// A record of the progress of a write.
 pub trait WriteRecord: Default {
     /// Returns the number of operations of the plan that were carried out.
     fn ops(&self) -> usize;
-    /// Returns the number of persistent writes performed or possibly performed.
+    /// Returns the number of persistent writes, including those that may not have taken place.
     fn write_cycles(&self) -> u64;
 }
 
@@ -32,7 +32,7 @@ impl WriteRecord for Written {
 }
 
 impl Written {
-    /// Counts an operation that was carried out, and the number of values it changed.
+    /// Counts a completed operation and the number of values that it changed.
     pub fn carried_out(&mut self, changed: u64) {
         self.ops += 1;
         self.written += changed;

@@ -1,12 +1,12 @@
-//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. Parsed from `--fault`
-//! and `sim:?fault=`. Each device defines how a fault affects it.
+//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. They are parsed from
+//! `--fault` and `sim:?fault=`. Each device defines the effect of a fault.
 
 use std::str::FromStr;
 use std::time::Duration;
 
 use fastrand::Rng;
 
-/// Faults of a virtual device. The default is no faults.
+/// Faults of a virtual device. By default, there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SimulatedFaults {
     drop: f64,
@@ -17,10 +17,10 @@ pub struct SimulatedFaults {
     die_in_store: Option<u32>,
 }
 
-/// Valid values of a fault setting.
+/// Parser for the value of a fault setting.
 pub const FAULTS: FaultParser = FaultParser;
 
-/// A parser for faults. See [`FAULTS`].
+/// The type of [`FAULTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct FaultParser;
 
@@ -33,39 +33,39 @@ impl FaultParser {
         value.parse()
     }
 
-    /// Returns an empty string, because faults have no unit.
+    /// Returns an empty string. Faults have no unit.
     pub fn unit(&self) -> &'static str {
         ""
     }
 
-    /// Returns `false`, because faults are not numbers.
+    /// Returns `false`. Faults are not numbers.
     pub fn is_decimal(&self) -> bool {
         false
     }
 }
 
-/// The reason why a fault specification is invalid.
+/// The reason why a list of faults is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
-    /// The fault is unknown or its value is missing.
+    /// The fault is unknown, or its value is missing.
     #[error(
         "`{item}` is not a fault; valid faults are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
          die-in-store:N, separated by commas"
     )]
     Unknown {
-        /// Fault as written.
+        /// Fault as typed.
         item: String,
     },
     /// The value of drop, flip or garbage is not a probability.
     #[error("fault `{item}`: the probability must be a number from 0 to 1")]
     Probability {
-        /// Fault as written.
+        /// Fault as typed.
         item: String,
     },
     /// The value of delay, silent-after or die-in-store is out of range.
     #[error("fault `{item}`: the value must be a whole number from {min} to {max}")]
     Number {
-        /// Fault as written.
+        /// Fault as typed.
         item: String,
         /// Minimum value.
         min: u32,
@@ -74,12 +74,12 @@ pub enum FaultError {
     },
 }
 
-/// The result of passing a byte over a noisy line.
+/// The result of sending a byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ByteTransfer {
     /// Noise byte inserted before the byte, if any.
     pub inserted: Option<u8>,
-    /// The transmitted byte, or `None` if it was lost.
+    /// The byte that arrived. `None` if it was lost.
     pub carried: Option<Carried>,
 }
 
@@ -88,7 +88,7 @@ pub struct ByteTransfer {
 pub struct Carried {
     /// Data bits.
     pub byte: u8,
-    /// Whether one bit was inverted, so that the parity is wrong.
+    /// Whether one bit was inverted in transit. The parity is then wrong.
     pub flipped: bool,
 }
 
@@ -100,12 +100,12 @@ impl SimulatedFaults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device neither replies nor acts.
+    /// Returns the number of frames after which the device is dead. It then neither replies nor acts.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
 
-    /// Returns the number of the store operation, starting at 1, during which power is lost.
+    /// Returns the number of the store operation during which power is lost. The first one is 1.
     pub fn die_in_store(&self) -> Option<u32> {
         self.die_in_store
     }
@@ -122,15 +122,15 @@ impl SimulatedFaults {
 }
 
 fn happens(probability: f64, rng: &mut Rng) -> bool {
-    // f64() is below 1, so that a probability of 1 always happens and 0 never does.
+    // f64() is below 1, so probability 1 always happens and 0 never does.
     rng.f64() < probability
 }
 
 impl FromStr for SimulatedFaults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. If an item is given twice, the last one counts, and an empty string
-    /// means no fault.
+    /// Parses a list such as `drop:0.01,delay:5`. The last of several equal items counts. An empty string means no
+    /// fault.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = SimulatedFaults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

@@ -1,4 +1,4 @@
-//! A half-duplex line between the UART of the host and virtual devices: characters are transmitted one after another,
+//! A half-duplex line between the UART of the host and virtual devices. Characters are transmitted one after another,
 //! some of them damaged, and received in the order of time. Each device defines which characters it receives and what
 //! they mean.
 
@@ -10,7 +10,7 @@ use fastrand::Rng;
 use super::{ByteDevice, SimulatedFaults};
 use crate::units::{CharacterFormat, Moment};
 
-/// Items in transit, ordered by time and, for equal times, by insertion.
+/// Items in transit, ordered by time. Items with equal times keep the order of insertion.
 #[derive(Clone, Debug)]
 pub(crate) struct TransitQueue<T>(VecDeque<(Moment, T)>);
 
@@ -48,24 +48,24 @@ impl<T> TransitQueue<T> {
     }
 }
 
-/// A character on the line, from its start bit to the end of its stop bit.
+/// A character on the line. It lasts from its start bit to the end of its stop bit.
 #[derive(Clone, Copy)]
 pub(crate) struct SerialCharacter {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
-    /// Whether one bit was inverted in transit, so that a parity bit is wrong.
+    /// Whether one bit was inverted in transit. A parity bit is then wrong.
     pub(crate) flipped: bool,
 }
 
 pub(crate) struct SentCharacters {
     pub(crate) heard: Vec<SerialCharacter>,
-    /// Characters as sent. An echoing converter returns them without line noise.
+    /// Characters as sent, without line noise. An echoing converter returns them.
     pub(crate) own: Vec<SerialCharacter>,
     pub(crate) end: Moment,
 }
 
-/// Components common to all lines, created with a device's settings.
+/// State common to all lines, created from the settings of a device.
 #[derive(Clone)]
 pub(crate) struct Wires {
     pub(crate) faults: SimulatedFaults,
@@ -73,9 +73,8 @@ pub(crate) struct Wires {
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     host_done: Moment,
-    /// Numbers of bytes that the host's UART has yet to send, each with the time at which the last byte is sent.
+    /// Numbers of bytes that the host's UART still has to send, each with the time at which the last byte is sent.
     sending: VecDeque<(Moment, usize)>,
-    /// Bytes that have arrived at the host.
     pub(crate) inbox: Vec<u8>,
 }
 
@@ -93,10 +92,10 @@ impl Wires {
     }
 
     /// Number of bytes that a UART buffers, as in a device server. Further bytes are lost, but no request of the
-    /// simulated protocols is longer, and sending 512 bytes at 9600 bit/s takes half a second.
+    /// simulated protocols is longer. Sending 512 bytes takes half a second at 9600 bit/s.
     const BUFFER: usize = 512;
 
-    /// Returns how many more bytes the host's UART can accept.
+    /// Returns the number of further bytes that the host's UART can accept.
     fn room(&mut self) -> usize {
         let now = self.now;
         while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
@@ -123,9 +122,9 @@ impl Wires {
     }
 }
 
-/// A line with its devices. Implementing this trait makes the line a [`ByteDevice`].
+/// A line with its devices. A line that implements this trait is a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// Event on the line. Of simultaneous events, the smallest comes first.
+    /// Event on the line. The smallest of simultaneous events comes first.
     type Event;
 
     fn wires(&self) -> &Wires;
@@ -136,7 +135,7 @@ pub(crate) trait VirtualLine: Send {
 
     fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
-    /// Transmits bytes of the host, starting at `start`, and returns the time at which the last byte has been sent.
+    /// Transmits bytes of the host from `start` on. Returns the time at which the last byte has been sent.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.

@@ -1,8 +1,8 @@
-//! Virtual devices: the simulated side of a connection, byte by byte or as voltages, with injected faults.
-//! Deterministic: the same seed and the same calls at the same moments yield the same bytes.
+//! Virtual devices: the simulated side of a connection, byte by byte or as voltages, with injected faults. They are
+//! deterministic: the same seed and the same calls at the same moments yield the same bytes.
 //!
-//! This module uses no clock, thread, socket or port (time is an argument), and neither procedures nor `link/`; only
-//! the tables of `protocol/` are shared with the host side.
+//! This module uses no clock, thread, socket or port. Time is an argument. It uses neither procedures nor `link/`, and
+//! shares only the tables of `protocol/` with the host side.
 
 #![warn(missing_docs)]
 
@@ -20,37 +20,37 @@ use std::net::SocketAddrV4;
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A virtual device on a serial line, driven by its owner, such as a link in this process, a pseudo-terminal or a TCP
-/// server. Moments never run backwards; an earlier moment counts as the latest known.
+/// A virtual device on a serial line. Its owner drives it, for example a link in this process, a pseudo-terminal or a
+/// TCP server. Moments never run backwards: an earlier moment counts as the latest known.
 pub trait ByteDevice: Send {
-    /// Receives bytes that the host has passed to its UART at `now`. They are transmitted at one character time each,
-    /// after any bytes still in transmission.
+    /// Receives bytes that the host has passed to its UART at `now`. They follow any bytes still in transmission and
+    /// take one character time each.
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
 
-    /// Returns the bytes that have completely arrived at the host by `now` and have not been fetched yet.
+    /// Returns the bytes that have completely arrived at the host by `now`. Each byte is returned once.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
-    /// Returns the time at which to call [`poll`](Self::poll) next, or `None` if nothing is scheduled.
+    /// Returns the time at which to call [`poll`](Self::poll) next. Returns `None` if nothing is scheduled.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// Sets the character format of the host's UART. If the format differs from the setting of the device, bytes arrive
-    /// garbled in both directions and no valid frame results. A device without a serial line has no such setting.
+    /// Sets the character format of the host's UART. If the format differs from that of the device, bytes arrive
+    /// garbled in both directions, and no frame is valid. A device without a serial line ignores the format.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
-    /// Opens or reopens the connection of the host. Bytes that arrived before are discarded, and a device that has lost
-    /// power is powered again.
+    /// Opens or reopens the connection of the host. Earlier bytes are discarded, and a device without power is powered
+    /// again.
     fn connect(&mut self, now: Moment);
 }
 
-/// A virtual device that also receives datagrams. Moments behave as for a [`ByteDevice`].
+/// A virtual device that also receives datagrams. Moments are those of a [`ByteDevice`].
 pub trait DatagramDevice: Send {
     /// Handles a packet received at `now`.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
 
-    /// Returns the packets sent by `now` that have not been fetched yet, with their destinations.
+    /// Returns the packets sent by `now`, with their destinations. Each packet is returned once.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
-    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next, or `None` if nothing is
+    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next. Returns `None` if nothing is
     /// scheduled.
     fn poll_datagrams_at(&self) -> Option<Moment>;
 }

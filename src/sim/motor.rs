@@ -1,5 +1,5 @@
-//! The motor of a virtual shaft as a shared handle. It has no clock: a change takes effect at the next request to the
-//! encoder.
+//! The motor of a virtual shaft as a shared handle. It has no clock, so a change takes effect at the next request to
+//! the encoder.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,7 +16,8 @@ impl Motor {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 
-    /// Returns the speed in revolutions per minute. Above 0 the motor turns clockwise, and the position increases.
+    /// Returns the speed in revolutions per minute. At a positive speed, the motor turns clockwise and the position
+    /// increases.
     pub fn rpm(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }

@@ -1,5 +1,5 @@
 //! Settings of a virtual device in the query of a `sim:` link: keys, values, allowed values and errors. Each device
-//! defines its keys.
+//! defines its own keys.
 
 use super::FaultError;
 use crate::expected::AllowedValues;
@@ -13,7 +13,7 @@ pub enum ConfigError {
     Key {
         /// Device to which the settings belong.
         device: VirtualDevice,
-        /// Key as written.
+        /// Key as typed.
         key: String,
         /// Known keys.
         known: String,
@@ -23,7 +23,7 @@ pub enum ConfigError {
     Value {
         /// Name of the key.
         key: String,
-        /// Value as written.
+        /// Value as typed.
         value: String,
         /// Allowed values.
         allowed: AllowedValues,
@@ -51,7 +51,7 @@ pub enum VirtualDevice {
 }
 
 impl ConfigError {
-    /// Creates the error for an unknown setting of `device`. `known` lists the existing keys.
+    /// Creates the error for an unknown setting of `device`. `known` are the existing keys.
     pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
@@ -63,7 +63,7 @@ impl From<Refused> for ConfigError {
     }
 }
 
-/// Parses the percent-decoded settings of `device`. If a key occurs twice, its last value counts.
+/// Parses the percent-decoded settings of `device`. The last value of a repeated key counts.
 ///
 /// # Errors
 /// Returns an error that names the key and the allowed values.
@@ -80,13 +80,13 @@ pub fn read<P: Parameters<Error = ConfigError>>(
     Ok(own)
 }
 
-/// Seed of the noise, which can be any number.
+/// Seed of the noise. Any number is valid.
 pub const SEED: Checked<u64> = Checked(AllowedValues::Whole, number);
 
 /// Speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
-/// The values of a speed setting. See [`RPM`].
+/// The type of [`RPM`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rpm;
 

@@ -1,5 +1,5 @@
-//! Backups: the content of a device before a write, one file each, sorted by device and serial number. Backups are
-//! never overwritten or removed. The caller supplies the text, which must not contain access codes.
+//! Backups of devices, taken before a write. Each backup is a file, sorted by device and serial number, and is never
+//! overwritten or removed. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, write_new};
 
-/// Time format in file names: UTC without colons, which Windows forbids.
+/// Time format in file names. It is UTC without colons, which Windows forbids.
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
@@ -34,11 +34,11 @@ impl Backups {
         Backups(folder)
     }
 
-    /// Writes a backup, `<device>/<serial number>/2026-11-21T12-14-47Z.ron`, and returns its path. If a backup from
-    /// the same second exists, `-2`, `-3` … is added to the time.
+    /// Writes a backup to `<device>/<serial number>/2026-11-21T12-14-47Z.ron` and returns its path. If there is a
+    /// backup of the same second, `-2`, `-3` and so on is added to the time.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be created or the file cannot be written; no file is left behind.
+    /// Returns an error if the folder cannot be created or the file cannot be written. No file is left behind.
     pub fn save(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
         let folder = self.folder_of(device, serial_number);
         create_folder(&folder)?;
@@ -53,7 +53,7 @@ impl Backups {
         Err(FileErrorKind::Exists.of(FileOperation::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
     }
 
-    /// Returns the backups of a device, newest first. Files whose names do not match the backup format are ignored.
+    /// Returns the backups of a device, newest first. Other files in the folder are ignored.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
@@ -78,7 +78,7 @@ impl Backups {
     }
 
     fn folder_of(&self, device: &str, serial_number: &str) -> PathBuf {
-        // `device` is one of the program's own words, but a path out of the folder is invalid from any source.
+        // `device` is a keyword of this program. It is escaped as well, which prevents any path out of the folder.
         self.0.join(safe_name(device, Case::Kept)).join(safe_name(serial_number, Case::Told))
     }
 }
@@ -90,7 +90,7 @@ fn file_name(time: &str, number: u32) -> String {
     }
 }
 
-/// Parses the time and number in a backup's file name. Returns `None` for any name that [`file_name`] does not create.
+/// Parses the time and number in the name of a backup. Returns `None` for names that [`file_name`] does not create.
 fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
     let name = path.file_name()?.to_str()?;
     let (time, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.split_once('Z')?;

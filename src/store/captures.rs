@@ -19,13 +19,13 @@ pub enum ReadCaptureError {
     Cancelled,
 }
 
-/// Callback that receives the number of bytes read and the total. The total is 0 for a file without a length (a pipe).
+/// Callback that receives the number of bytes read and the total. The total is 0 for a pipe, which has no length.
 pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 
 /// Number of bytes read at a time. Progress is reported and cancellation is checked after each read.
 const PIECE: usize = 1 << 20;
 
-/// Reads a capture and returns how its table was interpreted.
+/// Reads a capture. Also returns the layout in which its table was read.
 ///
 /// # Errors
 /// Returns a [`ReadCaptureError`] if the file is missing or is not a capture, or if `cancel` was set.
@@ -36,7 +36,7 @@ pub fn read_capture(
     progress: OnProgress<'_>,
 ) -> Result<(Layout, Capture), ReadCaptureError> {
     let failed = |error: io::Error| {
-        // Windows calls it "permission denied".
+        // Windows reports a folder as "permission denied".
         let problem = if path.is_dir() { FileErrorKind::IsFolder } else { error.into() };
         problem.of(FileOperation::Read, path)
     };
@@ -50,7 +50,7 @@ pub fn read_capture(
             return Err(ReadCaptureError::Cancelled);
         }
         piece.clear();
-        // A pipe returns the available bytes; the first piece has to contain the head.
+        // A single read from a pipe may return few bytes, but the first piece has to contain the head.
         let read = (&mut file).take(PIECE.max(HEAD) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,
@@ -69,8 +69,8 @@ pub fn read_capture(
     }
 }
 
-/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. Nothing is read from a pipe, because its
-/// data can be read only once.
+/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. A pipe yields no bytes, because its data
+/// can be read only once.
 ///
 /// # Errors
 /// Returns a [`FileError`] if the file cannot be read.

@@ -1,5 +1,5 @@
-//! User-defined device descriptions: the files of a folder, read independently, so an unreadable file does not affect
-//! the others.
+//! User-defined device descriptions. The files of a folder are read independently, so an unreadable file does not
+//! affect the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::read_file;
 
-/// Returns the paths and contents of a folder's files with the given extension, ordered by name, and the errors of
-/// unreadable files. A missing folder yields no files.
+/// Reads the files with the given extension in a folder. Returns their paths and contents, ordered by name, and the
+/// errors of unreadable files. A missing folder yields no files.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list(folder, ending) {

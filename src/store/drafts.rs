@@ -1,5 +1,5 @@
-//! Drafts: edits that have not been written to a device, kept so that neither a crash nor a pulled cable loses them.
-//! One file each; the caller supplies the text, which must not contain access codes.
+//! Drafts, which preserve edits that have not been written to a device after a crash or a pulled cable. Each draft is a
+//! file. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::PathBuf;
@@ -11,8 +11,8 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// Exclusive right to keep a draft, held until the value is dropped. The system releases the claim when the program
-/// ends.
+/// The exclusive right to save a draft, held until the value is dropped. The system also releases the claim when the
+/// program ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: FileLock,
@@ -26,11 +26,10 @@ impl Drafts {
         Drafts(folder)
     }
 
-    /// Writes a draft, `<device>/<key>.ron`, replacing the previous one.
+    /// Writes a draft to `<device>/<key>.ron`. An earlier draft is replaced.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be created or the file cannot be written; the previous draft is then
-    /// preserved.
+    /// Returns an error if the folder cannot be created or the file cannot be written. The earlier draft then remains.
     pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
         create_folder(&self.folder_of(device))?;
         write_atomically(&self.path_of(device, key), text.as_bytes())
@@ -52,12 +51,12 @@ impl Drafts {
         fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
     }
 
-    /// Claims a draft, or returns `None` if the draft is already claimed by this or another program.
+    /// Claims a draft. Returns `None` if this or another program has already claimed it.
     ///
     /// # Errors
     /// Returns an error if the lock file cannot be created.
     pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
-        // Outside the folder of the drafts, so that listing those finds nothing else.
+        // The locks have a separate folder, because every file in the folder of drafts is taken for a draft.
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));

@@ -99,8 +99,7 @@ impl FileErrorKind {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Returns the problem for a failure to create a new file. The new file cannot be missing, so a missing folder is
-    /// reported instead.
+    /// Converts an error that occurred while a file was created. Since the file is new, only its folder can be missing.
     pub(super) fn from_create_error(error: io::Error) -> Self {
         match error.into() {
             FileErrorKind::NotFound => FileErrorKind::NoFolder,

@@ -1,4 +1,4 @@
-//! Locks between programs that use the same files. The system releases the locks of a program that ends for any reason.
+//! Locks between programs that use the same files. When a program ends for any reason, the system releases its locks.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::files::{create_folder, read_text, write_atomically};
 
-/// Maximum time to wait for another program that is reading and writing a file.
+/// Maximum time to wait for another program that is using the file.
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
@@ -20,15 +20,14 @@ pub(super) struct FileLock {
 }
 
 impl FileLock {
-    /// Acquires a lock file, creating it if missing. Returns `None` if the lock is held by this or another
-    /// program.
+    /// Acquires a lock file, and creates it if missing. Returns `None` if this or another program holds the lock.
     pub(super) fn try_lock_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Write, path);
         let file = open(path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(FileLock { _locked: file })),
             Err(TryLockError::WouldBlock) => Ok(None),
-            // A disk without support for locks.
+            // The disk does not support locks.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
                 Ok(Some(FileLock { _locked: file }))
             }
@@ -39,18 +38,19 @@ impl FileLock {
 
 fn open(path: &Path) -> io::Result<File> {
     match File::options().create(true).truncate(false).write(true).open(path) {
-        // Created by another user: a lock needs no right to write.
+        // The file was created by another user. A lock does not require permission to write.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path),
         result => result,
     }
 }
 
-/// Replaces a file's text with the result of `make`, which receives the current text or the error of reading it; `None`
-/// leaves the file unchanged. No other program that uses this function can write in between. The text is written as by
-/// [`write_atomically`], in a folder that is created if missing.
+/// Replaces the text of a file with the result of `make`, while other programs that use this function wait. The folder
+/// is created if missing, and the text is written with [`write_atomically`].
+///
+/// `make` receives the current text, or the error of reading it. It returns `None` to leave the file unchanged.
 ///
 /// # Errors
-/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, and the errors of [`write_atomically`] and `make`.
+/// Returns [`FileErrorKind::InUse`] if another program keeps the lock, or an error of [`write_atomically`] or `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
@@ -70,7 +70,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_path(path);
     let began = Instant::now();
     loop {
-        // The message names the file that the user knows, not the lock file.
+        // The error names the user's file instead of the lock file.
         let tried = FileLock::try_lock_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),

@@ -1,17 +1,18 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// Handling of letter case in file names, which Windows and macOS do not distinguish by case.
+/// How file names represent letter case, which Windows and macOS ignore.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
-    /// Case is not recorded, because no two names differ only in case.
+    /// Case is not encoded, because no two names differ only in case.
     Kept,
-    /// Case is encoded in the name, because names may differ only in case.
+    /// Case is encoded, because names may differ only in case.
     Told,
 }
 
-/// Returns a file or folder name without extension for any text. The name is valid on every system and differs for
-/// different texts: letters, digits, `.`, `_` and `-` are unchanged, and every other byte becomes `%XX`. With
-/// [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each letter.
+/// Returns a file or folder name without extension for any text. The name is valid on every system, and different texts
+/// have different names. Letters, digits, `.`, `_` and `-` are unchanged, and every other byte becomes `%XX`.
+///
+/// With [`Case::Told`], a name with lower-case letters ends with `%` and an `l` or a `u` for each letter.
 pub(super) fn safe_name(text: &str, case: Case) -> String {
     if text.is_empty() {
         return "%none".to_owned();
@@ -21,7 +22,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     let mut name = String::new();
     let mut cases = String::new();
     for (at, byte) in text.bytes().enumerate() {
-        // A leading dot hides the folder, a final one is lost on Windows, and `.` and `..` are not valid names.
+        // A leading dot hides the folder, and Windows drops a final one. `.` and `..` are not valid names.
         let plain = match byte {
             b'.' => at != 0 && at != last,
             b'_' | b'-' => true,

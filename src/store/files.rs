@@ -1,5 +1,5 @@
-//! Reading and writing of whole files. A file contains either the old or the new content, never a part of it: the
-//! content is written to a temporary file in the same folder, flushed and renamed.
+//! Reading and writing of whole files. New content is written to a temporary file in the same folder, flushed and
+//! renamed. A file therefore contains either the old or the new content, never a part of it.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 use super::file_error::{FileError, FileErrorKind, FileOperation};
 use super::leftovers;
 
-/// Maximum number of bytes read by [`read_text`], 16 MiB. The largest profile is a hundredth of that size.
+/// Maximum number of bytes that [`read_text`] accepts, 16 MiB. The largest profile is a hundredth of that size.
 pub const MAX_TEXT: u64 = 16 << 20;
 
 /// Byte order mark that some editors write at the beginning of a file.
@@ -25,8 +25,8 @@ const MARK: &str = "\u{FEFF}";
 /// (`/dev/stdout`) has no content to protect and is written to directly.
 ///
 /// # Errors
-/// Returns an error, with the old content unchanged, if the folder is missing, the target is a folder or
-/// write-protected, or the disk is full.
+/// Returns an error if the folder is missing, the target is a folder or write-protected, or the disk is full. The old
+/// content is then unchanged.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content)
@@ -35,7 +35,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_with(path, |file| file.write_all(content))
 }
 
-/// Writes a text as [`write_atomically`] does, but preserves an existing byte order mark.
+/// Writes a text like [`write_atomically`], but preserves an existing byte order mark.
 ///
 /// # Errors
 /// Returns the errors of [`write_atomically`].
@@ -46,17 +46,17 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file as [`write_atomically`] does, with content that `write` produces in parts. If `write` fails, the old
-/// file remains.
+/// Writes a file like [`write_atomically`], with content that `write` produces in parts. If `write` fails, the old file
+/// remains.
 ///
 /// # Errors
-/// Returns the errors of [`write_atomically`] and of `write`; a device or a pipe is refused.
+/// Returns the errors of [`write_atomically`] and of `write`, and an error for a device or a pipe.
 pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Ok(target) if !target.is_file() => return Err(failed(FileErrorKind::NotAFile)),
-        // Renaming would ignore the protection of the file.
+        // Renaming would ignore the write protection of the file.
         Ok(target) if target.permissions().readonly() => return Err(failed(FileErrorKind::WriteProtected)),
         Ok(target) => Some(target.permissions()),
         Err(_) => None,
@@ -70,8 +70,8 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file as [`write_atomically`] does, but never replaces an existing file, even if another program writes
-/// at the same time.
+/// Writes a new file like [`write_atomically`], but never replaces an existing file. This also holds if another program
+/// writes at the same time.
 ///
 /// # Errors
 /// Returns [`FileErrorKind::Exists`] if the file exists.
@@ -86,13 +86,13 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
 
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
-        // A folder that exists is no error: this is a file, or a link that leads nowhere.
+        // An existing folder is not an error, so this is a file or a broken link.
         FileErrorKind::Exists => FileErrorKind::NotFolder.of(FileOperation::CreateFolder, path),
         problem => problem.of(FileOperation::CreateFolder, path),
     })
 }
 
-/// Writes one of the program's own files as [`write_atomically`] does, in a folder that is created if missing.
+/// Writes a file of the program like [`write_atomically`]. The folder is created if missing.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be created, and the errors of [`write_atomically`].
@@ -103,7 +103,7 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
-/// Reads a text as [`read_text`] does, but only from a regular file, because reading a pipe could block forever.
+/// Reads a text like [`read_text`], but only from a regular file. Reading from a pipe could block forever.
 ///
 /// # Errors
 /// Returns the errors of [`read_text`], and an error for a pipe or a device.
@@ -114,15 +114,15 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes and removes the byte order mark that some editors write.
+/// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, which some editors write, is removed.
 ///
 /// # Errors
-/// Returns an error if the file is missing, a folder, too large or not UTF-8.
+/// Returns an error if the file is missing, is a folder, is too large or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     let failed = |problem: FileErrorKind| problem.of(FileOperation::Read, path);
     let bytes = match read_at_most(path, MAX_TEXT + 1) {
         Ok(bytes) => bytes,
-        // Windows calls it "permission denied".
+        // Windows reports a folder as "permission denied".
         Err(_) if path.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
         Err(error) => return Err(failed(error.into())),
     };
@@ -140,8 +140,8 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes directly to a file. A pipe without a reader would block forever, so the write and its thread are abandoned
-/// after a time limit.
+/// Writes directly to a file. A pipe without a reader would block forever, so the write is abandoned after a time
+/// limit.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const PATIENCE: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -154,17 +154,17 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
-/// Returns the file at the end of a chain of links. The file need not exist.
+/// Follows a chain of links and returns the file at its end. The file need not exist.
 fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     /// Maximum number of links to follow, as in Linux.
     const MOST: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST {
-        // A target that cannot be read as a link is not one; other errors occur again when it is written.
+        // If the target cannot be read as a link, it is not a link. Any other error occurs again when it is written.
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    // Links in a ring: the system reports its own error for that.
+    // The links form a ring, for which the system reports an error.
     fs::metadata(path).map(|_| target)
 }
 
@@ -172,12 +172,12 @@ fn folder_of(path: &Path) -> Result<&Path, FileErrorKind> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
         (Some(folder), Some(_)) => Ok(folder),
-        // "/" and "..".
+        // The path has no file name, as in "/" and "..".
         _ => Err(FileErrorKind::IsFolder),
     }
 }
 
-/// Writes and flushes a temporary file in the target's folder. The file is removed when dropped.
+/// Writes a temporary file in the target's folder and flushes it. The file is removed when the value is dropped.
 fn write_temp_file(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -205,7 +205,7 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// Gives a new file the usual permissions, subject to the umask. Without this, a temporary file is private to its
+    /// Gives a new file the usual permissions, subject to the umask. Otherwise, a temporary file is private to its
     /// owner.
     pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
@@ -214,7 +214,7 @@ mod platform {
     pub(super) fn flush_folder(folder: &Path) -> io::Result<()> {
         use io::ErrorKind as Kind;
         match File::open(folder).and_then(|folder| folder.sync_all()) {
-            // Network disks that cannot flush a folder, folders that may be written but not read: the file is in place.
+            // The file is already in place. Some network disks cannot flush folders, and some folders may not be read.
             Err(error) if matches!(error.kind(), Kind::InvalidInput | Kind::Unsupported | Kind::PermissionDenied) => {
                 Ok(())
             }

@@ -1,4 +1,5 @@
-//! The folders to which relative paths refer: one rule for the command line, and for typed and dropped paths.
+//! The folders from which relative paths start. The same rule applies to the command line and to typed and dropped
+//! paths.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
@@ -12,7 +13,7 @@ pub struct BaseFolders {
 }
 
 impl BaseFolders {
-    /// Returns the working directory in which the program was started and the user's home folder.
+    /// Returns the working directory of the program and the user's home folder.
     pub fn for_current_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
         BaseFolders { working: std::env::current_dir().ok(), home }
@@ -22,7 +23,7 @@ impl BaseFolders {
         BaseFolders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
-    /// Returns the folder that relative paths start from, or `None` if the system does not report it.
+    /// Returns the folder from which relative paths start, or `None` if the system does not report it.
     pub fn working_folder(&self) -> Option<&Path> {
         self.working.as_deref()
     }
@@ -32,14 +33,14 @@ impl BaseFolders {
         self.home.as_deref()
     }
 
-    /// Returns an absolute path to the given file. A leading `~` is the user's home folder, and other relative paths
-    /// start from the folder in which the program was started.
+    /// Returns the absolute path of a file. A leading `~` stands for the user's home folder. Other relative paths start
+    /// from the working folder.
     pub fn absolute_path(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
         match (&self.home, &self.working) {
             (Some(home), _) if from_home => home.join(parts.as_path()),
-            // An empty path names no file and remains empty.
+            // An empty path remains empty.
             (_, Some(working)) if !path.as_os_str().is_empty() => working.join(path.strip_prefix(".").unwrap_or(path)),
             _ => path.to_owned(),
         }

@@ -1,25 +1,25 @@
-//! Temporary files that a program left behind because it was killed while it wrote.
+//! Temporary files of a program that was killed during a write.
 
 use std::fs::{self, DirEntry};
 use std::path::Path;
 use std::time::Duration;
 
-/// Beginning and end of the name of every temporary file.
+/// Beginning and end of the names of temporary files.
 pub(super) const PREFIX: &str = ".encoder-studio-";
 pub(super) const SUFFIX: &str = ".tmp";
 
-/// Age from which a temporary file is considered left behind. A write takes seconds.
+/// Age from which a temporary file is considered stale. A write takes seconds.
 const LEFT: Duration = Duration::from_secs(3600);
 
-/// Levels of folders in the program's own data: kind of device, serial number.
+/// Number of folder levels in the program's data, as in `backups/biss/77`.
 const DEPTH: usize = 3;
 
-/// Removes the files left behind in one folder. Files that cannot be removed do no harm and stay.
+/// Removes stale temporary files from one folder. Files that cannot be removed remain.
 pub(super) fn remove_in_folder(folder: &Path) {
     entries(folder).filter(is_stale_temporary).for_each(remove);
 }
 
-/// Removes the files left behind in a folder of the program and the folders below.
+/// Removes stale temporary files from a folder of the program and its subfolders.
 pub(super) fn remove_recursively(folder: &Path) {
     remove_to_depth(folder, DEPTH);
 }

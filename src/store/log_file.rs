@@ -1,6 +1,6 @@
-//! The log file: the content of the log panel, kept after the window closes. A separate thread writes it, so a hanging
-//! disk blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written when the
-//! disk responds again. A file that has grown large is renamed, and a new one is started.
+//! The log file, which keeps the content of the log panel after the window closes. A separate thread writes the file,
+//! so a hanging disk blocks no other thread. Lines that do not fit into the queue are dropped and counted, and the
+//! count is written when the disk responds again. A large file is renamed, and a new one is started.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -22,10 +22,10 @@ const LARGE: u64 = 1 << 20;
 /// Maximum number of lines waiting to be written.
 const QUEUE: usize = 1024;
 
-/// Maximum time that the program waits for the last lines when it ends.
+/// Maximum time to wait for the last lines when the program ends.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A handle that accepts lines for the log file without ever blocking. All clones write to the same file.
+/// A handle that accepts lines for the log file without blocking. All clones write to the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
     queue: Sender<Order>,
@@ -35,16 +35,16 @@ pub struct LogFile {
 #[derive(Debug)]
 enum Order {
     Line(Vec<u8>),
-    /// Requests a report once everything queued before it has been written.
+    /// Requests a confirmation after all earlier lines have been written.
     Flush(Sender<()>),
 }
 
 impl LogFile {
-    /// Starts writing this program's messages (from level "info") and its libraries' warnings to the given file,
-    /// creating the file and its folder if missing. If the file cannot be opened, the program runs without a log file.
+    /// Starts a log file with the program's messages from level "info" and the warnings of its libraries. The file and
+    /// its folder are created if missing. If the file cannot be opened, the program runs without a log file.
     ///
     /// # Errors
-    /// Returns an error if no thread can be started.
+    /// Returns an error if the thread cannot be started.
     pub fn begin(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
         let log = Self::spawn_writer(move || RotatingFile::open(&own, LARGE), QUEUE)?;
@@ -61,7 +61,7 @@ impl LogFile {
         let dropped = Arc::new(AtomicU64::new(0));
         let counted = dropped.clone();
         thread::Builder::new().name("log".to_owned()).spawn(move || {
-            // Opening may wait for the disk, too.
+            // Opening may also wait for the disk.
             if let Ok(file) = open() {
                 write_all(file, &orders, &counted);
             }
@@ -75,7 +75,7 @@ impl LogFile {
         }
     }
 
-    /// Waits until everything has been written to the file. Gives up if the disk hangs.
+    /// Waits until everything has been written to the file, or until a time limit if the disk hangs.
     pub fn wait(&self) {
         let (done, waited) = bounded(1);
         if self.queue.send_timeout(Order::Flush(done), PATIENCE).is_ok() {
@@ -88,7 +88,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
     for order in orders {
         match order {
             Order::Line(line) => {
-                // Lines that the disk refuses are missing until it accepts some again.
+                // Lines that cannot be written are counted as missing.
                 if file.write_all(&line).is_err() {
                     dropped.fetch_add(1, Ordering::Relaxed);
                     continue;
@@ -118,7 +118,7 @@ impl Write for LogFile {
     }
 }
 
-/// A file that is started over once it has grown large.
+/// A log file that is renamed and replaced when it has grown large.
 struct RotatingFile {
     path: PathBuf,
     large: u64,
@@ -147,7 +147,8 @@ impl Write for RotatingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
         if full && self.start_new_logbook().is_err() {
-            // On some systems renaming fails while another window has it open: it grows until the next try.
+            // On some systems, renaming fails while another window has the file open. The file then grows until the
+            // next attempt.
             self.length = 0;
         }
         let written = self.file.write(bytes)?;

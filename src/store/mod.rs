@@ -1,5 +1,5 @@
-//! Folders of the program: backups, drafts, the logbook and the log (data), settings and user-defined device tables
-//! (configuration). Folders are created when the first file is written, and access codes are never stored.
+//! The files of the program. Backups, drafts, the logbook and the log are data. Settings and user-defined device tables
+//! are configuration. Folders are created when the first file is written. Access codes are never stored.
 
 mod backups;
 mod captures;
@@ -46,19 +46,19 @@ pub enum StoreError {
     NoHome,
     #[error(transparent)]
     File(#[from] FileError),
-    /// One of the user's device files is invalid. The error comes from its kind of device.
+    /// A device file of the user is invalid. The kind of device supplies the error.
     #[error("{0}")]
     Refused(Cause),
 }
 
 impl Store {
-    /// Opens the store in the system's folders for this user and program, creating them if missing.
+    /// Returns the store in the system's folders for this user and program.
     ///
     /// # Errors
     /// Returns [`StoreError::NoHome`] if the system does not report such folders.
     pub fn for_user() -> Result<Self, StoreError> {
         let folders = ProjectDirs::from("", "", "encoder-studio")
-            // With a relative home, backups would depend on the folder in which the program is started.
+            // If the home folder were relative, the location of backups would depend on the working directory.
             .filter(|folders| folders.data_dir().is_absolute() && folders.config_dir().is_absolute())
             .ok_or(StoreError::NoHome)?;
         Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
@@ -69,7 +69,7 @@ impl Store {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
-    /// Removes temporary files that were left behind in the program's folders by a program that was killed.
+    /// Removes temporary files that a killed program has left in the program's folders.
     pub fn remove_leftovers(&self) {
         leftovers::remove_recursively(&self.data);
         leftovers::remove_recursively(&self.config);
@@ -79,38 +79,38 @@ impl Store {
         Backups::in_folder(self.data.join("backups"))
     }
 
-    /// Returns the drafts, which are edits that have not been written yet.
+    /// Returns the drafts, which are edits that have not been written to a device.
     pub fn drafts(&self) -> Drafts {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Returns the device modes to restore after a job has changed them, one text per device.
+    /// Returns the device modes that must be restored after a job, one text per device.
     pub fn excursions(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }
 
-    /// Returns the path of the program's settings. The file need not exist.
+    /// Returns the path of the settings file. The file need not exist.
     pub fn settings_path(&self) -> PathBuf {
         self.config.join("settings.ron")
     }
 
-    /// Returns the path of the program's own log. The file need not exist.
+    /// Returns the path of the log file. The file need not exist.
     pub fn log_path(&self) -> PathBuf {
         self.data.join("encoder-studio.log")
     }
 
-    /// Returns the path to pass to [`Logbook::open`].
+    /// Returns the path of the logbook, for use with [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
     }
 
-    /// Returns the path of the file in which a user may describe devices of the given kind. The file need not exist.
+    /// Returns the path of the file with user-defined devices of a kind. The file need not exist.
     pub fn device_file(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind).with_extension("ron")
     }
 
-    /// Returns the path of the folder in which a user may describe devices of the given kind, one per `*.ron` file. The
-    /// folder need not exist.
+    /// Returns the path of the folder with user-defined devices of a kind, one per `*.ron` file. The folder need not
+    /// exist.
     pub fn device_folder(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind)
     }

@@ -119,7 +119,6 @@ fn statuses_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Formats the time of a logbook entry in the local time zone.
 pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
 }

@@ -7,14 +7,14 @@ use super::label_column::with_label_column;
 use super::{Theme, icons};
 use crate::app::Text;
 
-/// Window height in points below which folding cards are folded.
+/// Window height in points below which folding cards are closed at first.
 const LOW: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, theme, title, |_| {}, content)
 }
 
-/// Draws a card with a heading. `aside` draws the content to the right of the heading.
+/// Draws a card with a heading. `aside` draws to the right of the heading.
 pub(crate) fn card_with<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -37,7 +37,7 @@ pub(crate) fn card_with<R>(
         .inner
 }
 
-/// Draws a heading that opens or closes its section when clicked. Returns whether it was clicked.
+/// Draws a heading that opens or closes its section. Returns whether it was clicked.
 pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> bool {
     let icon = if *is_open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
     let word = heading.text().to_owned();
@@ -50,13 +50,13 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
     is_clicked
 }
 
-/// Draws a card with reference information. In a low window, only the heading is drawn until the card is opened with a
-/// click; the card then stays open until the program ends.
+/// Draws a card with reference information. In a low window, the card shows only its heading at first. A click opens
+/// it, and it then stays open until the program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
     folding_card_with(ui, theme, title, |_| {}, content);
 }
 
-/// Draws a [`folding_card`]; `aside` draws the part at the right of the heading while the card is open.
+/// Draws a [`folding_card`]. While the card is open, `aside` draws to the right of the heading.
 pub(crate) fn folding_card_with(
     ui: &mut Ui,
     theme: &Theme,

@@ -8,7 +8,7 @@ use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 
-/// Draws the result lines of the last check, or a description of what a check would do.
+/// Draws the result lines of the last check. Without a result, describes what a check does.
 pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
         paragraph(ui, theme.label(theme.words(&nothing.into())));

@@ -1,5 +1,5 @@
 //! Named actions of the window, for the keyboard and the command palette. Each is listed once, with its text, its key
-//! and whether it is available. Motion is excluded, since it requires a held button.
+//! and whether it is available. Motion is excluded, because it requires a held button.
 
 use std::time::Duration;
 
@@ -22,13 +22,12 @@ pub(super) const HELP_KEY: Key = Key::F1;
 const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
-/// A named action.
 pub(super) struct Command {
     /// Name of the device or tab that the command acts on. Empty for a command that acts on the whole program.
     pub(super) about: String,
     pub(super) name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
-    /// Whether the shortcut is left to text editing while the user is typing.
+    /// Whether text editing receives the key while the user is typing.
     pub(super) yields_to_typing: bool,
     pub(super) is_enabled: bool,
     pub(super) effect: CommandEffect,
@@ -50,8 +49,8 @@ pub struct NamedAction {
     pub action: Action,
 }
 
-/// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, since they would otherwise be
-/// mistaken for those with fewer.
+/// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, because they could be mistaken
+/// for those with fewer.
 pub(super) fn shortcut_commands(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = of_program(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
@@ -97,7 +96,6 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
     commands
 }
 
-/// Returns the commands that do not require a device.
 fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
     let act = |word: &'static str, action| command(word, CommandEffect::Act(action));
@@ -191,7 +189,7 @@ fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
 }
 
 impl NamedAction {
-    /// Creates an action with the same name as its button, taken from the catalogue of common messages.
+    /// Creates an action with the name of its button. `word` is a text of the catalogue of common messages.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.say(word), is_enabled, action }
     }

@@ -17,7 +17,7 @@ use crate::analysis::quality::Verdict;
 const BESIDE: f32 = 64.0;
 /// Minimum width of a dialog in points.
 const MODAL: f32 = 240.0;
-/// Expands the UI to the whole available width, which may be negative in a very small window.
+/// Expands the UI to the whole available width. That width may be negative in a very small window.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
@@ -26,17 +26,17 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
-/// Draws the reason why an item cannot be shown or an action cannot be done.
+/// Draws the reason why an item cannot be shown or an action is not possible.
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
-        // The ids of entries below it do not depend on it, so that typing continues.
+        // The ids of the entries below must not depend on the message. Otherwise, typing would be interrupted.
         None => ui.skip_ahead_auto_ids(1),
     }
 }
 
-/// Draws the reason why entries are invalid, below them. The space is always reserved, so that nothing further down
-/// moves when a message appears.
+/// Draws the reason why entries are invalid, below them. The space is always reserved, so nothing below moves when a
+/// message appears.
 pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -47,7 +47,7 @@ pub(crate) fn show_error_below(ui: &mut Ui, theme: &Theme, problem: Option<&crat
     });
 }
 
-/// Draws the reason why an entry is invalid to its right, so that nothing moves when a message appears.
+/// Draws the reason why an entry is invalid to its right, where nothing moves when a message appears.
 pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
     let (words, ink) = (theme.words(problem), theme.palette.bad);
@@ -58,8 +58,8 @@ pub(crate) fn show_error_beside(ui: &mut Ui, theme: &Theme, problem: Option<&cra
     }
 }
 
-/// Draws a message on one line, or on two lines in a smaller font, with a total height of one button so that nothing
-/// below moves. A longer message is shown in full in a tooltip.
+/// Draws a message on one line, or on two lines in a smaller font. The total height is that of a button, so nothing
+/// below moves. A tooltip shows the whole text of a longer message.
 pub(crate) fn message_label(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
     let font = |size: f32| egui::FontId::proportional(size);
@@ -89,7 +89,7 @@ pub(super) fn modal<R>(
         ui.set_width(width.max(MODAL));
         content(ui)
     });
-    // It can be centred only once its size is known, which requires another frame.
+    // The dialog can be centred only after its size is known, which requires another frame.
     let place = shown.response.rect;
     if ctx.data(|data| data.get_temp(id)) != Some(place) {
         ctx.data_mut(|data| data.insert_temp(id, place));
@@ -98,8 +98,8 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, right-aligned with the first one at the far right, on a line as high as a
-/// button. Buttons centred in the remaining space would keep the dialog from shrinking.
+/// Draws the buttons at the end of a dialog, on a line as high as a button. The first one is at the far right. If the
+/// buttons were centred in the remaining space, the dialog could not shrink.
 pub(super) fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -114,7 +114,7 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// Draws a button. If the button is disabled, its tooltip gives the reason.
+/// Draws a button. The tooltip of a disabled button gives the reason.
 pub(crate) fn button_with_reason(
     ui: &mut Ui,
     theme: &Theme,
@@ -134,7 +134,7 @@ pub(crate) fn primary_button(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &s
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
     if enabled {
-        // Its line is as wide as that of a disabled one, so that both are of the same size.
+        // The border is as wide as that of a disabled button, and both have the same size.
         button = button.fill(theme.palette.accent).stroke(Stroke::new(1.0, theme.palette.accent));
     }
     name(ui.add_enabled(enabled, button), enabled, word)
@@ -146,7 +146,7 @@ pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) ->
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
 }
 
-/// Assigns a widget the name by which screen readers and tests find it.
+/// Sets the name of a widget. Screen readers and tests find the widget by it.
 pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
     response
@@ -162,7 +162,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
 }
 
-/// Draws a placeholder for empty content, with the one action that adds content.
+/// Draws a placeholder for missing content, with the one action that adds content.
 pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
@@ -177,19 +177,19 @@ pub(crate) fn empty_placeholder(ui: &mut Ui, theme: &Theme, words: &str, action:
     pressed
 }
 
-/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close the panel.
+/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close it.
 pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
-        // A menu is drawn without borders, in which an unchecked box would be invisible.
+        // In the style of a menu, which has no borders, an unchecked box would be invisible.
         ui.set_style(ui.ctx().global_style());
         content(ui);
     });
     name(response, true, word).on_hover_text(word);
 }
 
-/// Draws a drop-down list, with a name for screen readers.
+/// Draws a drop-down list with a name for screen readers.
 pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -199,11 +199,11 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     let options: Vec<(T, String)> = options.into_iter().collect();
     let shown = options.iter().find(|(own, _)| own == value).map(|(_, word)| word.clone()).unwrap_or_default();
     let before = *value;
-    // A long list uses the available height.
+    // A long list may use most of the window's height.
     let height = ui.ctx().content_rect().height() * 0.6;
     let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
     let response = list.show_ui(ui, |ui| {
-        // Twelve fit without scrolling: egui gives such an area 400 points at first.
+        // Twelve entries fit without scrolling. egui gives such an area 400 points at first.
         ui.spacing_mut().item_spacing.y = ui.spacing().button_padding.y;
         for (own, word) in options {
             ui.selectable_value(value, own, word);
@@ -217,8 +217,8 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a choice with all options visible, as many per row as fit. Unlike a drop-down list, this also works
-/// in a panel that an outside click closes.
+/// Draws a choice with all options visible, as many per row as fit. It also works in a panel that closes on an outside
+/// click, where a drop-down list would not.
 pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -243,7 +243,7 @@ pub(crate) fn options<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a spinner that turns slowly enough to use little CPU time.
+/// Draws a spinner. It turns slowly to use little CPU time.
 pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
@@ -258,7 +258,6 @@ pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
 }
 
-/// Returns the icon and colour for a verdict on a signal.
 pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
     let palette = theme.palette;
     match verdict {
@@ -268,7 +267,6 @@ pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::
     }
 }
 
-/// Draws a verdict with its label, in its colour.
 pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate::app::Text) {
     let (icon, colour) = verdict(theme, own);
     ui.horizontal_top(|ui| {
@@ -288,7 +286,7 @@ pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'stat
     }
 }
 
-/// Draws two columns of cards if they fit, or a single column otherwise.
+/// Draws two columns of cards if they fit. Otherwise, draws a single column.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -299,7 +297,7 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Draws an encoder's page, with its identity and check beside its readings. The page of a profile has only the
+/// Draws an encoder's page with its identity and check beside its readings. For a profile, the page has only the
 /// identity and the wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
@@ -319,8 +317,8 @@ pub(crate) fn encoder_page<C>(
     two_columns(ui, theme, context, left, |ui, context| if is_profile { wiring(ui) } else { status(ui, context) });
 }
 
-/// Draws two columns of cards, the left one with the given share of the width. Below the minimum width, draws a single
-/// column instead.
+/// Draws two columns of cards. `share` of the width is for the left one. Below the minimum width, draws a single
+/// column.
 pub(crate) fn split<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -349,7 +347,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// Draws a connection dot, which is filled if connected and hollow otherwise.
+/// Draws a dot for the connection. It is filled if connected and hollow otherwise.
 pub(crate) fn connection_dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

@@ -1,4 +1,5 @@
-//! View of a device: typed in the device's folder, object-safe for the window. A single adapter connects the two.
+//! View of a device. It is typed in the device's folder and object-safe for the window. A single adapter connects the
+//! two.
 
 #![warn(missing_docs)]
 
@@ -9,10 +10,10 @@ use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
-/// A page of a tab, as listed in the navigation and the help. `word` and `help` are text ids.
+/// A page of a tab, as listed in the navigation and the help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageInfo {
-    /// Icon in front of the page's name.
+    /// Icon of the page in the navigation.
     pub icon: &'static str,
     /// Text id of the page's name.
     pub word: &'static str,
@@ -47,9 +48,9 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
 
-/// View of a kind of device. Each device kind implements this trait.
+/// View of a kind of device, with the types of that kind.
 pub trait TypedDeviceView: Sync + 'static {
-    /// Application state of the device, independent of drawing.
+    /// Application state of the device. It is independent of drawing.
     type Device: DeviceType;
     /// Pages of the device's tab.
     type Page: TabPage;
@@ -58,11 +59,11 @@ pub trait TypedDeviceView: Sync + 'static {
     /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the undo and redo keys act on the device's edits. False if an editor handles the keys itself.
+    /// Whether the undo and redo keys act on the device's edits. False if an editor handles these keys.
     const HAS_UNDO_KEYS: bool;
 
-    /// Returns the serial number that distinguishes a device from others of its kind, or `None` if it is unknown or
-    /// irrelevant.
+    /// Returns the serial number that distinguishes a device from others of its kind. Returns `None` if it is unknown
+    /// or irrelevant.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
         None
     }
@@ -107,22 +108,22 @@ pub trait TypedDeviceView: Sync + 'static {
     ) {
     }
 
-    /// Returns the header text while the device moves, or `None` while it stands still.
+    /// Returns the header text of a moving device. Returns `None` while the device stands still.
     fn motion(_device: &Self::Device) -> Option<Text> {
         None
     }
 
-    /// Returns the actions of this kind for the command palette. None of them starts a motion.
+    /// Returns the actions of this kind for the command palette. None of them may start a motion.
     fn named_actions(_theme: &Theme, _device: &Self::Device) -> Vec<NamedAction> {
         Vec::new()
     }
 
-    /// Draws what the tab offers while no device is open, below the buttons common to all kinds.
+    /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
-/// Object-safe view of a kind of device, used by the window. For a device of another kind, it draws nothing and reports
-/// no edits.
+/// View of a kind of device, object-safe for the window. For a device of another kind, it draws nothing and reports no
+/// edits.
 pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;
@@ -133,13 +134,13 @@ pub trait DeviceView: Sync {
     /// Returns whether the undo and redo keys act on the edits of the device.
     fn has_undo_keys(&self) -> bool;
 
-    /// Returns the header text while the device moves, or `None` while it stands still.
+    /// Returns the header text of a moving device. Returns `None` while the device stands still.
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
 
-    /// Returns the actions of this kind for the command palette. None of them starts a motion.
+    /// Returns the actions of this kind for the command palette. None of them may start a motion.
     fn named_actions(&self, theme: &Theme, device: &AnyDevice) -> Vec<NamedAction>;
 
-    /// Draws the large position in the given colour, with further values.
+    /// Draws the position in large digits in the given colour, followed by further values.
     fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb);
 
     /// Creates the form for the connection dialog.
@@ -148,7 +149,7 @@ pub trait DeviceView: Sync {
     /// Creates the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
 
-    /// Draws what the tab offers while no device is open, below the buttons common to all kinds.
+    /// Draws the part of an empty tab below the buttons common to all kinds. The tab is empty while no device is open.
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 }
 
@@ -283,7 +284,7 @@ pub trait ToolView: Sync {
     fn begin(&self) -> Box<dyn ToolPages>;
 }
 
-/// A window's view of a tab that does not require a device, with its open page, text buffers and selections.
+/// A window's view of a tab that requires no device, with its open page, text buffers and selections.
 pub trait ToolPages {
     /// Returns the index of the open page.
     fn page(&self) -> usize;
@@ -295,7 +296,7 @@ pub trait ToolPages {
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>);
 }
 
-/// Views of all tabs in navigation order, with device tabs first.
+/// Views of all tabs in navigation order. Device tabs come first.
 #[derive(Clone, Copy)]
 pub struct TabViews {
     devices: &'static [&'static dyn DeviceView],
@@ -303,7 +304,7 @@ pub struct TabViews {
 }
 
 impl TabViews {
-    /// Creates the list of views, which has one view per tab.
+    /// Creates the list of views, one for each tab.
     pub const fn new(devices: &'static [&'static dyn DeviceView], tools: &'static [&'static dyn ToolView]) -> Self {
         TabViews { devices, tools }
     }

@@ -1,5 +1,5 @@
-//! The panels around the workspace: they can be docked and resized, and are restored. A layout that does not load is
-//! replaced by the default.
+//! The panels around the workspace. They can be docked and resized, and the layout is restored at the next start. If a
+//! layout does not load, the default is used.
 
 use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
@@ -29,14 +29,14 @@ impl Pane {
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,
-    /// Whether the Live panel was drawn without its plot in the last frame; `None` before the first frame.
+    /// Whether the Live panel was drawn without its plot in the last frame. `None` before the first frame.
     alone: Option<bool>,
-    /// Share of the row width taken by the Live panel when it shows its plot.
+    /// Share of the row width of the Live panel with its plot.
     with_plot: f32,
 }
 
 impl Docks {
-    /// Loads the stored layout, or the default layout if none is stored.
+    /// Loads the stored layout. Uses the default layout if none is stored.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
         Docks { tree: tree.unwrap_or_else(first_layout), edited: false, alone: None, with_plot: LIVE }
@@ -66,12 +66,12 @@ impl Docks {
         let mut behaviour = DockBehaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
         self.edited |= behaviour.edited;
-        // The layout that is remembered has all of them in their places.
+        // The stored layout has all panels in their places.
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, true));
     }
 
     /// Resizes the Live panel when its plot appears or disappears. Without the plot, the panel is as wide as its
-    /// values; with the plot, it regains its previous width.
+    /// values. With the plot, it regains its previous width.
     fn resize_live_panel(&mut self, alone: bool, width: f32) {
         if self.alone.replace(alone).is_none_or(|before| before == alone) {
             return;
@@ -97,7 +97,7 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles that contain only panes of the lower panel, wherever they have been dragged.
+    /// Returns the tiles whose panes all belong to the lower panel, even if they were dragged elsewhere.
     fn lower_tiles(&self) -> Vec<TileId> {
         let mut lower = Vec::new();
         if let Some(root) = self.tree.root() {
@@ -107,7 +107,7 @@ impl Docks {
     }
 
     /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
-    /// panel is not included.
+    /// panel is left out.
     fn collect_lower_tiles(&self, tile: TileId, lower: &mut Vec<TileId>) {
         if self.is_lower(tile) {
             lower.push(tile);
@@ -185,7 +185,7 @@ impl egui_tiles::Behavior<Pane> for DockBehaviour<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        // A single panel keeps its tab, which shows its name and is used for dragging.
+        // A single panel keeps its tab, which shows its name and can be dragged.
         SimplificationOptions { prune_single_child_tabs: false, ..SimplificationOptions::default() }
     }
 

@@ -1,5 +1,5 @@
-//! The edit bar of a page for editing a memory, for any device: the number of edits, and the buttons to discard and to
-//! write them.
+//! The edit bar of a page that edits a memory, for any device. It shows the number of edits, and the buttons to discard
+//! and to write them.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,14 +8,12 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width in points below which the labels of some buttons are omitted, beside a profile or a device's edit
-/// count.
+/// Width in points below which some buttons have no labels. It applies beside a profile, and beside a device's number
+/// of edits.
 const NARROW: f32 = 660.0;
 
-/// The kind of edits that a page counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EditKind {
-    /// Bytes of a memory.
     Bytes,
     Values,
 }
@@ -74,7 +72,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits, omitting the label if it does not fit.
+/// Draws the number of edits. The label is left out if it does not fit.
 fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -85,7 +83,7 @@ fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     label.on_hover_text(words);
 }
 
-/// Draws the list of connected devices of the matching kind to which the profile can be written.
+/// Draws the list of connected devices of the matching kind. The profile can be written to them.
 fn write_into_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

@@ -1,5 +1,5 @@
-//! The end of the program that does not come from the window: a signal, or a lost display. Drives are stopped and
-//! released before, from whichever thread can do it.
+//! The end of the program by a signal or a lost display instead of the window. Drives are stopped and released before,
+//! on any thread that can do it.
 
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,10 +8,10 @@ use std::time::Duration;
 use crate::app::{Action, ActionMailbox, DriveStopHandles, Studio};
 
 const ANSWERS: Duration = Duration::from_secs(2);
-/// Exit status of a program ended by a signal, which is 128 plus the number of SIGTERM.
+/// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
-/// Guard that releases the drives when its thread ends or when that thread ends the program.
+/// Guard that releases the drives when its thread ends, or when that thread ends the program.
 struct ReleaseOnDrop(DriveStopHandles);
 
 impl Drop for ReleaseOnDrop {
@@ -22,8 +22,8 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// Guard in the window's thread that releases the drives when the display is lost. The display library then ends
-    /// the program itself, but thread-local values are still dropped.
+    /// Guard in the window's thread. It releases the drives when the display is lost. The display library then ends the
+    /// program, but thread-local values are still dropped.
     static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
@@ -38,12 +38,12 @@ pub(super) fn prepare(studio: &Studio) {
         }
     });
     if let Err(why) = heard {
-        // Signals then end it immediately.
+        // Without the handler, a signal ends the program immediately.
         tracing::warn!("{why}");
     }
 }
 
-/// Ends the drives first, then closes the window without asking any questions. Returns whether the window closes.
+/// Ends the drives first. Then closes the window without any question. Returns whether the window closes.
 fn end(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);

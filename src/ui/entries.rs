@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::entry;
 use crate::app::Text;
 
-/// Inner margin that makes a text entry as high as a button.
+/// Inner margin of a text entry. With it, the entry is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     sized_entry(ui, text, width, label, hint, egui::TextStyle::Body.into())
@@ -42,7 +42,7 @@ fn sized_entry(
     response
 }
 
-/// Draws a one-line entry for a secret, which is hidden on screen, from screen readers and from the undo history.
+/// Draws a one-line entry for a secret. The secret is hidden on screen, from screen readers and from the undo history.
 pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
     let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
     let response = ui.add(edit);
@@ -50,13 +50,13 @@ pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
     response
 }
 
-/// Clears a secret entry, including any state from which the secret could be restored.
+/// Clears a secret entry and any state from which the secret could be restored.
 pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry to the right of its label, which is also its name for screen readers.
+/// Draws a one-line entry to the right of its label. Screen readers name the entry by the label.
 pub(crate) fn labelled_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -69,8 +69,8 @@ pub(crate) fn labelled_entry(
     entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
-/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then;
-/// text refused by `take` stays in the entry, with the reason shown below.
+/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then.
+/// If `take` refuses the text, it stays in the entry, with the reason below.
 pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,
@@ -84,7 +84,7 @@ pub fn committed_entry(
     if response.has_focus() {
         *draft = Some((text, problem));
     } else if response.lost_focus() {
-        // The earlier text is valid, whatever was typed in between.
+        // The earlier text is valid, whatever was typed since.
         if text != shown
             && let Err(why) = take(&text)
         {

@@ -9,7 +9,7 @@ use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
-/// Width in points of the STOP button while nothing is moving.
+/// Width in points of the STOP button without any motion.
 const STOP: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -19,7 +19,8 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
             status_ui(ui, theme, device, motion);
         }
-        // Drawn from left to right, in the order of the keyboard; its width is known from the previous frame.
+        // The tools are drawn from left to right, in the order of the keyboard. Their width is known from the previous
+        // frame.
         let width_id = ui.scope_id().with("tools");
         let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);
         let room = (ui.available_width() - width - ui.spacing().item_spacing.x).max(0.0);
@@ -45,8 +46,8 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
 }
 
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    // In a narrow window only icons are drawn, with their texts as tooltips. A STOP of twice its width needs the space of
-    // some.
+    // In a narrow window, only icons are drawn, with their texts as tooltips. The STOP button of double width takes
+    // more space.
     let narrow = ui.ctx().content_rect().width() < if shows_wide_stop(studio) { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = theme.say(id);
@@ -100,7 +101,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     }
 }
 
-/// Draws the session menu, which opens from the name of the selected session.
+/// Draws the menu of sessions, which opens from the name of the selected session.
 fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
@@ -153,8 +154,7 @@ fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Ac
     name(menu.response, true, &theme.say("shell.sessions"));
 }
 
-/// Returns a name shortened for the header. The serial number is kept, because it distinguishes devices of the same
-/// kind.
+/// Shortens a name for the header. The serial number is kept, because it distinguishes devices of the same kind.
 fn shortened_text(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
@@ -199,7 +199,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text
     ui.label(RichText::new(theme.words(&text)).color(colour));
 }
 
-/// Returns whether the profile has a newer schema and can therefore be neither saved nor written.
+/// Returns whether the profile has a newer schema. Such a profile can be neither saved nor written.
 fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
@@ -215,12 +215,12 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Draws the STOP button, which ends every running job and every motion in all sessions. The button doubles in width
-/// while a drive moves; while this window moves a drive, it acts on press rather than release and ends only motion.
+/// Draws the STOP button. It ends every running job and every motion in all sessions. Its width doubles while a drive
+/// moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let (moves, by_hand) = (shows_wide_stop(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
-    // Live values alone are nothing to be alarmed about.
+    // Live values alone are no reason for an alarm.
     let is_alarming = moves || studio.is_working() || studio.has_control();
     let (word, hint) = if studio.has_drives() {
         (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
@@ -242,18 +242,18 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let pressed = goes_down(ui, &response);
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
-        // The display of a drive continues while it is stopped, and so does everything else that runs.
+        // The display of a drive continues while the drive is stopped. All other running jobs continue too.
         let motion = register_stop_press(ui.ctx(), by_hand, press_time(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }
 
-/// Returns whether a drive moves that can be stopped from here.
+/// Returns whether a drive is moving that can be stopped from here.
 fn shows_wide_stop(studio: &Studio) -> bool {
     studio.moves() && studio.can_stop_motion()
 }
 
-/// Draws the STOP button in its usual position while a drive moves, on top of anything that covers the window.
+/// Draws the STOP button in its usual place while a drive moves. It is on top of anything that covers the window.
 pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !shows_wide_stop(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;

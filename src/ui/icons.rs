@@ -1,4 +1,5 @@
-//! Icons by name: a part of the Phosphor set, in `assets/fonts/Icons.ttf`. Each has a text or a tooltip.
+//! Icons by name, from a subset of the Phosphor font in `assets/fonts/Icons.ttf`. An icon in the window has a text or a
+//! tooltip.
 
 pub const ARROWS_CLOCKWISE: &str = "\u{E094}";
 pub const ARROW_CLOCKWISE: &str = "\u{E036}";

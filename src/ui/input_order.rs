@@ -1,16 +1,17 @@
-//! The order of input within a frame. On a busy computer a click on an entry and the text typed after it can be in the
-//! same frame, but the entry has the keyboard only from the next frame on. Text after such an event is therefore held
-//! back for a frame.
+//! The order of input within a frame. On a busy computer, a click on an entry and the text typed after it can be in the
+//! same frame. However, the entry has the keyboard only from the next frame on. Text after such an event is therefore
+//! held back for a frame.
 
 use egui::{Event, Key};
 
-/// Input events held back for a later frame.
+/// Input events that are held back for a later frame.
 #[derive(Debug, Default)]
 pub(super) struct DeferredInput(Vec<Event>);
 
 impl DeferredInput {
-    /// Reduces `events` to those of the current frame, which ends at the first event that may move the keyboard focus
-    /// if typing follows. With `at_once`, nothing is held back. Returns whether the next frame is due immediately.
+    /// Reduces `events` to those of the current frame. If typing follows, the frame ends at the first event that may
+    /// move the keyboard focus. With `at_once`, nothing is held back. Returns whether the next frame is due
+    /// immediately.
     pub(super) fn split_frame_events(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);
         let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);

@@ -1,6 +1,6 @@
-//! Keys before any widget sees them: a key that repeats, or follows immediately after another, presses nothing; Space
-//! stops a motion, and so does every key while the pointer holds a drive. A key that holds a drive is handled by
-//! [`HoldState`](crate::app::HoldState).
+//! Keys before any widget receives them. A key that repeats, or follows immediately after another, does not press a
+//! button. Space stops a motion. While the pointer holds a drive, every key does. [`HoldState`](crate::app::HoldState)
+//! handles a key that holds a drive.
 
 use egui::{Context, Event, Key};
 
@@ -10,7 +10,7 @@ use crate::app::{KeyStates, PressKey};
 
 pub(super) struct KeyboardFilter {
     fresh: KeyStates,
-    /// Whether consent was being requested in the previous frame.
+    /// Whether consent was requested in the previous frame.
     asked: bool,
 }
 
@@ -19,9 +19,9 @@ impl KeyboardFilter {
         KeyboardFilter { fresh: KeyStates::UP, asked: false }
     }
 
-    /// Removes the events that no widget may see from the current frame and returns whether all motion must stop.
-    /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested, which only a
-    /// key seen released since then can give.
+    /// Removes the events that no widget may receive from the current frame. Returns whether all motion must stop.
+    /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested. Only a key
+    /// that was released since the request can give consent.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.forget();
@@ -29,7 +29,7 @@ impl KeyboardFilter {
         self.asked = asks;
         let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_keyboard(ctx));
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
-        // Enter completes a text entry, and presses nothing there.
+        // Enter completes a text entry and presses no button there.
         let typing = ctx.text_edit_focused();
         let space_stops = !for_hold_button && (moves || stop_debounce::has_recently_stopped(ctx, now));
         let fresh = &mut self.fresh;
@@ -62,7 +62,7 @@ impl KeyboardFilter {
                 };
                 let stop = held || space_stops && own == Some(PressKey::Space) && !repeats;
                 stops |= stop;
-                // Escape has further effects, which are handled elsewhere.
+                // Escape has further effects. They are handled elsewhere.
                 counts && !stop || *key == Key::Escape
             }
             _ => true,
@@ -78,7 +78,7 @@ impl KeyboardFilter {
     }
 }
 
-/// Returns the corresponding press key, or `None` if the key does not press buttons.
+/// Returns the key as a press key. Returns `None` if it does not press buttons.
 pub(super) const fn press_key(key: Key) -> Option<PressKey> {
     match key {
         Key::Space => Some(PressKey::Space),

@@ -1,11 +1,10 @@
-//! Rows of a label and a value or an entry. The labels of a card have a column that is as wide as its longest label
-//! needs.
+//! Rows of a label and a value or an entry. The label column of a card is as wide as its longest label.
 
 use egui::{Id, RichText, Ui, vec2};
 
 use super::Theme;
 
-/// Default width of the label column. A longer label in the card makes the column wider.
+/// Default width of the label column. A longer label widens it.
 const LABELS: f32 = 132.0;
 /// Largest shares of the width for the label column, by default and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
@@ -32,17 +31,18 @@ impl LabelColumn {
     }
 }
 
-/// Draws the content of the card with the given heading, with a label column wide enough for the longest label.
+/// Draws the content of the card with the given heading. Its label column is wide enough for the longest label.
 pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with((LabelColumn::id(), heading)));
     let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     LabelColumn { longest, drawn: 0.0 }.set(ui);
     let result = content(ui);
     let LabelColumn { drawn, .. } = LabelColumn::of(ui);
-    // It never becomes narrower: cards of one heading may alternate, and a line that comes and goes moves nothing.
+    // The column never becomes narrower. Cards with one heading may alternate, and a line that comes and goes must not
+    // move the others.
     if drawn > longest {
         ui.data_mut(|data| data.insert_temp(id, drawn));
-        // Not in the same frame again: input would count twice.
+        // The content is drawn again in the next frame, because input would count twice in this one.
         ui.ctx().request_repaint();
     }
     outer.set(ui);
@@ -57,7 +57,7 @@ pub(crate) fn label_width(ui: &Ui) -> f32 {
 
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
-        // Values are only read: they are closer together than controls.
+        // Rows that are only read can be closer together than controls.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.horizontal_top(|ui| {

@@ -1,11 +1,11 @@
 //! Interval of frames while live values arrive. Where software draws the window, as in a virtual machine, a frame costs
-//! many times what it costs otherwise; frames are then further apart, so that the program leaves the processor to others.
+//! far more processor time. Frames are then further apart, which leaves the processor to other programs.
 
 use std::time::Duration;
 
-/// Fast enough for the eye.
+/// Shortest interval, at which motion looks smooth.
 const SHORTEST: Duration = Duration::from_millis(50);
-/// Values can still be followed.
+/// Longest interval, at which values can still be followed.
 const LONGEST: Duration = Duration::from_millis(125);
 /// Share of one processor core that the whole program may use while it displays live values.
 const SHARE: f64 = 0.2;
@@ -14,7 +14,7 @@ const MEASURED: Duration = Duration::from_secs(1);
 
 pub(super) struct LivePace {
     interval: Duration,
-    /// Time of the last measurement, with the processor time used by then.
+    /// Time of the last measurement, and the processor time used by then.
     last: Option<(Duration, Duration)>,
 }
 
@@ -25,8 +25,8 @@ impl Default for LivePace {
 }
 
 impl LivePace {
-    /// Returns the interval until the frame after the one at `now`, on the clock of the window. `used` is the processor time of the program so far, or `None` if the
-    /// system does not tell.
+    /// Returns the interval to the frame after the one at `now`, on the clock of the window. `used` is the processor
+    /// time of the program so far, if the system reports it.
     pub(super) fn next(&mut self, now: Duration, used: Option<Duration>) -> Duration {
         let Some(used) = used else { return self.interval };
         let Some((since, before)) = self.last else {
@@ -36,7 +36,7 @@ impl LivePace {
         let elapsed = now.saturating_sub(since);
         if elapsed >= MEASURED {
             self.last = Some((now, used));
-            // After a break without live values, the share says nothing about them.
+            // After a pause without live values, the measured share does not describe them.
             if elapsed < 2 * MEASURED {
                 let share = used.saturating_sub(before).as_secs_f64() / elapsed.as_secs_f64();
                 let wanted = self.interval.mul_f64((share / SHARE).clamp(0.5, 2.0));
@@ -47,14 +47,16 @@ impl LivePace {
     }
 }
 
-/// Returns the processor time that all threads of the program have used, or `None` if the system does not tell.
+/// Returns the processor time that all threads of the program have used. Returns `None` if the system does not report
+/// it.
 #[cfg(unix)]
 pub(super) fn processor_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(Duration::new(u64::try_from(time.tv_sec).ok()?, u32::try_from(time.tv_nsec).ok()?))
 }
 
-/// Returns the processor time that all threads of the program have used, or `None` if the system does not tell.
+/// Returns the processor time that all threads of the program have used. Returns `None` if the system does not report
+/// it.
 #[cfg(not(unix))]
 pub(super) fn processor_time() -> Option<Duration> {
     None

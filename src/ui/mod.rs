@@ -1,5 +1,5 @@
-//! The window: drawing only. A view reads the state, stores nothing but its own text buffers and selection, and pushes
-//! actions; it never does I/O, decodes, sorts or blocks.
+//! The window, which only draws. A view reads the state and pushes actions. It stores nothing but its text buffers and
+//! selection, and never does I/O, decodes, sorts or blocks.
 
 pub mod backups;
 mod cards;

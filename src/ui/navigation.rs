@@ -1,4 +1,4 @@
-//! The navigation: the tabs, and the pages of the open one.
+//! The navigation: the tabs, and the pages of the open tab.
 
 use egui::Ui;
 
@@ -29,7 +29,7 @@ pub(super) fn navigation_ui(
             open_pages_ui(ui, theme, studio, views);
         }
     }
-    // At the bottom, so that it is drawn wherever the rest ends.
+    // The footer is at the bottom, wherever the pages end.
     let footer = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
     let mut footer = ui.new_child(egui::UiBuilder::new().max_rect(footer));
     if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
@@ -37,7 +37,6 @@ pub(super) fn navigation_ui(
     }
 }
 
-/// Draws the page entries of the open tab, if the tab has any content.
 fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
@@ -55,8 +54,8 @@ fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views)
     }
 }
 
-/// Draws the page entries of a tab and returns the index of the clicked entry. Pages for which `edited` returns true
-/// are marked as having unwritten edits.
+/// Draws the page entries of a tab and returns the index of the clicked entry. `edited` tells which pages have edits
+/// that are not written. They are marked.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,

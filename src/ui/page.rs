@@ -1,4 +1,4 @@
-//! The margins around a page of a tab, a page that scrolls as a whole, and widgets with stable ids.
+//! The margins around a page, a page that scrolls as a whole, and widgets with stable ids.
 
 use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 
@@ -18,8 +18,8 @@ pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 
-/// Draws a page that scrolls as a whole. `id` distinguishes the page from others. The scroll bar lies in the margin, so
-/// nothing shifts when the bar appears.
+/// Draws a page that scrolls as a whole. `id` must differ from that of other pages. The scroll bar is in the margin, so
+/// nothing moves when it appears.
 pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, theme));
     ui.scope(|ui| {
@@ -31,9 +31,9 @@ pub fn scrollable_page(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: i
     });
 }
 
-/// Draws widgets whose ids do not depend on the widgets drawn before them; `name` must be unique in `ui`. Otherwise, a
-/// widget that appears or disappears above would change their ids, which loses the keyboard focus and any click between
-/// press and release.
+/// Draws widgets whose ids do not depend on the widgets drawn before them. `name` must be unique in `ui`. Without this,
+/// a widget that appears or disappears above would change their ids. The keyboard focus would be lost, and a click
+/// between press and release.
 pub(super) fn apart<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);
     ui.scope_builder(UiBuilder::new().scope_id(id), content).inner

@@ -1,5 +1,5 @@
-//! The review of a write, for any device: every operation old → new, its costs and requirements, the consent, the
-//! progress, and the result.
+//! The review of a write, for any device. It shows every operation with its old and new value, its costs and
+//! requirements, the consent, the progress, and the result.
 
 use std::sync::Arc;
 
@@ -12,18 +12,17 @@ use super::{Theme, icons};
 use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, PermitToggle, Question, ReviewSheet, Stage};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
-/// Draws the review dialog if a write is under review.
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
-    // As many operations as fit in addition to their texts.
+    // Show as many operations as fit beside the texts of the dialog.
     let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
     modal(ctx, theme, "review", width, |ui| {
         ui.label(theme.heading(theme.words(&sheet.title)));
         ui.label(theme.label(device.name()));
         ui.add_space(theme.space.between);
-        // The keyboard focus does not pass from a button of one stage to the next: a key that cancels there must not write
-        // here.
+        // The keyboard focus must not pass from a button of one stage to the next. A key that cancels there must not
+        // write here.
         apart(ui, std::mem::discriminant(&sheet.stage), |ui| content_ui(ui, theme, device, (&sheet, room), actions));
     });
 }
@@ -66,7 +65,7 @@ fn content_ui(
             buttons_ui(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
-                // Without the permission it would be refused.
+                // Without the permission, the write would be refused.
                 let may_wear = sheet.force_wear != Some(false);
                 if primary_button(
                     ui,
@@ -163,7 +162,7 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
                     ui.separator();
                 }
                 let is_done = done.is_some_and(|done| at < done);
-                // A value read back is no longer merely intended.
+                // A value that was read back is no longer merely staged.
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
@@ -196,7 +195,7 @@ fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], 
     ui.add_space(theme.space.between);
 }
 
-/// Returns the old and new value laid out on one line, or `None` if they do not fit beside the item.
+/// Returns the old and new value laid out on one line. Returns `None` if they do not fit beside the item.
 fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);

@@ -1,4 +1,4 @@
-//! Opening the window: its requirements, and the one-line error without a display.
+//! Opening the window. Without a display, a one-line error is reported.
 
 use std::sync::{Arc, OnceLock};
 use std::thread;
@@ -22,10 +22,10 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal_text())?;
     let log = LogFile::begin(&store.log_path());
     let cleaned = store.clone();
-    // Not awaited: a slow disk does not delay the window.
+    // This is not awaited, so a slow disk does not delay the window.
     thread::spawn(move || cleaned.remove_leftovers());
     let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
-    // The window exists only after the studio: until then there is nothing to wake.
+    // The window exists only after the studio. Until then, there is nothing to wake.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
     let wake: Wake = Arc::new(move || {
@@ -59,7 +59,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
         }),
     );
     let result = result.map_err(|error| {
-        // The texts of the libraries are for programmers, with paths of the build computer.
+        // The library's messages are for programmers and contain paths of the build computer.
         tracing::error!("{error}");
         NOT_OPENED.to_owned()
     });
@@ -72,7 +72,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
 /// The application window, run by eframe.
 pub(crate) struct StudioApp {
     window: Window,
-    /// Start time of the program, or `None` once the first frame has been shown.
+    /// Start time of the program. `None` after the first frame was shown.
     began: Option<Instant>,
 }
 
@@ -86,7 +86,7 @@ impl eframe::App for StudioApp {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        // The second frame begins when the first is on the screen.
+        // When the second frame begins, the first is on the screen.
         if ui.ctx().cumulative_frame_nr() > 0
             && let Some(began) = self.began.take()
         {

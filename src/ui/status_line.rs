@@ -1,6 +1,6 @@
-//! The line at the bottom of the window, whose place is reserved, so that nothing moves when a message comes: the
-//! notice, why there is no connection, the job that runs, or else the last frame or message; and what opens the lower
-//! panel.
+//! The line at the bottom of the window. Its space is reserved, so nothing moves when a message appears. It shows the
+//! notice, the reason for a missing connection, or the running job, and otherwise the last frame or message. Its
+//! buttons open the lower panel.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
@@ -62,7 +62,7 @@ fn chevron_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Act
     }
 }
 
-/// Draws the status line from right to left, so that the buttons keep their position however long the text is.
+/// Draws the status line from right to left. The buttons then keep their position, however long the text is.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let notice = studio.services.log.standing();
     let device = device_in_tab(studio, studio.settings.tab);
@@ -112,7 +112,7 @@ fn has_running_job(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running().is_some() && !device.is_reviewing()
 }
 
-/// Returns the device and the reason if the connection was lost or the device is silent.
+/// Returns the device and the reason if the connection was lost or the device does not reply.
 fn connection_problem(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
     match device.phase() {
         Phase::Lost(why) | Phase::Silent(why) => Some((device, why)),
@@ -146,7 +146,7 @@ fn notice_text(theme: &Theme, notice: &Notice) -> String {
     format!("{}{}", notice.prefix(|text| theme.words(text)), words.join(" "))
 }
 
-/// Draws a message in the remaining space, in small text on two lines if one line is too short.
+/// Draws a message in the remaining space. If one line is too short, it is in small text on two lines.
 fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     let body = TextStyle::Body.resolve(ui.style());
     let width = ui.painter().layout_no_wrap(words.clone(), body.clone(), colour).size().x;
@@ -161,7 +161,7 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     ui.add(egui::Label::new(job).wrap().selectable(false));
 }
 
-/// Draws the last frame of the displayed device, or the last message if it is newer.
+/// Draws the last frame of the displayed device. If the last message is newer, draws that instead.
 fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
     let frame = frame.and_then(|(trace, line)| Some((trace.line_time(line)?, line)));
@@ -184,8 +184,8 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Returns the last reply if it is one of the last two frames, so that the status line does not flicker between
-/// requests and replies. Otherwise, returns the last frame.
+/// Returns the last reply if it is one of the last two frames. Otherwise, returns the last frame. The status line thus
+/// does not flicker between requests and replies.
 fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;
@@ -210,7 +210,7 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
     ui.add(egui::Label::new(RichText::new(line.words(theme.language)).color(colour)).truncate());
 }
 
-/// Draws the running job with its progress, or the text `instead`, and the stop button, right-aligned.
+/// Draws the running job and the stop button, right-aligned. The job shows its progress, or the text `instead`.
 pub(crate) fn running_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,16 +1,16 @@
-//! Presses that stop, as reported by the toolkit; [`StopPresses`] interprets them.
+//! Presses that stop, as reported by the toolkit. [`StopPresses`] interprets them.
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 
 use crate::app::StopPresses;
 
-/// Returns whether a press at the given frame time applies to a motion that is running or has just ended.
+/// Returns whether a press at the given frame time applies to a motion. The motion is running or has just ended.
 pub(crate) fn register_stop_press(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
     with(ctx, |presses| presses.register_stop_press(moves, pressed, now))
 }
 
-/// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
+/// Returns whether an earlier press has just stopped something. Another press must then also mean a stop.
 pub(super) fn has_recently_stopped(ctx: &Context, pressed: f64) -> bool {
     with(ctx, |presses| presses.has_recently_stopped(pressed))
 }
@@ -30,7 +30,7 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     is_press
 }
 
-/// Returns the time at which the stop button press that counts in this frame began.
+/// Returns the start time of the stop button press that counts in this frame.
 pub(crate) fn press_time(ui: &Ui, goes_down: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
     with(ui.ctx(), |presses| presses.press_time(goes_down || released, now))

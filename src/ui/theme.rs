@@ -1,5 +1,5 @@
 //! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts
-//! of one language. Every view gets a [`Theme`]; no view defines colours, sizes or fonts of its own.
+//! of one language. Every view gets a [`Theme`]. No view defines colours, sizes or fonts.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
@@ -71,7 +71,7 @@ impl Theme {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// Adds the space between two groups: `space.groups`, less the spacing that egui puts before the next widget.
+    /// Adds the space between two groups. It is `space.groups`, less the spacing that egui puts before the next widget.
     pub fn gap(&self, ui: &mut egui::Ui) {
         ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
     }
@@ -95,7 +95,7 @@ impl Theme {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }
 
-    /// Returns the frame of a card, which is raised and has a border but no shadow.
+    /// Returns the frame of a card. It is raised and has a border but no shadow.
     pub fn card(&self) -> egui::Frame {
         egui::Frame::NONE
             .fill(self.palette.raised.into())
@@ -132,7 +132,7 @@ impl Theme {
             style.spacing.combo_width = 96.0;
             style.spacing.menu_margin = Margin::same(8);
             style.spacing.window_margin = Margin::same(16);
-            // Always visible, also on cards: what scrolls shows that it does.
+            // The scroll bar is always visible, also on cards. It shows that the content scrolls.
             style.spacing.scroll = egui::style::ScrollStyle {
                 foreground_color: true,
                 dormant_background_opacity: 0.0,
@@ -145,7 +145,7 @@ impl Theme {
             style.wrap_mode = Some(egui::TextWrapMode::Extend);
             style.interaction.selectable_labels = false;
             style.animation_time = 0.1;
-            // A picture is drawn when something changes, not because a cursor blinks.
+            // The cursor does not blink, because a frame is drawn only when something changes.
             style.visuals.text_cursor.blink = false;
             self.colour(&mut style.visuals);
         });
@@ -176,7 +176,7 @@ impl Theme {
         let corner = CornerRadius::same(4);
         let text = Color32::from(palette.text);
         let line = Color32::from(palette.line);
-        // Controls that can be pressed or checked stand out from separators.
+        // Controls that can be pressed or checked must stand out from separators.
         let edge = Color32::from(palette.muted).gamma_multiply(0.6);
         let accent = Color32::from(palette.accent);
         let widgets = &mut visuals.widgets;

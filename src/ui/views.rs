@@ -1,4 +1,4 @@
-//! The memory of the views while the window is open: text buffers and selections, no state.
+//! The memory of the views while the window is open. It holds text buffers and selections, but no state.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,6 @@ pub struct Views {
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
-    /// Command palette, if open.
     pub(super) palette: Option<PaletteUiState>,
     pub(super) trace: TraceView,
     pub(super) plot: plot::PlotUiState,
@@ -41,7 +40,7 @@ impl Views {
         }
     }
 
-    /// Returns the view of a session, or `None` if no tab shows the device's kind.
+    /// Returns the view of a session. Returns `None` if no tab shows the device's kind.
     pub(super) fn session(&mut self, device: &AnyDevice) -> Option<&mut dyn SessionView> {
         let view = self.tabs.device(device.tab())?;
         Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
@@ -52,7 +51,7 @@ impl Views {
         Some(tool.as_mut())
     }
 
-    /// Returns the open page of the open tab. For a device tab without an open device, returns its first page.
+    /// Returns the open page of the open tab. A device tab without an open device has its first page open.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
         let page = match (self.tool(tab), device_in_tab(studio, tab)) {

@@ -23,11 +23,11 @@ pub struct Window {
     docks: Docks,
     keys: KeyboardFilter,
     held_input: DeferredInput,
-    /// Whether the request to close the window has already been handled in the current frame.
+    /// Whether the request to close the window was already handled in this frame.
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
-    /// Displayed notice, and the time on the window's clock since which it has been shown.
+    /// Displayed notice, and the time on the window's clock since which it is shown.
     notice_since: Option<(jiff::Zoned, f64)>,
     live_pace: LivePace,
     processor_time: fn() -> Option<Duration>,
@@ -52,7 +52,7 @@ impl Window {
         }
     }
 
-    /// Adapts the rate of live frames to the processor time of the program, as returned by `processor_time`.
+    /// Adapts the rate of live frames to the processor time of the program. `processor_time` returns that time.
     #[must_use]
     pub(super) fn with_processor_time(self, processor_time: fn() -> Option<Duration>) -> Self {
         Window { processor_time, ..self }
@@ -62,8 +62,8 @@ impl Window {
         &self.studio
     }
 
-    /// Splits the input of a frame so that typed text reaches the entry clicked just before. Nothing is held back while
-    /// drives are under control.
+    /// Splits the input of a frame. Typed text then reaches the entry that was clicked just before. Nothing is held
+    /// back while drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.has_control();
         if self.held_input.split_frame_events(&mut input.events, at_once) {
@@ -86,7 +86,7 @@ impl Window {
         header::stop_overlay_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
-            // Their effect must be drawn.
+            // The effect of the actions must be drawn.
             ctx.request_repaint();
         }
         for action in actions {
@@ -163,8 +163,8 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the status line at the bottom, with the current notice, if any. Notices that require an action stay until
-    /// dismissed; the others disappear by themselves.
+    /// Draws the status line at the bottom, with the current notice. A notice that requires an action stays until it is
+    /// dismissed. Others disappear by themselves.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
         let Some(notice) = self.studio.services.log.standing() else {
@@ -184,19 +184,19 @@ impl Window {
         }
     }
 
-    /// Handles requests to close the window even if nothing is drawn, since a minimised window must still be closable.
-    /// This never keeps a motion going.
+    /// Handles requests to close the window even if nothing is drawn. A minimised window must still be closable. This
+    /// never keeps a motion going.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.handle_close_request(ctx);
-        // Drawing must know about it in this frame.
+        // The drawing of this frame must know about it.
         self.close_heard = true;
-        // The jog buttons of a minimised window are in no frame.
+        // No frame contains the jog buttons of a minimised window.
         if self.studio.is_motion_active() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
             self.studio.act(Action::LetGo);
         }
         if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
             if ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
-                // Samples and frames are taken in before they are too many.
+                // Take samples and frames in before they are too many.
                 self.studio.poll();
             }
             return;
@@ -242,8 +242,8 @@ impl Window {
         let covered = self.has_open_dialog() || self.views.help;
         surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_motion_active() });
         if covered || !ctx.input(|input| input.focused) {
-            // The held button is not visible, or the release of its key will not be reported. This frame already shows it:
-            // an action would request another one each time.
+            // The held button is not visible, or the release of its key will not be reported. The effect is already in
+            // this frame. An action would request another frame each time.
             self.studio.act(Action::LetGo);
         }
         if self.has_open_dialog() {
@@ -310,15 +310,15 @@ impl Window {
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
-    /// Handles Esc, which first stops what is running and then closes what is open. Anything that holds the keyboard or
-    /// pointer takes precedence, such as a half-typed byte, an open menu or a field being dragged.
+    /// Handles Esc. It first stops what is running and then closes what is open. A half-typed byte, an open menu or a
+    /// field being dragged takes precedence, because it holds the keyboard or the pointer.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
-        // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
+        // While this window moves a drive, Esc applies to the motion, even if something is open or dragged.
         let moves = self.studio.is_turned_by_hand();
         let goes_down = stop_debounce::is_escape_pressed(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
-            // With Ctrl or Alt it closes nothing, but still stops.
+            // With Ctrl or Alt, Esc closes nothing but still stops.
             stop_debounce::register_stop_press(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }
@@ -326,8 +326,8 @@ impl Window {
             return;
         }
         let means_motion = stop_debounce::register_stop_press(ctx, moves, ctx.input(|input| input.time));
-        // A held key stops what has started since it was pressed, and nothing else. A further press within the half second
-        // only applies to motion either: also to one requested in this frame that does not move yet.
+        // A held key stops only what has started since it was pressed. A further press within half a second also
+        // applies to motion only. This includes a motion requested in this frame that has not begun.
         if !goes_down || means_motion && !moves {
             actions.push(Action::StopMotion);
             return;
@@ -357,7 +357,7 @@ impl Window {
         }
         self.views.forget_closed(&self.studio);
         if self.studio.moves() {
-            // The refresh of any motion: 250 ms without a frame stop it.
+            // These frames refresh any motion. It stops after 250 ms without a frame.
             ctx.request_repaint_after(Duration::from_millis(30));
         } else if self.studio.is_live() {
             ctx.request_repaint_after(

@@ -1,4 +1,4 @@
-//! Wires or pins of an encoder, one line each with its signal.
+//! List of the wires or pins of an encoder, each with its signal.
 
 use egui::Ui;
 
@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws a list of wires with texts from the given catalogue. The wire names form a column of the given width.
+/// Draws a list of wires with texts from a catalogue. The wire names form a column of the given width.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -24,7 +24,7 @@ pub(crate) fn wires_ui(
     }
 }
 
-/// Checks that each wire has the given name and English text, and a German text that differs from the English.
+/// Checks that each wire has the given name and English text. Its German text must differ from the English.
 #[cfg(test)]
 pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
@@ -34,7 +34,7 @@ pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static st
     }
 }
 
-/// Checks that a card's notes have the given English texts, and German texts that differ from the English.
+/// Checks that a card's notes have the given English texts. Their German texts must differ from these.
 #[cfg(test)]
 pub(crate) fn check_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};

@@ -34,7 +34,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
     apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
-/// Draws the options for opening a device, shown while no device is open.
+/// Draws the buttons for opening a device. They are shown while no device is open.
 fn nothing_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     ui.add_space((ui.available_height() * ABOVE_NOTHING).round());
     ui.vertical_centered(|ui| {

@@ -1,6 +1,7 @@
-//! The only way to write, in the same order for every kind of device: consent and base → backup on disk → logbook:
-//! intent → the operations, each read back → logbook: result. A device supplies its own parts as a [`Write`] and cannot
-//! omit a step: its operations require a [`Confirmed`], which only [`write_plan`] creates.
+//! The only way to write, in the same order for every kind of device. The plan needs consent and must match its base. A
+//! backup is saved on disk, and the logbook records the intention. Each operation is written and read back, and the
+//! logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its operations
+//! require a [`Confirmed`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;
@@ -16,18 +17,18 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
-/// A plan approved by the user, with the values read for the plan.
+/// A plan approved by the user, with the values on which it is based.
 #[derive(Clone, Debug)]
 pub struct ApprovedPlan<P> {
     /// The plan as shown.
     pub prepared: P,
-    /// The consent to it.
+    /// The consent to the plan.
     pub consent: Consent,
-    /// Whether to write even if the device counts as worn or its write cycles are unknown.
+    /// Whether to write even if the device counts as worn, or its write cycles are unknown.
     pub force_wear: bool,
 }
 
-/// A write whose before-image has been kept and which has been recorded in the logbook.
+/// A write whose before-image is saved and which is recorded in the logbook.
 struct WriteIntent {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
@@ -36,15 +37,15 @@ struct WriteIntent {
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct Committed<W> {
-    /// Result of the write, as counted by the kind of device.
+    /// Outcome of the write, in the form that the kind of device uses.
     pub written: W,
-    /// Path of the before-image, or `None` if there was nothing to write.
+    /// Path of the before-image. `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
     /// Logbook error after the write. The write itself is complete.
     pub logbook_warning: Option<LogbookError>,
 }
 
-/// The reason why a write did not begin, for any kind of device. Nothing was written.
+/// The reason why a write did not begin. Nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotBegun {
     /// The consent is for another plan.
@@ -59,11 +60,11 @@ pub enum NotBegun {
     /// The device counts as worn.
     #[error("{seen} write cycles seen, {cost} more would exceed {limit}")]
     Worn {
-        /// Seen so far.
+        /// Number of known write cycles.
         seen: u64,
         /// Number of write cycles required by the plan.
         cost: u64,
-        /// The limit.
+        /// Number of write cycles from which the device counts as worn.
         limit: u64,
     },
     /// The before-image cannot be saved.
@@ -71,16 +72,16 @@ pub enum NotBegun {
     NotKept(FileError),
 }
 
-/// A plan made by a job, with all the data that a write needs in addition to the connection.
+/// A plan made by a job, with all the data that a write needs besides the connection.
 pub trait Planned {
     /// Values on which the plan is based.
     type Base: Hash;
     /// A single operation of the plan.
     type Op: Operation + Clone + Hash;
-    /// Kind of change, which determines how an interrupted write is completed.
+    /// Kind of change. It determines how an interrupted write is completed.
     type Kind;
 
-    /// Returns the plan, its purpose and the wear of the device.
+    /// Returns the plan with its kind of change and the wear of the device.
     fn head(&self) -> PlanHead<'_, Self>;
 
     /// Returns the key that identifies the device in backups and the logbook.
@@ -89,7 +90,7 @@ pub trait Planned {
     /// Returns a description of an operation's change for the logbook.
     fn note(&self, op: &Self::Op) -> String;
 
-    /// Returns the previous values that the plan changes, in a restorable text format.
+    /// Returns the values before the change, as text from which they can be restored.
     fn before_image(&self) -> String;
 
     /// Returns the plan to write.
@@ -102,7 +103,7 @@ pub trait Planned {
         self.head().kind
     }
 
-    /// Returns the write cycles recorded for the device in the logbook of this computer, or `None` if the logbook
+    /// Returns the write cycles recorded for the device in the logbook of this computer. Returns `None` if the logbook
     /// cannot be read.
     fn cycles_seen(&self) -> Option<u64> {
         self.head().cycles_seen
@@ -114,27 +115,27 @@ pub trait Planned {
     }
 }
 
-/// A plan with its purpose and the wear of the device.
+/// A plan with its kind of change and the wear of the device.
 pub struct PlanHead<'p, P: Planned + ?Sized> {
-    /// What would be written.
+    /// Plan to write.
     pub plan: &'p Plan<P::Base, P::Op>,
     /// Kind of change that the plan makes.
     pub kind: P::Kind,
-    /// Write cycles recorded for the device on this computer, or `None` if the logbook does not provide them.
+    /// Write cycles recorded for the device on this computer. `None` if the logbook cannot be read.
     pub cycles_seen: Option<u64>,
     /// Write cycles beyond which the device counts as worn.
     pub wear_limit: u64,
 }
 
-/// The error of a write that did not begin or was interrupted. If the base has changed, this is the device's error.
+/// The error of a write that did not begin or was interrupted. It is the device's error if the base has changed.
 type Unfinished<P, W, E> =
     JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
 
-/// Writes a plan that a user consented to, for every kind of device. Each operation is reported before it begins, and a
-/// plan without operations succeeds.
+/// Writes a plan to which the user has consented. Each operation is reported before it begins. A plan without
+/// operations succeeds.
 ///
 /// # Errors
-/// See [`JobError`].
+/// Returns a [`JobError`] if the write did not begin or was not completed.
 pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     store: &Store,
     is_virtual: bool,
@@ -182,8 +183,8 @@ pub fn backup_of(body: Body) -> ProfileDocument {
     document
 }
 
-/// Returns the minimum total of write cycles of a device after `cost` more, if the total is at least `warning` and the
-/// user should be told of the limit.
+/// Returns the minimum total of write cycles of a device after `cost` more. Returns `None` if `cost` is zero or the
+/// total is below `warning`.
 pub(crate) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.unwrap_or(0).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
@@ -194,8 +195,8 @@ pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
     seen.is_none() && cost > 0
 }
 
-/// Returns the write cycles recorded for a device in the logbook of this computer, or `None` if the logbook cannot be
-/// read.
+/// Returns the write cycles recorded for a device in the logbook of this computer. Returns `None` if the logbook cannot
+/// be read.
 pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
@@ -210,10 +211,10 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     }
 }
 
-/// Checks whether a write of this cost may begin, as far as the earlier write cycles are known.
+/// Checks whether a write with this cost may begin, according to the known write cycles.
 ///
 /// # Errors
-/// [`NotBegun::WearUnknown`], [`NotBegun::Worn`].
+/// Returns [`NotBegun::WearUnknown`] or [`NotBegun::Worn`].
 pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotBegun> {
     match seen {
         _ if force_wear => Ok(()),

@@ -1,5 +1,5 @@
-//! Events sent from the thread of a session: events about jobs are never lost, progress is coalesced, and the thread
-//! never blocks.
+//! Events sent from the thread of a session. Events about jobs are never lost, and only the latest progress is kept.
+//! The thread never blocks.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use super::{Device, Event};
 /// Maximum number of unread events, with progress counted once.
 pub(super) const CAPACITY: usize = 64;
 
-/// A sender of events with a queue for events that do not fit into the channel. The queue never holds more than one
-/// job's events, because the next job does not start while the channel is full.
+/// A sender with a queue for events that do not fit into the channel. The queue never holds events of more than one
+/// job, because the next job does not start while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -28,7 +28,7 @@ impl<D: Device> EventSender<D> {
         match event {
             Event::Progress(..) => self.progress = Some(event),
             other => {
-                // The event makes earlier progress outdated: that is sent first or not at all.
+                // The event makes earlier progress outdated. Progress is therefore sent first or not at all.
                 self.flush();
                 self.progress = None;
                 self.waiting.push(other);
@@ -55,8 +55,8 @@ impl<D: Device> EventSender<D> {
                 Err(TrySendError::Disconnected(_)) => return,
             }
         }
-        // After the start of its job, never before it. Half of the channel is for progress, so that it never blocks the end
-        // of a job.
+        // Progress is sent after the start of its job, never before. It uses only half of the channel, so it never
+        // blocks the end of a job.
         if self.sender.len() < CAPACITY / 2
             && let Some(progress) = self.progress.take()
         {

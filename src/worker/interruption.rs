@@ -1,4 +1,4 @@
-//! Reasons why a job on a writable device ends early, before the first write or after it.
+//! Reasons why a job on a writable device ends early, before or after the first write.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ pub trait JobInterruption {
     /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the number of operations carried out before the job ended, or `None` if no write had begun.
+    /// Returns the number of operations carried out before the job ended. Returns `None` if no write had begun.
     fn done(&self) -> Option<usize> {
         None
     }
@@ -21,8 +21,8 @@ pub trait JobInterruption {
     }
 }
 
-/// The reason why a job ended early, for a device with errors `E`, planning errors `P`, interrupted writes `I` (an
-/// [`Interrupted`]) and kinds of change `K`.
+/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`Interrupted`]
+/// write, and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
     /// The device or its connection failed.
@@ -31,13 +31,13 @@ pub enum JobError<E, P, I, K> {
     /// The plan is impossible. Nothing was written.
     #[error(transparent)]
     Plan(P),
-    /// The device has reached its limit of write cycles, or its backup cannot be stored. Nothing was written.
+    /// The write did not begin. The device has reached its limit of write cycles, or its backup cannot be saved.
     #[error(transparent)]
     NotBegun(#[from] NotBegun),
-    /// The write was begun but not finished.
+    /// The write began but was not completed.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// Changes that were written, the cause, and the state in which the device was left.
+        /// Changes that were written, the cause, and the state of the device.
         interrupted: Box<I>,
         /// Path of the backup.
         backup: PathBuf,

@@ -1,5 +1,5 @@
-//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. Only the latest
-//! request counts; none is queued.
+//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. None is queued, and
+//! only the latest counts.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::CancelToken;
 
-/// Maximum interval. Longer intervals are shortened to this value.
+/// Maximum interval. A longer interval is shortened to it.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The live requests of a session, shared by all clones.
@@ -16,7 +16,7 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
     sampling: CancelToken,
-    /// Channel that wakes the thread. If the channel is full, a wake-up is already pending.
+    /// Channel that wakes the thread. If it is full, the thread is about to wake.
     changed: Sender<()>,
 }
 
@@ -24,7 +24,7 @@ struct PollRequests {
     /// Cancellation token of the running job, or of the last one.
     job: CancelToken,
     interval: Option<Duration>,
-    /// Number of the polling request, so that a failure ends only the request to which it belongs.
+    /// Number of the polling request. A failure ends only the request with its number.
     number: u64,
 }
 
@@ -36,7 +36,7 @@ impl Live {
         (Live { requests, sampling: CancelToken::default(), changed }, changes)
     }
 
-    /// Directs later stops to the given job.
+    /// Sets the job to which later stops apply.
     pub(super) fn set_job_cancel(&self, cancel: CancelToken) {
         self.lock().job = cancel;
     }
@@ -69,7 +69,7 @@ impl Live {
         self.lock().number
     }
 
-    /// Ends polling from the thread after a sample of the given request has failed.
+    /// Ends polling after a sample of the given request has failed. Called by the thread.
     pub(super) fn poll_failed(&self, number: u64) {
         let mut requests = self.lock();
         if requests.number == number {
@@ -77,8 +77,8 @@ impl Live {
         }
     }
 
-    /// Interrupts a running sample. The request must be made first, because the thread resets the token before it reads
-    /// the requests.
+    /// Interrupts a running sample. The caller must make its request first, because the thread resets the token before
+    /// it reads the requests.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
@@ -92,7 +92,7 @@ impl Live {
     }
 
     fn wake(&self) {
-        // Full: the thread has not read the previous request and will read both.
+        // If the channel is full, the thread has not read the previous request yet. It will read both.
         let _ = self.changed.try_send(());
     }
 
@@ -115,7 +115,7 @@ struct WatchEntries<W> {
 struct Entry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device lacks the value, which is then not requested again while it remains in the list.
+    /// Whether the device lacks the value. A refused value stays in the list but is not requested again.
     refused: bool,
 }
 
@@ -144,7 +144,7 @@ impl<W: Clone + PartialEq> WatchList<W> {
         self.live.wake();
     }
 
-    /// Returns the watched values and their intervals if they have changed since `known`, which is updated.
+    /// Returns the watched values and their intervals if they have changed since `known`. Updates `known`.
     pub(super) fn changed_entries(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;
@@ -183,12 +183,12 @@ impl<W> Clone for WatchList<W> {
     }
 }
 
-/// A handle that stops a worker from code that does not own the worker. Clones stop the same worker.
+/// A handle that stops a worker without owning it. Clones stop the same worker.
 #[derive(Clone)]
 pub struct WorkerStopHandle(Live);
 
 impl WorkerStopHandle {
-    /// Ends polling and stops the running job at the next possible point. Jobs submitted later are not affected.
+    /// Ends polling and stops the running job at the next possible point. Later jobs are not affected.
     pub fn stop(&self) {
         self.0.stop();
     }

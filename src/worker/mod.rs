@@ -1,11 +1,11 @@
-//! The background I/O worker: one thread per session, one job at a time, sampling and watching between jobs, and a stop
-//! that takes precedence over everything else.
+//! The background I/O worker. Each session has one thread, which runs one job at a time. Sampling and watching happen
+//! between jobs, and a stop takes precedence over everything else.
 //!
-//! This module knows no protocol: a [`Device`] has its own types of jobs, results and errors, so a session with one
+//! This module knows no protocol. A [`Device`] has its own types of jobs, results and errors, so a session with one
 //! kind of device cannot receive the jobs of another.
 //!
-//! Events about jobs are never lost. Progress is coalesced: while events are not read, only the newest is kept. Neither
-//! side waits for the other: a full channel is a state of the worker and does not stop the line.
+//! Events about jobs are never lost. While events are not read, only the latest progress is kept. Neither side waits
+//! for the other: a full channel is a state of the worker and does not stop the line.
 
 #![warn(missing_docs)]
 
@@ -50,11 +50,11 @@ pub trait Device: Send + 'static {
     type Output: Send + fmt::Debug;
     /// Reason why a job ended early.
     type Error: JobInterruption + Send + fmt::Debug;
-    /// Message that the device sends in addition to a reply.
+    /// Message that the device sends outside its replies.
     type DeviceMessage: Send + fmt::Debug;
-    /// A polled sample. Samples of watched values identify themselves.
+    /// A polled sample. A sample of a watched value tells which value it is.
     type Sample: Send + fmt::Debug + 'static;
-    /// Value that can be watched, which means that it is requested between two samples.
+    /// Value that can be watched. It is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
     /// Steps reported by jobs.
     type JobStep: Clone + Send + fmt::Debug;
@@ -70,25 +70,25 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
-    /// Sets the interval of subsequent samples, or `None` for no sampling. Data that the device sends without request
-    /// begin with the next sample and end on `None`.
+    /// Sets the interval of subsequent samples. `None` stops sampling. Data that the device sends without request begin
+    /// with the next sample and end on `None`.
     fn set_sample_interval(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
-    /// Takes one sample with as few exchanges as possible. Messages that the device sends meanwhile belong to the
+    /// Takes one sample with as few exchanges as possible. Messages from the device during this time are part of the
     /// sample.
     ///
     /// # Errors
     /// Returns an error if there is no sample, which ends polling.
     fn sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
-    /// Requests a watched value. Messages that the device sends meanwhile belong to the sample.
+    /// Requests a watched value. Messages from the device during this time are part of the sample.
     ///
     /// # Errors
     /// Returns an error if the device does not answer, which ends polling. A refusal counts as an answer.
     fn watch(&mut self, context: &mut SessionContext, what: &Self::Watch)
     -> Result<Watched<Self::Sample>, Self::Error>;
 
-    /// Takes the message that the device has sent since the last call, if any.
+    /// Takes the message that the device has sent since the last call.
     fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
@@ -99,34 +99,34 @@ pub trait Device: Send + 'static {
     /// Returns an error if the connection is lost.
     fn check(&mut self) -> Result<(), LinkError>;
 
-    /// Returns how often an idle worker checks the device and its wire.
+    /// Returns the interval at which an idle worker checks the device and its wire.
     fn idle_interval(&self) -> Duration {
         IDLE
     }
 
-    /// Maintains the session while no job is running, and returns a device message if there is one.
+    /// Maintains the session while no job is running. Returns a message from the device, if any.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
 
-    /// Returns whether [`idle`](Self::idle) cannot wait for the next check.
+    /// Returns whether [`idle`](Self::idle) must run before the next regular check.
     fn is_urgent(&self) -> bool {
         false
     }
 
-    /// Restores any device state that must not persist, at the end of the session.
+    /// Restores any device state that must not persist after the session.
     fn leave(&mut self, _desk: &mut SessionContext) {}
 }
 
-/// Interval at which an idle worker checks a device that has no work in progress.
+/// Interval at which an idle worker checks a device.
 pub(crate) const IDLE: Duration = Duration::from_millis(500);
 
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Watched<S> {
-    /// The value, or the reason why there is none at the moment.
+    /// The sample with the value. It tells the reason if there is no value at the moment.
     Sample(S),
-    /// The device does not have the value and is not asked again. Contains the sample that reports the refusal.
+    /// The device does not have the value, and it is not requested again. The sample reports the refusal.
     Refused(S),
 }
 
@@ -137,11 +137,11 @@ pub struct JobId(u64);
 /// The progress of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Progress<W> {
-    /// Steps done.
+    /// Number of completed steps.
     pub done: u64,
-    /// Steps in all.
+    /// Total number of steps.
     pub total: u64,
-    /// The present step.
+    /// Current step.
     pub step: W,
 }
 
@@ -174,7 +174,7 @@ pub enum Event<D: Device> {
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),
-    /// The job ended because the user cancelled it. For a writing job, the error includes what was written before.
+    /// The user cancelled the job. For a writing job, the error includes the changes written before.
     Cancelled(JobId, Box<D::Error>),
     /// A sample failed, and polling has stopped.
     PollFailed(Box<D::Error>),
@@ -182,7 +182,8 @@ pub enum Event<D: Device> {
     Lost(LinkError),
 }
 
-/// The reason why a job cannot be accepted.
+/// Returns the minimum total of write cycles of a device after `cost` more. Returns `None` if `cost` is zero or the
+/// total is below `warning`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
     /// A job is already running. Jobs are not queued.
@@ -196,7 +197,8 @@ pub enum SubmitError {
     Ended,
 }
 
-/// A handle to the thread of a session. Dropping it stops the running work and ends the thread without waiting.
+/// A handle to the thread of a session. When it is dropped, the running work stops and the thread ends. Dropping does
+/// not wait.
 pub struct Worker<D: Device> {
     orders: Sender<Order<D>>,
     events: Receiver<Event<D>>,
@@ -238,10 +240,10 @@ impl<D: Device> Worker<D> {
         Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
-    /// Submits a job, which takes precedence over sampling and waits only for the running exchange.
+    /// Submits a job. It takes precedence over sampling and waits only for the current exchange.
     ///
     /// # Errors
-    /// See [`SubmitError`].
+    /// Returns a [`SubmitError`] if the job is not accepted.
     pub fn submit(&mut self, job: D::Job) -> Result<JobId, SubmitError> {
         if self.events.is_full() {
             return Err(SubmitError::Unread);
@@ -251,7 +253,7 @@ impl<D: Device> Worker<D> {
         }
         let id = JobId(self.next);
         self.next += 1;
-        // Each job has its own cancellation, so that an earlier one does not affect it, and none is reset.
+        // Each job has its own cancellation flag. An earlier job does not affect it, and it is never reset.
         let cancel = CancelToken::default();
         self.live.set_job_cancel(cancel.clone());
         if self.orders.try_send(Order { id, job, cancel }).is_err() {
@@ -262,36 +264,37 @@ impl<D: Device> Worker<D> {
         Ok(id)
     }
 
-    /// Ends polling and stops the running job at the next point at which the job can end.
+    /// Ends polling and stops the running job at the next possible point.
     pub fn stop(&self) {
         self.live.stop();
     }
 
-    /// Returns a handle that can [`stop`](Self::stop) without owning the worker.
+    /// Returns a handle that can [`stop`](Self::stop) the worker without owning it.
     pub fn stopper(&self) -> WorkerStopHandle {
         self.live.stopper()
     }
 
-    /// Requests samples at the given `interval` from start to start while no job is running. Zero means back to back,
-    /// `None` stops sampling, and the latest request takes effect immediately.
+    /// Requests samples while no job is running. `interval` is from start to start, and zero means back to back. `None`
+    /// stops sampling. The latest request takes effect immediately.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
 
-    /// Returns the current polling interval, or `None` if there is none, also after a failed sample or a stop.
+    /// Returns the current polling interval. Returns `None` while there is no polling, for example after a failed
+    /// sample or a stop.
     pub fn polling(&self) -> Option<Duration> {
         self.live.polling()
     }
 
-    /// Sets the values to watch, each with an interval from start to start; a duplicate is ignored, and a new list
-    /// replaces the previous one. While the device is polled, at most one value is requested between two samples, and a
+    /// Sets the values to watch, each with an interval from start to start. A duplicate is ignored, and a new list
+    /// replaces the previous one. While the device is polled, at most one value is requested between two samples. A
     /// value that the device does not have is requested only once. The list is kept when polling ends, and watching
     /// resumes with polling.
     pub fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
 
-    /// Returns the watched values in the requested order, without those that the device has refused.
+    /// Returns the watched values in the requested order. Values that the device has refused are left out.
     pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.active_entries()
     }
@@ -316,17 +319,17 @@ impl<D: Device> Worker<D> {
         has_ended(&self.ended)
     }
 
-    /// Cancels the running work and lets the thread end, without waiting for the thread.
+    /// Cancels the running work and ends the thread. Does not wait for the thread.
     pub fn end(self) -> Ending<D> {
         // Dropping the worker does both.
         Ending { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// Ends the worker like [`end`](Self::end) but without consuming it, so that no further jobs are accepted. Waits at
-    /// most `patience` and returns true when the thread has ended and the connection is free.
+    /// Ends the worker like [`end`](Self::end), but keeps it. No further jobs are accepted. Waits at most `patience`
+    /// and returns true when the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
-        // The thread ends when no more orders can arrive.
+        // The thread ends as soon as no more orders can arrive.
         self.orders = bounded(0).0;
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
@@ -344,14 +347,14 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
-/// A worker that was released. Its thread ends as soon as the running work has ended.
+/// A worker that is ending. Its thread ends as soon as the running work has ended.
 pub struct Ending<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
 }
 
 impl<D: Device> Ending<D> {
-    /// Returns the channel of remaining events, which report how the last job ended.
+    /// Returns the channel of the remaining events. They report how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }

@@ -1,4 +1,4 @@
-//! Opening a connection from a link: the part common to all devices on a byte stream.
+//! Opening a connection from a link. This is the part common to all devices on a byte stream.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -40,8 +40,8 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// Returns the reply delay to allow beyond the protocol's worst case for a kind of connection. USB adapters deliver
-/// data in packets, device servers reply over a network, and even a thread has to be woken up.
+/// Returns the reply delay that a kind of connection adds to the protocol's worst case. USB adapters deliver data in
+/// packets, and device servers reply over a network. Even a thread needs time to wake up.
 pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
     match scheme {
         LinkScheme::Serial => Duration::from_millis(50),
@@ -53,7 +53,7 @@ pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
 /// Opens a byte stream. `simulated` creates the virtual device.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// Returns an [`OpenError`]. Nothing has been sent then.
 pub fn open_bytes(
     url: &LinkUrl,
     format: CharacterFormat,
@@ -84,7 +84,7 @@ pub fn wrong_target_error(scheme: LinkScheme, known: &'static str) -> OpenError 
 /// Reads a recorded trace.
 ///
 /// # Errors
-/// [`OpenError::File`], [`OpenError::Recording`].
+/// Returns [`OpenError::File`] or [`OpenError::Recording`].
 pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     let text = read_text(Path::new(path))?;
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
@@ -93,7 +93,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 /// Checks that `query` contains only parameters listed in `known`.
 ///
 /// # Errors
-/// [`UrlError::Unknown`].
+/// Returns [`UrlError::Unknown`] for any other parameter.
 pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) -> Result<(), UrlError> {
     match query.pairs().iter().find(|(name, _)| !known.contains(&name.as_str())) {
         None => Ok(()),
@@ -103,11 +103,11 @@ pub fn check_parameters(query: &UrlQuery, scheme: LinkScheme, known: &[&str]) ->
     }
 }
 
-/// Returns the settings of a link's virtual device, which are the link parameters except those of the `line`, or
-/// nothing for a real device.
+/// Returns the settings of a link's virtual device. They are the link parameters except those of the `line`. A real
+/// device has none.
 ///
 /// # Errors
-/// [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
+/// Returns [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
 pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
     if url.scheme != LinkScheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;

@@ -1,13 +1,11 @@
-//! Schedule of the requests to a polled device: its sample, and at most one watched value between two samples.
-//! Independent of any clock.
+//! Schedule of the requests to a polled device. At most one watched value is requested between two samples. The
+//! schedule is independent of any clock.
 
 use std::time::{Duration, Instant};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DueRequest<W> {
-    /// A sample of the device.
     Sample,
-    /// A watched value.
     Watch(W),
 }
 
@@ -15,7 +13,7 @@ pub(super) enum DueRequest<W> {
 pub(super) struct PollScheduler<W> {
     sample: Pace,
     watches: Vec<Watch<W>>,
-    /// Whether the last request was a sample, so that a watched value may be requested next.
+    /// Whether the last request was a sample. Only then may a watched value be next.
     sample_was_last: bool,
 }
 
@@ -41,8 +39,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time, which is the earliest request, or the sample if several are due. Watching
-    /// pauses while sampling is off, and a new request is due at once.
+    /// Returns the next request and its time. It is the earliest request, or the sample if several are due. Watching
+    /// pauses while sampling is off. A new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
@@ -73,7 +71,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// Timing of a request, with equal intervals from start to start. A late request is never followed by several at once.
+/// Timing of a request, with equal intervals from start to start. After a late request, missed ones are not made up
+/// for.
 #[derive(Default)]
 struct Pace {
     interval: Option<Duration>,
@@ -81,7 +80,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// Returns the time of the next request, which is immediate for a new request.
+    /// Returns the time of the next request. A new request is due immediately.
     fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
         if interval != self.interval {
             self.interval = interval;

@@ -1,5 +1,5 @@
 //! A bounded ring for data that may be dropped, such as samples and trace frames. The writer never waits for the
-//! reader; the oldest entries are dropped and counted.
+//! reader. The oldest entries are dropped and counted.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -40,7 +40,7 @@ impl<T> Ring<T> {
         Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
     }
 
-    /// Appends an entry, dropping the oldest if the ring is full.
+    /// Appends an entry. If the ring is full, the oldest entry is dropped.
     pub fn push(&self, item: T) {
         let mut state = self.lock();
         let size = (state.size_of)(&item);
@@ -50,12 +50,12 @@ impl<T> Ring<T> {
         }
         state.size += size;
         state.items.push_back(item);
-        // Dropping an entry may take time, and is done without the lock.
+        // Dropping an entry may take time and needs no lock.
         drop(state);
         drop(oldest);
     }
 
-    /// Takes all entries, oldest first, and returns them with the number of entries dropped since the previous call.
+    /// Takes all entries, oldest first. The number is that of entries dropped since the previous call.
     pub fn drain(&self) -> (Vec<T>, u64) {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);
@@ -66,7 +66,7 @@ impl<T> Ring<T> {
     }
 
     fn lock(&self) -> MutexGuard<'_, State<T>> {
-        // No code under this lock can panic half-way.
+        // No code under this lock can panic half-way. A poisoned lock is therefore still valid.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

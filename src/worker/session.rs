@@ -1,4 +1,4 @@
-//! A session: one connection, the data known about its device, and the context of every job.
+//! A session: one connection, the data known about its device, and the context for its jobs.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,7 +15,7 @@ pub struct SessionContext {
     pub(super) trace: Trace,
     /// Folders for backups and the logbook.
     pub store: Store,
-    /// Whether the device is simulated in this process. Its write cycles are then counted separately.
+    /// Whether the device is simulated in this process. Its write cycles are counted separately.
     pub is_virtual: bool,
 }
 
@@ -26,7 +26,7 @@ impl SessionContext {
     }
 }
 
-/// A connection from opening to closing. Tests run its jobs inline, while a worker runs them on its own thread.
+/// A connection from opening to closing. A worker runs its jobs on a separate thread. Tests run them inline.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -44,7 +44,7 @@ impl<D: Device> Session<D> {
         self.context.cancel.clone()
     }
 
-    /// Replaces the cancellation flag, for tests that cancel automatically.
+    /// Replaces the cancellation flag. Tests use it to cancel automatically.
     pub fn set_cancel(&mut self, cancel: CancelToken) {
         self.context.cancel = cancel;
     }
@@ -62,7 +62,7 @@ impl<D: Device> Session<D> {
     /// Checks that the connection still exists.
     ///
     /// # Errors
-    /// The connection is lost.
+    /// Returns an error if the connection is lost.
     pub fn check(&mut self) -> Result<(), LinkError> {
         self.device.check()
     }
@@ -103,7 +103,7 @@ impl<D: Device> Session<D> {
         }
     }
 
-    /// Sets the sampling interval, or stops sampling.
+    /// Sets the sampling interval. `None` stops sampling.
     pub fn set_sample_interval(&mut self, interval: Option<Duration>) {
         self.device.set_sample_interval(&mut self.context, interval);
     }
@@ -111,7 +111,7 @@ impl<D: Device> Session<D> {
     /// Takes a sample immediately.
     ///
     /// # Errors
-    /// No sample could be taken.
+    /// Returns an error if no sample could be taken.
     pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
         self.device.sample(&mut self.context)
     }
@@ -119,17 +119,17 @@ impl<D: Device> Session<D> {
     /// Reads a watched value immediately.
     ///
     /// # Errors
-    /// The device did not reply.
+    /// Returns an error if the device did not reply.
     pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
         self.device.watch(&mut self.context, what)
     }
 
-    /// Returns a device message received since the last call that is not part of an event.
+    /// Returns a message that the device has sent since the last call, unless an event contains it.
     pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_remark()
     }
 
-    /// Runs a job on this thread, for callers that only need its result.
+    /// Runs a job on this thread and returns only its result.
     ///
     /// # Errors
     /// Returns the error of the job.

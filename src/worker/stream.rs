@@ -1,7 +1,7 @@
-//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops and counts
-//! the oldest. The thread never waits for the reader, and wakes the window at intervals rather than for each batch.
+//! Streams of unrequested data. A separate thread passes batches of samples through a bounded ring, which drops and
+//! counts the oldest. The thread never waits for the reader. It wakes the window at intervals and not for each batch.
 //!
-//! This module does not know the source of the samples: a [`Producer`] supplies them.
+//! This module does not know the source of the samples. A [`Producer`] supplies them.
 
 mod analogue;
 #[cfg(test)]
@@ -22,7 +22,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// Maximum duration of a single wait of a producer, and thus the longest delay until a stop or a change takes effect.
+/// Maximum duration of a single wait of a producer. A stop or a change takes effect within this time.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
 /// Minimum interval between two calls that wake the window.
 const WAKE: Duration = Duration::from_millis(50);
@@ -36,42 +36,42 @@ pub struct Batch<S> {
     pub time: SampleTime,
     /// Interval between samples in nanoseconds.
     pub period_ns: i64,
-    /// Number of samples lost between the previous batch and this one, either at the source or because they were not
-    /// read.
+    /// Number of samples lost between the previous batch and this one. They were lost at the source, or because they
+    /// were not read in time.
     pub lost: u64,
     /// The samples.
     pub samples: S,
 }
 
-/// A collection of samples that can be counted.
+/// A collection that tells its number of samples.
 pub trait SampleCount: Send + 'static {
     /// Returns the number of samples.
     fn count(&self) -> usize;
 }
 
-/// A source of samples, which is either virtual or an adapter.
+/// A source of samples, either virtual or an adapter.
 pub trait Producer: Send + 'static {
     /// Change of settings while the source is running.
     type Request: Send + 'static;
-    /// Samples of a batch.
+    /// Samples in a batch.
     type Samples: SampleCount;
-    /// Reason why the source ended without being asked to.
+    /// Reason why the source ended by itself.
     type Error: Send + 'static;
 
     /// Applies a change, starting with the next sample.
     fn change(&mut self, request: Self::Request);
 
-    /// Waits for samples for at most `patience` and returns `None` if none have arrived.
+    /// Waits for samples for at most `patience`. Returns `None` if none have arrived.
     ///
     /// # Errors
     /// Returns an error if there will be no more samples.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Ends the stream at the source, which would otherwise keep sending.
+    /// Ends the stream at the source. Otherwise, the source would keep sending.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// A signal for the end of a stream, for code that needs the resources of the stream.
+/// A signal for the end of a stream. Code that needs the resources of the stream waits for it.
 #[derive(Clone, Debug)]
 pub struct End(Receiver<Never>);
 
@@ -96,13 +96,12 @@ pub struct Stream<P: Producer> {
 
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
-    /// Latest request that has not been taken yet.
+    /// Latest request, until the thread takes it.
     request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
 }
 
-/// Buffer of batches waiting to be read.
 struct Ring<S> {
     batches: VecDeque<Batch<S>>,
     held: usize,
@@ -112,8 +111,8 @@ struct Ring<S> {
 }
 
 impl<P: Producer> Stream<P> {
-    /// Starts a thread for a producer. At most `capacity` samples, or one larger batch, are buffered, and `wake` is
-    /// called at most 20 times per second when there is data to read, and at the end.
+    /// Starts a thread for a producer. The buffer holds at most `capacity` samples, or one larger batch. `wake` is
+    /// called at the end, and at most 20 times per second when there is data to read.
     ///
     /// # Errors
     /// Returns an error if the system cannot create a thread.
@@ -135,8 +134,7 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Changes the request to the producer, starting with its next sample. If there are several changes, the latest
-    /// counts.
+    /// Changes the request to the producer from its next sample on. Of several changes, the latest counts.
     pub fn change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
@@ -150,12 +148,13 @@ impl<P: Producer> Stream<P> {
         batches.into()
     }
 
-    /// Returns the number of samples lost since the start, either at the source or because they were not read in time.
+    /// Returns the number of samples lost since the start. They were lost at the source, or because they were not read
+    /// in time.
     pub fn lost(&self) -> u64 {
         lock(&self.shared.ring).lost
     }
 
-    /// Returns the reason why the stream ended without being asked to. Later calls return `None`.
+    /// Returns the reason why the stream ended by itself. The reason is returned once.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
@@ -170,7 +169,7 @@ impl<P: Producer> Stream<P> {
         has_ended(&self.ended)
     }
 
-    /// Returns a signal for the end of the stream, which remains valid after the stream is dropped.
+    /// Returns a signal for the end of the stream. It remains valid after the stream is dropped.
     pub fn end(&self) -> End {
         End(self.ended.clone())
     }
@@ -183,7 +182,7 @@ impl<P: Producer> Drop for Stream<P> {
 }
 
 impl<S: SampleCount> Ring<S> {
-    /// Adds a batch and returns the evicted batches, to be dropped after releasing the lock.
+    /// Adds a batch and returns the evicted batches. The caller drops them after releasing the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
         self.held += batch.samples.count();
@@ -193,7 +192,7 @@ impl<S: SampleCount> Ring<S> {
             let count = oldest.samples.count();
             self.held -= count;
             self.lost += count as u64;
-            // The new oldest batch records the loss before it.
+            // The new oldest batch takes over the loss before it.
             self.batches.front_mut().unwrap_or(&mut batch).lost += oldest.lost + count as u64;
             dropped.push(oldest);
         }
@@ -214,7 +213,7 @@ impl SampleCount for Wires {
     }
 }
 
-/// A guard that signals the end of a thread, for any reason.
+/// A guard that signals the end of a thread, whatever its reason.
 struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -256,6 +255,6 @@ fn run_loop<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // No code under these locks can panic half-way.
+    // No code under these locks can panic half-way. A poisoned lock is therefore still valid.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

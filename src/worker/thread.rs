@@ -1,5 +1,5 @@
-//! The thread of a session: jobs as they arrive, samples and watched values in between, and regular checks of the
-//! connection.
+//! The thread of a session. It runs jobs as they arrive, takes samples and watched values in between, and regularly
+//! checks the connection.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,7 +13,7 @@ use super::poll_scheduler::{DueRequest, PollScheduler};
 use super::{Device, Event, JobId, JobInterruption as _, Ring, Session, Watched};
 use crate::link::CancelToken;
 
-/// Interval between attempts to send to a full channel.
+/// Interval between attempts to send while the channel is full.
 const RETRY: Duration = Duration::from_millis(5);
 
 /// A job being passed to the thread.
@@ -23,10 +23,10 @@ pub(super) struct Order<D: Device> {
     pub(super) cancel: CancelToken,
 }
 
-/// A type without values. Its channel only signals the end of the thread by closing.
+/// A type without values. Its channel only signals the end of the thread, by closing.
 pub(super) enum Never {}
 
-/// Everything that the thread of a session works with.
+/// State of the thread of a session.
 pub(super) struct Bench<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<Order<D>>,
@@ -38,7 +38,7 @@ pub(super) struct Bench<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread. `alive` is dropped last, once the connection is free.
+/// Starts the thread. `alive` is dropped last, when the connection is free.
 ///
 /// # Errors
 /// Returns an error if the system cannot start another thread.
@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io
     Ok(())
 }
 
-/// The job slot of a thread, freed when the thread ends for any reason.
+/// The job slot of a thread. It is freed when the thread ends, whatever the reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -67,7 +67,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
     let mut lost = false;
     let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
-        // The token first, then the requests that it was set for: see `Live::interrupt_sample`.
+        // The token is reset first, and then the requests are read for which it was set. See `Live::interrupt_sample`.
         bench.live.sampling_cancel().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
@@ -123,13 +123,13 @@ impl<D: Device> Bench<D> {
         self.session.set_cancel(order.cancel);
         let outbox = &mut self.events;
         let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
-        // The slot is free before the last event reports it: its reader may submit at once.
+        // The slot must be free before the last event reports it, because the reader may submit at once.
         self.busy.store(false, Ordering::SeqCst);
         self.events.send(end);
     }
 
-    /// Takes a due sample or watched value. Returns false if a job or another request interrupted the operation, which
-    /// is then still due.
+    /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted the
+    /// operation, which is then still due.
     fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling_cancel().clone());
         let request = self.live.number();
@@ -158,20 +158,20 @@ impl<D: Device> Bench<D> {
     }
 
     fn run_idle_work(&mut self) {
-        // A job interrupts it, like a sample.
+        // A job interrupts this request, as it interrupts a sample.
         self.session.set_cancel(self.live.sampling_cancel().clone());
         if let Some(remark) = self.session.idle() {
             self.events.send(Event::Remark(remark));
         }
     }
 
-    /// Waits until a job arrives, a request changes or `patience` has passed. A job remains in its channel for the main
-    /// loop to take.
+    /// Waits until a job arrives, a request changes or `patience` has passed. The main loop takes the job from its
+    /// channel.
     fn wait(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);
         ready.recv(&self.changes);
-        // The time is up: nothing is ready, which is not an error.
+        // An error means only that the time is up and nothing is ready.
         let _ = ready.ready_timeout(patience);
         let _ = self.changes.try_recv();
     }

@@ -15,15 +15,15 @@ pub enum Delimiter {
     Tab,
 }
 
-/// Known properties of a table; a property that is `None` is detected.
+/// Properties of a table that are known in advance. A property that is `None` is detected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableHints {
     pub delimiter: Option<Delimiter>,
-    /// Whether numbers use a decimal comma, if known.
+    /// Whether numbers use a decimal comma.
     pub decimal_comma: Option<bool>,
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
-    /// Volts per unit of the sine and cosine columns, overriding the header; finite and not zero.
+    /// Volts per unit of the sine and cosine columns, in place of the header's unit. Must be finite and not zero.
     pub volts_per_unit: Option<f64>,
 }
 
@@ -39,7 +39,7 @@ pub struct Layout {
     pub time_unit: TimeUnit,
     /// Volts per unit of the sine and cosine columns.
     pub volts_per_unit: f64,
-    /// Sample clock from the header, if the time column counts samples.
+    /// Sample clock from the header, present if the time column counts samples.
     pub clock: Option<SampleClock>,
 }
 
@@ -52,7 +52,7 @@ pub struct SampleClock {
 }
 
 impl Delimiter {
-    /// All delimiters, the least ambiguous first, since a comma may also be a decimal separator.
+    /// All delimiters, the least ambiguous first. The comma is last, because it may also be a decimal separator.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
     pub const fn byte(self) -> u8 {
@@ -64,17 +64,17 @@ impl Delimiter {
     }
 }
 
-/// Line before the data, with its line number in the file and its fields.
+/// Line before the data.
 struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
 }
 
 impl Layout {
-    /// Examines the first bytes of a table ([`HEAD`] bytes, or all bytes of a shorter table).
+    /// Detects the layout from the first [`HEAD`] bytes of a table, or from all bytes of a shorter table.
     ///
     /// # Errors
-    /// [`CaptureError`] if the bytes contain no table with sine and cosine.
+    /// Returns a [`CaptureError`] if the bytes contain no table with sine and cosine.
     pub fn detect(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
         let text = complete_lines(&decoded, head.len());
@@ -126,7 +126,7 @@ impl Layout {
     }
 }
 
-/// Removes columns whose first value does not fit: a reference angle must be a number, and an absolute position must be
+/// Removes columns whose first value does not fit. A reference angle must be a number, and an absolute position must be
 /// a whole number.
 fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
@@ -148,7 +148,7 @@ fn complete_lines(head: &[u8], read: usize) -> &[u8] {
 }
 
 /// Parses the header columns `Start` and `Increment` and the line below them, as written by Rigol oscilloscopes. If
-/// both are present, the first column counts samples.
+/// both are present, the first column of the table counts samples.
 fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
     let at = |line: &HeaderLine, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
     let places = |line: &HeaderLine| at(line, b"start").zip(at(line, b"increment"));
@@ -184,7 +184,7 @@ fn lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
         .collect()
 }
 
-/// Splits a line into fields; a quoted field may contain the delimiter.
+/// Splits a line into fields. A quoted field may contain the delimiter.
 fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     let mut fields = vec![Vec::new()];
     let mut quoted = false;
@@ -209,8 +209,8 @@ fn decimal_comma(lines: &[HeaderLine]) -> bool {
     has(b',') && !has(b'.')
 }
 
-/// Returns whether a line is a data row: all fields are numbers, or at least half of them in a row of the usual width.
-/// A malformed number in the first row is thus an error rather than a header.
+/// Returns whether a line is a data row. In a data row all fields are numbers, or at least half of them if the row has
+/// the usual width. A malformed number in the first row is thus reported as an error and not taken for a header.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
@@ -238,20 +238,20 @@ fn most_common_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
 }
 
-/// Returns the number of fields up to the last non-empty one, since some programs end each line with a delimiter.
+/// Returns the number of fields up to the last non-empty one. Some programs end each line with a delimiter.
 fn filled(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Returns the column names and, if present, the line of units: the last lines before the data with the same number of
-/// columns.
+/// Returns the column names and, if present, the units. They are the last lines before the data that have as many
+/// columns as the data.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&normalise_header_field(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
-    // Of two lines, either the second has the units, or the first has no names. A field in the second that is not a
-    // unit may be a count ("Sequence") or a number from the header.
+    // The second of two lines has the units. Otherwise, the first line is no part of the header. A field in the second
+    // line that is not a unit may be a count ("Sequence") or a number from the header.
     let is_named = |line: &Vec<String>| Columns::named(line).is_some();
     let units = |line: &Vec<String>| {
         !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
@@ -261,7 +261,7 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     }
     found.reverse();
     if let [names, units] = found.as_mut_slice() {
-        // A bare unit is written like a unit after a name.
+        // Put a unit that stands alone in brackets, like a unit after a name.
         for unit in units.iter_mut().filter(|unit| is_unit(&unit.to_lowercase())) {
             *unit = format!("({unit})");
         }
@@ -270,7 +270,8 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     found
 }
 
-/// Normalises a header field: a lone B5h is the µ of older encodings, and a leading # or % marks a comment.
+/// Normalises a header field. A lone B5h becomes a UTF-8 µ, and a leading # or % is removed, because it marks a
+/// comment.
 fn normalise_header_field(field: &[u8]) -> Vec<u8> {
     let field = field.strip_prefix(b"#").or_else(|| field.strip_prefix(b"%")).unwrap_or(field).trim_ascii();
     if std::str::from_utf8(field).is_ok() {

@@ -1,5 +1,4 @@
-//! Conversion of a table to UTF-8, piece by piece: UTF-8 passes unchanged, UTF-16 (exported by Windows programs as
-//! "Unicode text") is converted.
+//! Conversion of a table to UTF-8, piece by piece. UTF-16 is what Windows programs export as "Unicode text".
 
 use std::borrow::Cow;
 
@@ -19,19 +18,18 @@ pub(super) struct Utf8Decoder {
     encoding: Encoding,
     /// Number of remaining bytes of the byte order mark.
     mark: usize,
-    /// First byte of a code unit split across two pieces.
+    /// First byte of a code unit that is split across two pieces.
     half: Option<u8>,
-    /// First code unit of a surrogate pair split across two pieces.
+    /// First code unit of a surrogate pair that is split across two pieces.
     high: Option<u16>,
 }
 
-/// Converts the beginning of a table to UTF-8.
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
     Utf8Decoder::of(head).decode(head)
 }
 
 impl Utf8Decoder {
-    /// Detects the encoding from the beginning of a table. Without a byte order mark, UTF-16 is recognised by the zero
+    /// Detects the encoding from the beginning of a table. UTF-16 without a byte order mark is recognised by the zero
     /// bytes in the first two characters.
     pub(super) fn of(head: &[u8]) -> Self {
         let (encoding, mark) = match head {

@@ -1,14 +1,14 @@
-//! Names and units of a table's columns: which columns hold time, sine and cosine (SICK 8010701: SIN, REFSIN, COS,
-//! REFCOS).
+//! Names and units of a table's columns. They tell which columns hold time, sine and cosine. Names follow SICK 8010701:
+//! SIN, REFSIN, COS, REFCOS.
 
 /// Column numbers of a table, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// Time column; `None` for evenly spaced samples at an unknown interval.
+    /// Time column. If `None`, the samples are evenly spaced at an unknown interval.
     pub time: Option<usize>,
     pub sine: usize,
     pub cosine: usize,
-    /// Columns of REFSIN and REFCOS against ground, or `None` if sine and cosine are already differences.
+    /// Columns of REFSIN and REFCOS against ground. If `None`, sine and cosine are already differences.
     pub references: Option<(usize, usize)>,
     /// Column with the shaft angle of a reference encoder in degrees, if any.
     pub reference_angle: Option<usize>,
@@ -45,7 +45,7 @@ impl Columns {
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
-    /// Returns the columns of a table whose first column counts samples, whatever its name.
+    /// Returns the same columns with the first column as the time, because it counts samples.
     pub(super) fn counted(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();
@@ -53,7 +53,7 @@ impl Columns {
         Columns { time: self.time.or((!is_taken).then_some(1)), ..self }
     }
 
-    /// Finds the columns by name, or returns `None` if sine or cosine is missing.
+    /// Finds the columns by name. Returns `None` if sine or cosine is missing.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
             let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
@@ -140,8 +140,8 @@ fn bare_name(name: &str) -> String {
     bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
 }
 
-/// Returns the unit in a lower-case column name, in brackets or after a space, a slash or an underscore: `ms` in
-/// `time_ms`. A name entirely in brackets, as in a line of units, is a unit as a whole.
+/// Returns the unit in a lower-case column name, such as `ms` in `time_ms`. The unit is in brackets or follows a space,
+/// a slash or an underscore. A name entirely in brackets is a unit as a whole, as in a line of units.
 pub(super) fn column_unit(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

@@ -1,5 +1,5 @@
-//! Conversion of a table's bytes to samples: csv-core splits the fields and fast-float2 parses the numbers, without
-//! storing the text of the fields. The channels are those of SICK 8010701.
+//! Conversion of a table's bytes to samples. The text of the fields is not stored: csv-core splits the fields and
+//! fast-float2 parses the numbers. The channels are those of SICK 8010701.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -12,24 +12,23 @@ use super::{Capture, CaptureError, Wires};
 pub struct Import {
     layout: Layout,
     reader: Reader,
-    /// Current row without delimiters and quotes; `ends` holds the end of each field.
+    /// Fields of the current row, without delimiters and quotes. `ends` holds the end of each field.
     row: Vec<u8>,
     written: usize,
     ends: Vec<usize>,
     ended: usize,
     last: Option<u8>,
     decoder: Utf8Decoder,
-    /// First skipped row, and the error for its missing value.
+    /// Line number of the first skipped row, with the error for its missing value.
     first_left_out: Option<(u64, CaptureError)>,
     taken: ColumnChoice,
     capture: Capture,
 }
 
-/// Columns to import, with their conversion factors.
 #[derive(Clone, Copy, Debug)]
 struct ColumnChoice {
     columns: Columns,
-    /// Start time in seconds, and seconds per unit of the time column.
+    /// Start time, and length of the time column's unit, both in seconds.
     seconds: (f64, f64),
     volts: f64,
     comma: bool,
@@ -43,19 +42,19 @@ pub(super) enum Number {
     Text,
 }
 
-/// Maximum length of a row in bytes; input with a longer row is not a table.
+/// Maximum length of a row in bytes. Input with a longer row is not a table.
 const LONGEST_ROW: usize = 1 << 20;
-/// Minimum number of rows in a measurement; a shorter table is rejected at its first missing value.
+/// Minimum number of rows in a measurement. A shorter table is rejected at its first missing value.
 const LEAST_ROWS: u64 = 6;
 /// Maximum number of characters of an invalid field shown in a message.
 const SHOWN: usize = 24;
 
 impl Import {
-    /// Begins an import with the first bytes of a table ([`HEAD`] bytes, or all bytes of a shorter table). The bytes
-    /// are only examined; they must be [fed](Self::feed) as well.
+    /// Begins an import with the first [`HEAD`] bytes of a table, or with all bytes of a shorter table. The bytes are
+    /// only examined here. They must be [fed](Self::feed) as well.
     ///
     /// # Errors
-    /// As for [`Layout::detect`].
+    /// Returns the same errors as [`Layout::detect`].
     pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
         let import = Import::with(Layout::detect(head, hints)?);
@@ -105,7 +104,7 @@ impl Import {
     /// Processes the next bytes, in pieces of any size, from the beginning of the file.
     ///
     /// # Errors
-    /// [`CaptureError`] with the row and the column.
+    /// Returns a [`CaptureError`] that names the row and the column.
     pub fn feed(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
         let decoded = self.decoder.decode(bytes);
         let mut rest = &*decoded;
@@ -119,7 +118,7 @@ impl Import {
     /// Completes the import and returns the samples.
     ///
     /// # Errors
-    /// If no row contains numbers, or if most rows have no value.
+    /// Returns an error if no row contains numbers, or if most rows have no value.
     pub fn finish(mut self) -> Result<(Layout, Capture), CaptureError> {
         // An unclosed quotation mark turns everything after it into one row, none of which was truncated.
         if self.last != Some(b'"') && self.lines_in_row() > 0 {
@@ -138,7 +137,7 @@ impl Import {
         }
     }
 
-    /// Returns the number of line breaks in the incomplete row, all of which are inside quotation marks.
+    /// Returns the number of line breaks in the incomplete row. All of them are inside quotation marks.
     fn lines_in_row(&self) -> usize {
         let row = self.row.get(..self.written).unwrap_or_default();
         row.iter().filter(|byte| **byte == b'\n').count()
@@ -188,7 +187,7 @@ impl Import {
 }
 
 impl ColumnChoice {
-    /// Adds a row to the capture, or returns the error for the missing value if the row is skipped.
+    /// Adds a row to the capture. Returns the error for the missing value if the row is skipped.
     fn take(
         &self,
         row: &[u8],
@@ -202,7 +201,7 @@ impl ColumnChoice {
             return Ok(None);
         }
         let columns = &self.columns;
-        // The time is always required: a table without it is broken.
+        // Every row needs a time. A table without it is broken.
         let time = columns.time.map(|column| self.time(row, ends, line, column)).transpose()?;
         let (refsin, refcos) = columns.references.unzip();
         let taken =
@@ -258,7 +257,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Parses a value; the inner error means that the instrument recorded no value.
+    /// Parses a value. The inner error means that the instrument recorded no value.
     fn value(
         &self,
         row: &[u8],
@@ -286,7 +285,8 @@ impl ColumnChoice {
     }
 }
 
-/// Returns whether a field is an instrument's notation for a missing value: empty, dashes, or an overload.
+/// Returns whether a field means "no value" in an instrument's notation. Such a field is empty, has only dashes, or
+/// reports an overload.
 pub(super) fn is_no_value(field: &[u8]) -> bool {
     const WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
@@ -294,13 +294,13 @@ pub(super) fn is_no_value(field: &[u8]) -> bool {
     text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
 }
 
-/// Returns the value as an integer, or `None` beyond 2⁵³, where neighbouring integers are not distinct.
+/// Returns the value as an integer. Returns `None` beyond 2⁵³, where an `f64` cannot hold every integer.
 pub(super) fn whole(value: f64) -> Option<i64> {
     const MOST: f64 = (1_i64 << 53) as f64;
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
-/// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37), see SCPI-99, 7.2.1.
+/// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37). See SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
 /// Parses a field without surrounding spaces.
@@ -318,7 +318,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
 }
 
 fn parse_with_decimal_comma(field: &[u8], comma: usize) -> Option<f64> {
-    /// Maximum length of a number, which exceeds the digits of a double with sign and exponent.
+    /// Maximum length of a number. No double with sign and exponent needs as many digits.
     const LONGEST: usize = 64;
     let mut copy = [0; LONGEST];
     let copy = copy.get_mut(..field.len())?;

@@ -1,5 +1,5 @@
 //! Import of a recorded capture from a text table (CSV) as written by oscilloscopes and data loggers. The meaning of
-//! the columns is detected from the first lines and can be corrected; the caller reads the file and passes its bytes
+//! the columns is detected from the first lines and can be corrected. The caller reads the file and passes its bytes
 //! piece by piece.
 //!
 //! The columns are those named by SICK 8010701: SIN, REFSIN, COS and REFCOS against ground, or sine and cosine as
@@ -19,20 +19,20 @@ use super::wiring::Wires;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Capture {
-    /// Times in seconds; empty if the table has no time column.
+    /// Times in seconds. Empty if the table has no time column.
     pub time_s: Vec<f64>,
     /// Sine channel in volts, with the reference subtracted.
     pub sine_v: Vec<f64>,
     /// Cosine channel in volts, with the reference subtracted.
     pub cosine_v: Vec<f64>,
-    /// The four wires measured against ground, if the table contains the references.
+    /// Voltages of the four wires against ground, if the table contains the references.
     pub wires: Option<Wires>,
-    /// Shaft angle of a reference encoder in degrees, wrapped or unwrapped, if the table contains it.
+    /// Shaft angle of a reference encoder in degrees, if the table contains it. The angle may be wrapped or unwrapped.
     pub reference_deg: Option<Vec<f64>>,
     /// Absolute positions in steps of 1/32 period, if the table contains them.
     pub absolute: Option<Vec<i64>>,
-    /// Number of skipped rows: rows with a time but without a measured value (empty, NaN, overload), and a truncated
-    /// last line.
+    /// Number of skipped rows. They have a time but no measured value (empty, NaN or overload), or are a truncated last
+    /// line.
     pub left_out: u64,
 }
 
@@ -80,7 +80,7 @@ pub enum CaptureError {
         column: usize,
         text: String,
     },
-    /// A time is NaN or infinite, or a value in a table with too few rows is.
+    /// A time is NaN or infinite. In a table with too few rows, this is also the error for such a value.
     #[error("row {row}, column {column}: {text} is not finite")]
     NotFinite {
         /// Line number in the file, counted from 1.

@@ -1,5 +1,5 @@
-//! Comparison of two captures of one signal, for example with the drive off and on: what became worse, what only
-//! changed, and what cannot be compared. Both captures must be judged by the same limits.
+//! Comparison of two captures of one signal, for example with the drive off and on. The result lists what became worse,
+//! what only changed, and what cannot be compared. Both captures must be judged by the same limits.
 
 use std::mem::discriminant;
 
@@ -8,7 +8,7 @@ use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, S
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DiagnosisChanges {
-    /// Findings that are new or became worse, most severe first.
+    /// Findings that are new or became worse, the most severe first.
     pub worse: Vec<DiagnosisFinding>,
     /// Findings that changed without becoming worse.
     pub changed: Vec<DiagnosisFinding>,
@@ -20,7 +20,7 @@ pub struct DiagnosisChanges {
 pub enum ComparisonObstacle {
     NoEllipseBefore,
     NoEllipseAfter,
-    /// One of the captures has no spectrum, so hum, interference and noise cannot be compared.
+    /// One of the captures has no spectrum. Hum, interference and noise cannot be compared without it.
     NoSpectrum,
 }
 
@@ -84,7 +84,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         FindingKind::Hum { .. } | FindingKind::Interference { .. } | FindingKind::Noise { .. } => return false,
         // Consequences of other findings, and properties of the motion.
         FindingKind::Uncertain { .. } | FindingKind::Reversed { .. } => return false,
-        // Another finding may have explained the residual in the first capture.
+        // In the first capture, another finding may have explained the residual.
         FindingKind::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
                 (Some(before), Some(after)) => after >= FURTHER * before,
@@ -137,7 +137,7 @@ fn finding_magnitude(what: &FindingKind) -> f64 {
         FindingKind::Spikes { count, .. } | FindingKind::LetsGo { count, .. } => count as f64,
         FindingKind::Missing { gaps, .. } => gaps as f64,
         FindingKind::Half { share, .. } => 1.0 / share,
-        // Only the presence of such a finding counts: it has no magnitude.
+        // Such a finding has no magnitude: only its presence counts.
         _ => f64::NAN,
     }
 }

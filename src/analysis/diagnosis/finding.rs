@@ -51,8 +51,8 @@ pub enum FindingKind {
         /// Combined peak of all mains lines, in volts.
         volts: f64,
         share: f64,
-        /// Whether the hum is in phase and about equally strong in both channels, as when coupled in by the screen or
-        /// the ground.
+        /// Whether the hum is in phase and about equally strong in both channels. It is if the screen or the ground
+        /// couples it in.
         common: bool,
     },
     /// The spectrum contains a line that is not a harmonic of the signal.
@@ -69,12 +69,12 @@ pub enum FindingKind {
         volts: f64,
         share: f64,
     },
-    /// The distance from the ellipse repeats `order` times per period, which indicates harmonics of the orders one
-    /// below and one above.
+    /// The distance from the ellipse repeats `order` times per period. The cause is harmonics of the orders one below
+    /// and one above.
     Harmonics {
         /// Repetitions per period, 3 to 8.
         order: usize,
-        /// Peak as a fraction of the amplitude, which equals the resulting error in radians.
+        /// Peak as a fraction of the amplitude. The resulting error in radians has the same value.
         share: f64,
     },
     Clipping {
@@ -88,7 +88,7 @@ pub enum FindingKind {
         /// Half the difference between the largest and smallest amplitudes, divided by the mean amplitude.
         share: f64,
     },
-    /// Isolated outliers were excluded.
+    /// Isolated outliers are present. They were left out of the fit.
     Spikes {
         count: usize,
         /// Greatest distance of an outlier from the ellipse, in volts.
@@ -111,7 +111,7 @@ pub enum FindingKind {
     Reversed {
         times: usize,
     },
-    /// The capture has too few samples per period to follow the angle reliably.
+    /// The capture has too few samples per period for the angle to be followed reliably.
     Coarse {
         /// Median angle between consecutive samples, in degrees.
         step_deg: f64,
@@ -127,7 +127,7 @@ pub enum FindingKind {
         /// Peak-to-peak position error after the correction, in electrical degrees.
         corrected_deg: f64,
     },
-    /// Both channels have the mean level of a single wire, so no reference was subtracted.
+    /// Both channels have the mean level of a single wire. No reference was subtracted.
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
@@ -139,10 +139,10 @@ pub enum FindingKind {
         /// Peak amplitude in the second capture, in volts.
         to_v: f64,
     },
-    /// An interference line is present only in the second of two captures, or is stronger there than in the first.
+    /// The second of two captures contains an interference line that is weaker in the first or missing there.
     InterferenceRose {
         frequency_hz: f64,
-        /// Peak in the first capture, in volts; 0 if no interference was visible.
+        /// Peak in the first capture, in volts. It is 0 if no interference was visible.
         from_v: f64,
         /// Peak in the second capture, in volts.
         to_v: f64,
@@ -160,10 +160,10 @@ pub enum FindingKind {
 /// Level of the wires of a channel that does not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StuckLevel {
-    /// Both wires are at the same level: one is open, or they are shorted to each other.
+    /// Both wires are at the same level, because one is open or they are shorted to each other.
     Together,
     Ground(Wire),
     Supply(Wire),
-    /// The wires differ by the given voltage: one is shorted, or open without a resistor between the two.
+    /// The wires differ by this voltage. One is shorted, or it is open and no resistor joins the two.
     Apart(f64),
 }

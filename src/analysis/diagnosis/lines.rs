@@ -1,10 +1,10 @@
 //! Detection of spectral lines that are not harmonics of the signal: interference from a drive, the mains or a
 //! switching supply.
 //!
-//! An uneven motion, or an amplitude that varies over the revolution, also adds lines beside those of the signal. Such
-//! lines are distinguished from interference by direction: external interference moves the vector of both channels in
-//! any direction, half of it (on average over the period) along the radius; an uneven motion moves the vector along the
-//! circle only, and an uneven amplitude along the radius only.
+//! An uneven motion also adds lines beside those of the signal, and so does an amplitude that varies over the
+//! revolution. The direction distinguishes such lines from interference. External interference moves the vector of both
+//! channels in any direction, and on average half of it is along the radius. An uneven motion moves the vector only
+//! along the circle, and an uneven amplitude only along the radius.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -18,17 +18,17 @@ use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Highest multiple of the mains frequency that is attributed to the mains.
 const MULTIPLES: f64 = 10.0;
-/// Line spacing of a spectrum above which its lines cannot be attributed to the mains.
+/// Spacing of the spectrum's lines above which none is attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
-/// Preferred minimum length of the examined record in seconds: ten mains periods.
+/// Preferred minimum length of the examined record in seconds. It is ten mains periods.
 const SECONDS: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
-/// Minimum number of periods; with fewer, the signal's own line covers the whole spectrum.
+/// Minimum number of periods. With fewer, the signal's own line covers the whole spectrum.
 const LEAST_PERIODS: f64 = 8.0;
-/// Number of signal harmonics skipped, for even and uneven motion. Uneven motion skips fewer, because its wide
-/// harmonics cover much of the spectrum and do not stand out as lines.
+/// Number of signal harmonics skipped, for even and for uneven motion. The wide harmonics of an uneven motion cover
+/// much of the spectrum and do not stand out as lines, so fewer are skipped.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const REACH: usize = 3;
@@ -40,9 +40,9 @@ const NEIGHBOURS: usize = 50;
 const ABOVE: f64 = 6.0;
 /// Maximum number of lines reported.
 const MOST: usize = 8;
-/// Permitted radial share of an interference line, that is, of its component along the signal vector.
+/// Permitted share of an interference line along the radius, which is the direction of the signal vector.
 const RADIAL: Range<f64> = 0.25..0.75;
-/// Maximum phase difference at which both channels count as in phase, in radians.
+/// Phase difference in radians up to which both channels count as in phase.
 const IN_PHASE: f64 = TAU / 12.0;
 
 /// Spectral line that is not a harmonic of the signal.
@@ -57,7 +57,7 @@ pub struct Interference {
     pub mains_hz: Option<f64>,
 }
 
-/// Spectral line and its contribution to the distance from the ellipse, as a mean square in V².
+/// Spectral line with its contribution to the distance from the ellipse.
 struct StrongLine {
     line: Interference,
     radial_v2: f64,
@@ -74,7 +74,7 @@ pub(super) struct SpectrumContent {
     pub(super) radial_v2: f64,
 }
 
-/// Finds the interference lines, or returns `None` if the samples are not evenly spaced, are too few, or cover too few
+/// Finds the interference lines. Returns `None` if the samples are not evenly spaced, are too few, or cover too few
 /// periods.
 pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
@@ -126,7 +126,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Replaces each outlier by the preceding value, since a spike would raise every line.
+/// Replaces each outlier by the preceding value. A spike would raise every line.
 fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -143,8 +143,8 @@ fn magnitude_at(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Returns which lines belong to the signal: the fundamental and its harmonics, including those aliased at half the
-/// sample rate.
+/// Returns a mask of the lines that belong to the signal. These are the fundamental and its harmonics, including
+/// harmonics aliased at half the sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = REACH.min(both.len());
@@ -203,8 +203,8 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both mains frequencies and are assigned
-/// according to the other lines present.
+/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both mains frequencies, so the other lines
+/// decide.
 fn name_mains_lines(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;
@@ -245,7 +245,7 @@ impl Complex {
     }
 }
 
-/// Probe for a single frequency in both channels and in the radial component.
+/// Examination of a single frequency in both channels and in the radial component.
 struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
@@ -255,7 +255,7 @@ struct FrequencyProbe<'a> {
 }
 
 impl FrequencyProbe<'_> {
-    /// Returns the line at a frequency, or `None` if it is not interference.
+    /// Returns the line at a frequency. Returns `None` if it is not interference.
     fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
         let stretch = self.correction.stretch();
@@ -286,7 +286,7 @@ impl FrequencyProbe<'_> {
             let (own_y, own_x) = self.correction.apply(*y, *x);
             let length = own_y.hypot(own_x);
             let off = 1.0 - self.analysis.ellipse.amplitude_v / length.max(f64::MIN_POSITIVE);
-            // Without subtraction, the mean level would leak into low frequencies.
+            // Without this subtraction, the mean level would leak into low frequencies.
             let y = y - self.analysis.ellipse.offset_sine_v;
             let x = x - self.analysis.ellipse.offset_cosine_v;
             let weight = 1.0 - window.re;

@@ -1,7 +1,7 @@
-//! Diagnosis of a recorded signal: what is wrong and its likely cause, such as a broken wire, the screen, a drive, or
-//! the scale. The parameter limits are those of the family (`quality`). Wiring faults are recognised by the
-//! distribution of the samples (sections 1 and 2 of the project's sine/cosine reference), by spectral lines, and by
-//! effects that repeat with the period or the revolution.
+//! Diagnosis of a recorded signal: the faults and their likely causes, such as a broken wire, the screen, a drive or
+//! the scale. The parameter limits are those of the encoder family (`quality`). Wiring faults are recognised by the
+//! distribution of the samples, by spectral lines, and by effects that repeat with the period or the revolution. See
+//! sections 1 and 2 of the project's sine/cosine reference.
 //!
 //! Thresholds without a source are assumptions (U) and are collected below.
 
@@ -23,10 +23,10 @@ use super::wiring::Wire;
 
 /// Fraction of the amplitude below which hum and interference are not reported.
 pub const LEAST_LINE: f64 = 0.002;
-/// Fraction of the amplitude from which a disturbance is a warning rather than a notice; it corresponds to an error of
-/// 0.6 electrical degrees.
+/// Fraction of the amplitude from which a disturbance is a warning and not a notice. It corresponds to an error of 0.6
+/// electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// Range of the amplitude ratio between the channels that indicates that one channel has lost one of its two wires.
+/// Range of the ratio of both amplitudes in which the weaker channel has lost one of its two wires.
 const HALF: (f64, f64) = (0.4, 0.6);
 /// Voltage difference up to which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
@@ -34,7 +34,7 @@ const SAME_LEVEL_V: f64 = 0.1;
 const RAILS_V: (f64, f64) = (0.5, 4.5);
 /// Fraction of samples excluded from the fit from which spikes are a warning.
 const MANY_SPIKES: f64 = 1e-3;
-/// Number of consecutive outliers from which the cause is an intermittent contact rather than a spike.
+/// Number of consecutive outliers from which the cause is an intermittent contact and not a spike.
 const LETS_GO: usize = 16;
 /// Amplitude modulation over a revolution from which it is reported, and from which it is a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
@@ -55,12 +55,12 @@ pub struct Record<'a> {
 pub struct Diagnosis {
     /// Findings, most severe first.
     pub findings: Vec<DiagnosisFinding>,
-    /// Peak amplitude of the cosine channel in volts, or `None` if no ellipse was fitted.
+    /// Peak amplitude of the cosine channel in volts. `None` if no ellipse was fitted.
     pub amplitude_v: Option<f64>,
     /// RMS white noise of one channel in volts, if known.
     pub noise_v: Option<f64>,
-    /// Spectral lines that are not harmonics of the signal, including the mains, strongest first. `None` if the samples
-    /// are not evenly spaced or the capture is too short for a spectrum.
+    /// Spectral lines that are not harmonics of the signal, strongest first, including those of the mains. `None` if
+    /// the samples are not evenly spaced or the capture is too short for a spectrum.
     pub interference: Option<Vec<Interference>>,
     /// Line spacing of the interference spectrum in hertz, if available.
     pub spacing_hz: Option<f64>,
@@ -110,8 +110,8 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
 }
 
 impl Diagnosis {
-    /// Returns the diagnosis under other limits, without needing the samples. Findings that depend on limits are judged
-    /// again from the analysis and the mean levels of REFSIN and REFCOS in volts.
+    /// Returns the diagnosis under other limits. The samples are not needed: findings that depend on limits are judged
+    /// again from the analysis and from the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn with_new_limits(
         &self,
@@ -164,7 +164,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
     }
 }
 
-/// Diagnoses samples to which no ellipse could be fitted; their distribution still reveals the cause.
+/// Diagnoses samples to which no ellipse could be fitted. Their distribution still reveals the cause.
 fn diagnose_without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
     match error {
         AnalysisError::AtRest => say(Severity::Warning, FindingKind::AtRest),

@@ -1,6 +1,6 @@
-//! Detection of effects that repeat with the period or the revolution, or occur at an end of the range: harmonics of
-//! the scale, clipped channels, an amplitude that varies over the revolution. None of the methods needs evenly spaced
-//! samples.
+//! Detection of effects that repeat with the period or the revolution, or occur at an end of the range. These are
+//! harmonics of the scale, clipped channels, and an amplitude that varies over the revolution. None of the methods
+//! needs evenly spaced samples.
 
 use std::f64::consts::TAU;
 
@@ -13,28 +13,28 @@ use crate::analysis::signal_analysis::Analysis;
 const SECTORS: usize = 64;
 /// Maximum number of samples examined for harmonics.
 const SAMPLES: usize = 1 << 18;
-/// Orders examined in the averaged distance from the ellipse; the fit absorbs the first two.
+/// Orders examined in the averaged distance from the ellipse. The fit absorbs the first two.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 const OF_REVOLUTION: usize = 36;
 /// Number of samples per period that suffices to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
-/// Distance from the end of the range up to which a sample counts as being at the end, as a fraction of the amplitude.
+/// Distance from the end of the range within which a sample counts as at the end, as a fraction of the amplitude.
 const AT_END: f64 = 0.002;
-/// Fraction of samples at the end of the range from which a channel counts as clipped: three times that of an unclipped
-/// sine, √(2·0.002)/π = 2 %.
+/// Fraction of samples at the end of the range from which a channel counts as clipped. An unclipped sine has a third of
+/// it: √(2·0.002)/π = 2 %.
 const CUT_OFF: f64 = 3.0 * 0.0201;
-/// Minimum number of periods, since all samples of a shaft at rest are at one level.
+/// Minimum number of periods. All samples of a shaft at rest are at one level, which looks like clipping.
 const LEAST_PERIODS: f64 = 2.0;
 /// Minimum RMS distance of a clipped sine from its ellipse, as a fraction of the amplitude.
 const LEAST_RESIDUAL: f64 = 0.002;
 
 /// Returns the strongest order of the distance from the ellipse over the period, and its peak as a fraction of the
-/// amplitude, or `None` if part of the period has no samples.
+/// amplitude. Returns `None` if part of the period has no samples.
 pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); SECTORS];
-    // An odd stride does not lock onto a period of 2ⁿ samples.
+    // An odd stride does not fall in step with a period of 2ⁿ samples.
     let stride = (analysis.samples / SAMPLES) | 1;
     for (y, x) in good(samples, analysis).step_by(stride) {
         let (y, x) = correction.apply(y, x);
@@ -90,8 +90,8 @@ pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Signa
     found
 }
 
-/// Returns the amplitude variation over a revolution of the given number of periods, as a fraction, or `None` if the
-/// capture covers less than one revolution.
+/// Returns the amplitude variation over a revolution of the given number of periods, as a fraction. Returns `None` if
+/// the capture covers less than one revolution.
 pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
     let revolution = f64::from(periods);
     if periods == 0 || analysis.coverage.periods < revolution {

@@ -1,16 +1,16 @@
-//! Reasons to doubt the results of an analysis: gaps in the times, a shaft that reversed, few samples per period,
-//! disturbances in the samples of the ellipse, columns that are not differences.
+//! Reasons to doubt the results of an analysis: gaps in the times, a reversal, few samples per period, disturbances in
+//! the samples of the ellipse, and columns that are not differences.
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
 use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::ErrorBasis;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Range of the mean level, in volts, that identifies a single wire. Section 1 of the project's sine/cosine reference
-/// gives 2.0 … 3.0 V and 0.5 Vpp; the range has a margin for signals outside their limits.
+/// Range of the mean level, in volts, that identifies a single wire. A single wire has 2.0 … 3.0 V and 0.5 Vpp. The
+/// range has a margin for signals outside their limits. See section 1 of the project's sine/cosine reference.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
-/// Factor by which a harmful correction increases the error; the increase must also exceed `LARGER_DEG`.
+/// Factor by which a harmful correction increases the error. The increase must also exceed `LARGER_DEG`.
 const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
@@ -29,8 +29,8 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
     }
 }
 
-/// Checks for an ellipse that mistakes harmonics for gain or phase errors and thereby doubles them. The distance from
-/// the ellipse contains noise, so only a motion reveals this.
+/// Checks for an ellipse that mistakes harmonics for gain or phase errors, which doubles them. Only the error from a
+/// motion reveals this, because the distance from the ellipse contains noise.
 pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
@@ -39,7 +39,7 @@ pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, Find
     }
 }
 
-/// Returns the uncertainty of the ellipse, approximately the combined share of the disturbances found.
+/// Returns the uncertainty of the ellipse. It is approximately the combined share of the disturbances found.
 pub(super) fn uncertainty_finding(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     let share = |finding: &DiagnosisFinding| match finding.kind {
         FindingKind::Hum { share, .. }
@@ -62,8 +62,8 @@ pub(super) fn detect_single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     (levels && amplitudes).then_some(FindingKind::SingleEnded { sine_v, cosine_v })
 }
 
-/// Returns whether a finding results from single-ended columns, which have the wire's level as offset and half the
-/// amplitude.
+/// Returns whether a finding results from single-ended columns. Such columns have the wire's level as their offset and
+/// half the amplitude.
 pub(super) fn is_of_single_ended(found: &OutOfLimits) -> bool {
     matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
 }

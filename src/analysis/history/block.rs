@@ -1,5 +1,6 @@
-//! Block of samples of one column with its pyramid: the minimum and maximum of every 8 samples, of every 8 such
-//! buckets, and so on up to the whole block. A block is independent of time and of its position in the history.
+//! Block of samples of one column with its pyramid. The pyramid holds the minimum and maximum of every 8 samples, of
+//! every 8 such buckets, and so on up to the whole block. A block is independent of time and of its position in the
+//! history.
 
 use std::ops::Range;
 
@@ -15,7 +16,7 @@ struct BucketLevel {
     start: usize,
 }
 
-/// Levels between the samples and the whole block, coarsest first, in the order in which they are stored.
+/// Levels between the samples and the whole block, coarsest first, as they are stored.
 const LEVELS: [BucketLevel; 3] = [
     BucketLevel { size: FAN * FAN * FAN, start: 0 },
     BucketLevel { size: FAN * FAN, start: FAN },
@@ -64,7 +65,7 @@ impl Bucket {
     }
 }
 
-/// Range of values that contains all values of its sources. An empty range is (∞, −∞).
+/// Range that contains the values of all its sources. An empty range is (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ValueRange {
     pub(super) min: f64,
@@ -82,8 +83,8 @@ impl ValueRange {
     }
 }
 
-/// Block of up to `BLOCK` samples. Its memory, except that of the flags, is allocated at once and reused after
-/// [`clear`](SampleBlock::clear). A block has few fields, so that many blocks are scanned quickly.
+/// Block of up to `BLOCK` samples. Its memory is allocated at once, except that of the flags, and is reused after
+/// [`clear`](SampleBlock::clear). A block has few fields, so many blocks are scanned quickly.
 #[derive(Debug)]
 pub(super) struct SampleBlock<T> {
     values: Vec<T>,
@@ -91,11 +92,11 @@ pub(super) struct SampleBlock<T> {
     buckets: Box<[Bucket]>,
     /// Bucket for the whole block, valid once the block is full.
     top: Bucket,
-    /// Base of the buckets, which is the median of the first few values, so that one outlier does not coarsen the rest.
-    /// `None` until a bucket contains a value.
+    /// Base of the buckets, or `None` until a bucket contains a value. The base is the median of the first few values,
+    /// because a single outlier would otherwise make all other distances coarse.
     base: Option<T>,
     flags: FlagBlock,
-    /// Spread of the whole block if the block is full and contains a value.
+    /// Spread of the whole block, present if the block is full and contains a value.
     spread: Option<Box<RunningStatistics<T>>>,
 }
 
@@ -118,7 +119,7 @@ impl<T: Number> SampleBlock<T> {
         self.values.len()
     }
 
-    /// Appends `values`, which must fit, with their flags; empty flags mean that none are set. A value that is not a
+    /// Appends `values`, which must fit, with their flags. Empty flags mean that no flag is set. A value that is not a
     /// finite number is marked as bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
@@ -149,8 +150,8 @@ impl<T: Number> SampleBlock<T> {
         &self.flags
     }
 
-    /// Returns `known`, widened to include the values in `range`. Values from samples are exact and values from buckets
-    /// are rounded outward. Only parts that can widen the result are examined.
+    /// Returns `known`, widened to include the values in `range`. Values from samples are exact, and values from
+    /// buckets are rounded outward. Only parts that can widen the result are examined.
     pub(super) fn widen(&self, known: ValueRange, range: Range<usize>) -> ValueRange {
         let Some(base) = self.base else { return known.with(self.scan(range)) };
         let mut search = Search {
@@ -265,7 +266,7 @@ impl<T: Number> SampleBlock<T> {
         }
     }
 
-    /// Returns the bucket of a level that contains the sample `at`, or `None` if the bucket is incomplete.
+    /// Returns the bucket of a level that contains the sample `at`. Returns `None` if the bucket is incomplete.
     fn bucket(&self, level: BucketLevel, at: usize) -> Option<Bucket> {
         let number = at / level.size;
         let complete = (number + 1) * level.size <= self.len();
@@ -273,7 +274,7 @@ impl<T: Number> SampleBlock<T> {
     }
 
     /// Searches `range` for values that widen the result. Buckets of the coarsest level inside the range are searched
-    /// first, then the remainder on both sides, which a single bucket may rule out.
+    /// first. The remainder on each side follows, which a single bucket may rule out.
     fn search(&self, levels: &[BucketLevel], range: Range<usize>, search: &mut Search) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.with(self.scan(range));
@@ -301,8 +302,8 @@ impl<T: Number> SampleBlock<T> {
         extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.below(), max: max.above() })
     }
 
-    /// Returns the length of a run of samples without a value, from `at` and within `end`, as far as a single check
-    /// reveals.
+    /// Returns the length of a run of samples without a value that begins at `at` and ends by `end`. The run is
+    /// measured by one check and may be longer.
     fn gap_length(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -311,8 +312,8 @@ impl<T: Number> SampleBlock<T> {
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
 
-    /// Returns the length of a run of samples without a value that ends before `end`, within `start`, as far as a
-    /// single check reveals.
+    /// Returns the length of a run of samples without a value that ends before `end` and begins at or after `start`.
+    /// The run is measured by one check and may be longer.
     fn previous_gap(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
@@ -326,7 +327,7 @@ impl<T: Number> SampleBlock<T> {
 struct Search {
     samples: ValueRange,
     found: Bucket,
-    /// Bucket whose values do not widen the result.
+    /// Bucket whose values need not be searched, because they do not widen the result.
     enough: Bucket,
 }
 
@@ -337,7 +338,7 @@ impl Search {
     }
 }
 
-/// Returns the minimum and maximum of the valid samples in `range`, or `None` if no sample is valid.
+/// Returns the minimum and maximum of the valid samples in `range`. Returns `None` if no sample is valid.
 fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
     flags.good(range).filter_map(|good| extremes(values.get(good)?)).reduce(|one, other| {
         (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })

@@ -13,16 +13,16 @@ impl Flags {
     pub const NONE: Flags = Flags(0);
     /// Samples are missing before the flagged sample, so no line may join it to the previous sample.
     pub const BREAK: Flags = Flags(1);
-    /// The value is invalid, so it is excluded everywhere and the line is broken. Implies [`BREAK`](Flags::BREAK).
+    /// The value is invalid. It is excluded everywhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
     pub const BAD: Flags = Flags(2);
-    /// The device has issued a warning; the value is valid.
+    /// The device has issued a warning, but the value is valid.
     pub const WARNING: Flags = Flags(4);
 
     pub const fn contains(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Returns the flags with all implied flags added, as stored.
+    /// Returns the flags with all implied flags added. Flags are stored in this form.
     pub(super) const fn with_implied_flags(self) -> Flags {
         if self.contains(Flags::BAD) { Flags(self.0 | Flags::BREAK.0) } else { self }
     }
@@ -46,12 +46,12 @@ const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
-/// Flags of a block. The combined flags of each group are stored inline, so that the flags of single samples, which are
-/// elsewhere in memory, are read only if any are set. Allocates memory with the first flag.
+/// Flags of a block. The flags of single samples are elsewhere in memory, allocated with the first flag. They are read
+/// only if the combined flags of a group, which are stored inline, are set.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     any: Flags,
-    /// One bitmap per kind of flag, with one bit per group that is set if the group contains the flag.
+    /// One bitmap for each kind of flag. A bit is set if its group contains the flag.
     groups: [u64; KINDS.len()],
     kept: Option<Box<[Flags; BLOCK]>>,
 }
@@ -100,7 +100,7 @@ impl FlagBlock {
         let mut found = self.flags_in_groups(from..to.max(from));
         let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
         for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
-            // Part of one group, which may add no new flags.
+            // The edge is part of a group and may add no new flags.
             let group = edge.start / GROUP;
             if !found.contains(self.flags_in_groups(group..group + 1)) {
                 found |= union(self.samples(edge));
@@ -142,7 +142,7 @@ fn union(flags: &[Flags]) -> Flags {
 
 /// Iterator over ranges of valid samples; see [`FlagBlock::good`].
 pub(super) struct ValidRanges<'a> {
-    /// Flags of the samples; empty if all samples are good.
+    /// Flags of the samples. Empty if all samples are valid.
     samples: &'a [Flags],
     range: Range<usize>,
 }

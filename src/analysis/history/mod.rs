@@ -1,9 +1,9 @@
-//! Samples as received over several hours: columns of values over one column of times, in blocks of fixed size, with a
-//! pyramid of minimum and maximum values that quickly yields a picture of any range. Appended samples stay unchanged
-//! until they are evicted; nothing is interpolated, smoothed or thinned out.
+//! Samples as received over several hours: columns of values over one column of times, in blocks of fixed size. A
+//! pyramid of minimum and maximum values quickly yields a picture of any range. Appended samples stay unchanged until
+//! they are evicted. Nothing is interpolated, smoothed or thinned out.
 //!
-//! Samples are counted from the very first and keep their index: blocks and buckets begin at multiples of their size,
-//! so the drawing of a sample does not change while others are added or evicted.
+//! Samples are counted from the very first and keep their index. Blocks and buckets begin at multiples of their size,
+//! so a sample is drawn in the same way while others are added or evicted.
 
 mod block;
 mod flags;
@@ -29,17 +29,17 @@ use times::Times;
 
 use super::SampleTime;
 
-/// Number of samples in a block, the unit of allocation and eviction.
+/// Number of samples in a block. Blocks are allocated and evicted as a whole.
 const BLOCK: usize = 4096;
 
-/// Number of samples per lowest-level pyramid bucket, and of buckets per bucket of the next level.
+/// Number of samples in a bucket of the lowest pyramid level, and number of such buckets in a bucket of the next level.
 const FAN: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `f64`.
     Real,
-    /// `i64`, stored exactly.
+    /// `i64` without any rounding.
     Whole,
 }
 
@@ -118,7 +118,7 @@ pub struct History {
     columns: Vec<Column>,
     /// Number of blocks to keep, including the one being filled.
     keep: usize,
-    /// Longest pause in nanoseconds across which samples are joined, or `None` for no limit.
+    /// Longest pause in nanoseconds across which samples are joined. `None` without a limit.
     longest_pause: Option<i64>,
     broken: bool,
 }
@@ -141,7 +141,7 @@ impl History {
         History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
     }
 
-    /// Sets the longest pause in nanoseconds; after a longer pause, samples are considered missing and the line is
+    /// Sets the longest pause in nanoseconds. After a longer pause, samples are considered missing and the line is
     /// broken.
     #[must_use]
     pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
@@ -152,7 +152,7 @@ impl History {
         self.broken = true;
     }
 
-    /// Appends samples, given as non-decreasing times and one part of equal length per column.
+    /// Appends samples. Times must not decrease, and each column has one part with as many values as there are times.
     pub fn append(&mut self, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
         let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
@@ -186,8 +186,8 @@ impl History {
         self.times.first()..self.times.end()
     }
 
-    /// Returns the time of the oldest sample left after `more` further samples are appended, or `None` if all current
-    /// samples will have been evicted.
+    /// Returns the time of the oldest sample that remains after `more` further samples are appended. Returns `None` if
+    /// no current sample remains.
     pub fn oldest_after(&self, more: usize) -> Option<SampleTime> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
@@ -200,12 +200,12 @@ impl History {
         from..self.times.search(to).max(from)
     }
 
-    /// Returns the time of sample `index`, or `None` if the sample is not stored.
+    /// Returns the time of sample `index`. Returns `None` if the sample is not stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
         self.times.get(index)
     }
 
-    /// Returns sample `index` of a column, or `None` if the sample is not stored.
+    /// Returns sample `index` of a column. Returns `None` if the sample is not stored.
     pub fn sample(&self, column: usize, index: u64) -> Option<Sample> {
         let time = self.times.get(index)?;
         let (value, flags) = match self.columns.get(column)? {
@@ -215,8 +215,8 @@ impl History {
         Some(Sample { index, time, value, flags })
     }
 
-    /// Returns the index of the sample nearest to `time`, or `None` if there are no samples. The earlier sample wins a
-    /// tie.
+    /// Returns the index of the sample nearest to `time`, or of the earlier sample if two are equally near. Returns
+    /// `None` if there are no samples.
     pub fn nearest(&self, time: SampleTime) -> Option<u64> {
         let after = self.times.search(time);
         let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
@@ -261,8 +261,8 @@ impl Column {
         }
     }
 
-    /// Appends the values of `part` in `range`. Values of the wrong kind are ignored; `History::append` has already
-    /// rejected them.
+    /// Appends the values of `part` in `range`. Values of the wrong kind are ignored, because `History::append` has
+    /// rejected them before.
     fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

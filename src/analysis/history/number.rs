@@ -1,4 +1,4 @@
-//! The two kinds of stored numbers, and their outward rounding, so that a range never becomes too small.
+//! The two kinds of stored numbers, and their outward rounding. A range rounded outward never becomes too small.
 
 /// Sample value exactly as appended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +21,12 @@ impl Value {
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns a distance from `base` for which [`at_most`](Number::at_most) yields a value at or slightly below the
-    /// number, or −∞ if the distance exceeds the range of `f32`.
+    /// Returns a distance from `base` that is rounded down. [`at_most`](Number::at_most) turns it into a value at or
+    /// slightly below the number. Returns −∞ if the distance exceeds the range of `f32`.
     fn down(self, base: Self) -> f32;
 
-    /// Returns a distance from `base` for which [`at_least`](Number::at_least) yields a value not below the number, or
-    /// +∞ if the distance exceeds the range of `f32`.
+    /// Returns a distance from `base` that is rounded up. [`at_least`](Number::at_least) turns it into a value not
+    /// below the number. Returns +∞ if the distance exceeds the range of `f32`.
     fn up(self, base: Self) -> f32;
 
     /// Returns `self + distance`, rounded down if rounding is necessary.
@@ -35,7 +35,7 @@ pub(super) trait Number: Copy + PartialOrd {
     /// Returns `self + distance`, rounded up if rounding is necessary.
     fn at_least(self, distance: f32) -> f64;
 
-    /// Returns a distance from `self` such that no value at or above that distance is below `known`, or +∞ if none is
+    /// Returns a distance from `self` at or above which no value is below `known`. Returns +∞ if no such distance is
     /// found.
     fn distance_rounded_up(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
@@ -44,7 +44,7 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
     }
 
-    /// Returns a distance from `self` such that no value at or below that distance is above `known`, or −∞ if none is
+    /// Returns a distance from `self` at or below which no value is above `known`. Returns −∞ if no such distance is
     /// found.
     fn distance_rounded_down(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
@@ -75,7 +75,7 @@ impl Number for f64 {
         if distance.is_infinite() {
             return f32::NEG_INFINITY;
         }
-        // Every second number is rounded to the wrong side, which no processor can predict; hence no branch.
+        // Half of the numbers are rounded to the wrong side. No processor can predict which, so there is no branch.
         distance = moved(distance, -i32::from(base.at_most(distance) > self));
         while base.at_most(distance) > self {
             distance = distance.next_down();
@@ -121,7 +121,7 @@ impl Number for f64 {
     }
 }
 
-/// Moves a finite `f32` up by the given number of representable values; −0 is one step below 0.
+/// Moves a finite `f32` up by the given number of representable values. −0 is one step below 0.
 fn moved(distance: f32, steps: i32) -> f32 {
     // With the bits of negative numbers inverted, the bit patterns are in numerical order.
     let ordered = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
@@ -129,10 +129,10 @@ fn moved(distance: f32, steps: i32) -> f32 {
     f32::from_bits(ordered(place).cast_unsigned())
 }
 
-/// Limit up to which every count is exact in `f32`.
+/// Limit up to which `f32` holds every count exactly.
 const EXACT_F32: u64 = 1 << 24;
 
-/// Limit up to which the sum of two numbers is exact in `f64`.
+/// Limit up to which `f64` holds the sum of two numbers exactly.
 const EXACT: f64 = (1_i64 << 52) as f64;
 
 impl Number for i64 {

@@ -1,5 +1,5 @@
-//! Division of a time range into pixel columns, and the content to draw in each. A picture contains every extreme,
-//! break and flag of the raw samples at any zoom, and is independent of screens.
+//! Division of a time range into pixel columns, and the content to draw in each of them. A picture contains every
+//! extreme, break and flag of the raw samples at any zoom. It is independent of screens.
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::series::Series;
 use super::{Column, FAN, History};
 use crate::analysis::SampleTime;
 
-/// Grid of equal time steps, one per pixel column. Edges are multiples of the step, so that a picture scrolling at
-/// constant zoom keeps its pixel columns.
+/// Grid of equal time steps, one per pixel column. Edges are multiples of the step. A picture that scrolls at constant
+/// zoom therefore keeps its pixel columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     start: SampleTime,
@@ -50,8 +50,8 @@ impl Grid {
     }
 }
 
-/// Intersection of a [`Grid`] with the samples of a history, valid for all columns of the history. Samples appended
-/// later are not included, and evicted samples are not drawn.
+/// Intersection of a [`Grid`] with the samples of a history. It is valid for all columns of the history. Samples
+/// appended later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridColumns {
     /// Starts of all pixel columns, followed by the end of the last one.
@@ -76,54 +76,55 @@ pub struct Pixel {
     pub to: SampleTime,
     /// Values of the valid samples, or `None` if no sample is valid.
     pub values: Option<Reduced>,
-    /// Union of the samples' flags; [`BREAK`](Flags::BREAK) if the line is broken inside or before the pixel column.
+    /// Union of the samples' flags. Contains [`BREAK`](Flags::BREAK) if the line is broken inside or before the pixel
+    /// column.
     pub flags: Flags,
     /// Whether an unbroken line connects the last value of the previous pixel column to the first value of this one.
     pub joined: bool,
 }
 
-/// Values of the samples in one pixel column, in the column's unit; `f64` holds counts below 2⁵³ exactly.
+/// Values of the samples in one pixel column, in the column's unit. An `f64` holds counts below 2⁵³ exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reduced {
     /// First value, exact.
     pub first: f64,
-    /// Lower bound of the minimum, at most 2⁻²² of the value range of the surrounding 4096 samples below the true
-    /// value.
+    /// Lower bound of the minimum. It is below the true value by at most 2⁻²² of the value range of the surrounding
+    /// 4096 samples.
     pub min: f64,
-    /// Upper bound of the maximum, at most 2⁻²² of the value range of the surrounding 4096 samples above the true
-    /// value.
+    /// Upper bound of the maximum. It is above the true value by at most 2⁻²² of the value range of the surrounding
+    /// 4096 samples.
     pub max: f64,
     /// Last value, exact.
     pub last: f64,
 }
 
-/// Picture of a history column: the non-empty pixel columns in chronological order, each drawn through first, min, max
-/// and last. The nearest samples to the left and right are included, so that the line extends beyond both edges.
+/// Picture of a history column: its pixel columns with samples, in chronological order. Each is drawn through first,
+/// min, max and last. The nearest samples to the left and right are included, so the line extends beyond both edges.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// Pixel columns that contain samples, or single samples if `raw` is set.
     pub pixels: Vec<Pixel>,
-    /// Whether there are so few samples that each has its own pixel and its exact time.
+    /// Whether each sample has its own pixel and its exact time, because there are only a few.
     pub raw: bool,
 }
 
-/// Number of samples per pixel column up to which samples are included unchanged; drawing them costs no more than
-/// drawing first, min, max and last.
+/// Number of samples per pixel column up to which samples are included unchanged. They cost no more to draw than first,
+/// min, max and last.
 const FEW: u64 = 4;
 
-/// Divisor of a pixel column's width that limits how far the column may extend before its edge to start at a
-/// pyramid bucket.
+/// Divisor of a pixel column's width. The result is the distance by which the column may begin before its edge, in
+/// order to start at a pyramid bucket.
 const REACH: i64 = 16;
 /// Bucket sizes in samples, largest first.
 const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
 
 impl History {
     /// Finds the samples of each pixel column. A column with many samples starts at a pyramid bucket, up to a sixteenth
-    /// of its width before its edge; the result depends only on the samples and the edge.
+    /// of its width before its edge. The result depends only on the samples and the edge.
     pub fn cut(&self, grid: &Grid) -> GridColumns {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
-            // The first and last edges are the picture's own.
+            // The first and last edges stay exact, because they are those of the picture.
             let index =
                 if pixel == 0 || pixel == grid.pixel_count() { exact } else { self.rounded(exact, grid, pixel) };
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
@@ -132,8 +133,8 @@ impl History {
         GridColumns { edges: (0..=grid.pixel_count()).map(edge).collect() }
     }
 
-    /// Returns the start of a bucket instead of the first sample after an edge, if the bucket starts only slightly
-    /// earlier.
+    /// Returns the start of a bucket if the bucket starts only slightly before the first sample after an edge.
+    /// Otherwise, returns that sample.
     fn rounded(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
         let earliest = grid.edge(pixel).plus(-(grid.width() / REACH));
         let is_near = |start: &u64| *start == exact || self.times.get(*start).is_some_and(|time| time >= earliest);
@@ -172,7 +173,7 @@ impl<T: Number> HistoryPainter<'_, T> {
         if self.picture.raw {
             (from..to).for_each(|index| self.sample(index));
         } else {
-            // The end values are far apart in memory; fetched together, they do not wait for each other.
+            // The end values are far apart in memory. Fetched together, they do not wait for each other.
             let ends: Vec<Option<(T, T)>> =
                 pixels.clone().map(|(from, to)| self.series.ends(from.index..to.index)).collect();
             for ((from, to), ends) in pixels.zip(ends) {
@@ -198,7 +199,7 @@ impl<T: Number> HistoryPainter<'_, T> {
         self.picture.pixels.push(Pixel { from: time, to: time, values, flags, joined });
     }
 
-    /// Adds the samples between two edges as one pixel column; `ends` holds the first and last values.
+    /// Adds the samples between two edges as one pixel column. `ends` holds the first and last values.
     fn paint_pixel(&mut self, from: &Edge, to: &Edge, ends: (T, T)) {
         let range = from.index..to.index;
         let (Some(start), Some(end)) = (from.after, to.before) else { return };
@@ -214,7 +215,8 @@ impl<T: Number> HistoryPainter<'_, T> {
         if let (Some(first), Some(last)) = (self.series.first_valid(range.clone()), self.series.last_valid(range)) {
             let good = first..last + 1;
             pixel.joined = self.is_line_continuous(first);
-            // Usually the first and last samples are good, and their known values need not be fetched again.
+            // The first and last samples are usually good. Their values are already known and need not be fetched
+            // again.
             let ends = if good == (from.index..to.index) { Some(ends) } else { self.series.ends(good.clone()) };
             pixel.values = ends.map(|ends| self.reduce_samples(good, ends));
             pixel.from = if first == from.index { start } else { self.history.time(first).unwrap_or(start) };

@@ -1,4 +1,4 @@
-//! Blocks of one column, found by absolute sample index. When the limit is reached, the oldest block is reused.
+//! Blocks of one column. A sample is found by its absolute index. The oldest block is reused when the limit is reached.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -45,7 +45,8 @@ impl<T: Number> Series<T> {
         Some((block.value(at)?, block.flags().get(at)))
     }
 
-    /// Returns the values of the first and last samples in `range`, as appended, or `None` if either is not stored.
+    /// Returns the values of the first and last samples in `range`, as appended. Returns `None` if either is not
+    /// stored.
     pub(super) fn ends(&self, range: Range<u64>) -> Option<(T, T)> {
         if range.start < self.first || range.is_empty() {
             return None;
@@ -57,8 +58,8 @@ impl<T: Number> Series<T> {
         Some((value(range.start)?, value(range.end - 1)?))
     }
 
-    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see
-    /// [`SampleBlock::widen`]. Whole blocks are processed first, since they save most of the work on the rest.
+    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored. Whole blocks are
+    /// processed first, because they save most of the work on the rest. See [`SampleBlock::widen`].
     pub(super) fn widen(&self, known: ValueRange, range: Range<u64>) -> ValueRange {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
         let widen = |known: ValueRange, block: usize, range: Range<usize>| {
@@ -71,7 +72,7 @@ impl<T: Number> Series<T> {
         widen(widen(known, first, from..BLOCK), last, 0..to + 1)
     }
 
-    /// Returns whether no sample near `range` has a flag. This quick check may return false although no sample in
+    /// Returns whether no sample near `range` has a flag. This is a quick check: false does not prove that a sample in
     /// `range` has a flag.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
         let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
@@ -81,7 +82,7 @@ impl<T: Number> Series<T> {
 
     pub(super) fn flags(&self, range: Range<u64>) -> Flags {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
-        // Usually a single sample, or several samples of one block.
+        // The range is usually a single sample, or several samples of one block.
         if first == last && range.start >= self.first && !range.is_empty() {
             return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().within(from..to + 1));
         }
@@ -108,8 +109,8 @@ impl<T: Number> Series<T> {
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
     }
 
-    /// Returns whether sample `index` is stored and has a valid value. This quick check may return false although the
-    /// value is valid.
+    /// Returns whether sample `index` is stored and has a valid value. This is a quick check: false does not prove that
+    /// the value is invalid.
     fn is_surely_good(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
         let has_it = |block: &&SampleBlock<T>| index >= self.first && at < block.len();
@@ -140,8 +141,8 @@ impl<T: Number> Series<T> {
         (at / BLOCK, at % BLOCK)
     }
 
-    /// Returns the blocks that overlap the stored part of `range`, each with the index of its first sample and the
-    /// range within the block.
+    /// Returns the blocks that overlap the stored part of `range`. Each comes with the index of its first sample and
+    /// the range within the block.
     fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;

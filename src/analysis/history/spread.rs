@@ -1,5 +1,5 @@
-//! Mean and deviation that can be combined from parts and are accurate for small noise on a large value. Welford's
-//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Computed from raw samples only.
+//! Mean and deviation that can be combined from parts and are accurate for small noise on a large value. They are
+//! computed from raw samples only, by Welford's recurrence in the form for groups (Chan, Golub, LeVeque 1979).
 
 use super::number::Number;
 
@@ -15,7 +15,7 @@ pub(super) struct RunningStatistics<T> {
 }
 
 impl<T: Number> RunningStatistics<T> {
-    /// Returns the spread of `values`, which must all be finite, or `None` if `values` is empty.
+    /// Returns the statistics of `values`, which must all be finite. Returns `None` if `values` is empty.
     pub(super) fn of(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
         let (min, max) = extremes(values)?;
@@ -28,7 +28,7 @@ impl<T: Number> RunningStatistics<T> {
         Some(RunningStatistics { count: values.len() as u64, base, mean, squares, min, max })
     }
 
-    /// Returns the combined spread of both sets of samples.
+    /// Returns the combined statistics of both sets of samples.
     pub(super) fn with(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
@@ -75,7 +75,7 @@ pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (reduce_eight(*values, smaller_of), reduce_eight(*values, larger_of))
 }
 
-/// Reduces eight values pairwise, so that no operation has to wait for the previous one.
+/// Reduces eight values pairwise. No operation then has to wait for the previous one.
 fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
@@ -88,7 +88,7 @@ fn larger_of<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Sums the terms in eight parallel sums, which takes little more time than a single sum.
+/// Sums the terms in eight parallel sums. They take little more time than a single sum.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -1,4 +1,4 @@
-//! Statistics of a range of a column, computed from the raw samples, each of which counts once. Samples reduced for a
+//! Statistics of a range of a column, computed from the raw samples. Each sample counts once. Samples reduced for a
 //! picture are not used.
 
 use std::ops::Range;
@@ -10,7 +10,7 @@ use super::{Column, History};
 /// Statistics of a range of samples. All fields except `bad` refer to samples with a valid value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Number of samples with a valid value, at least 1.
+    /// Number of samples with a valid value. It is at least 1.
     pub count: u64,
     /// Number of samples without a valid value.
     pub bad: u64,
@@ -19,12 +19,12 @@ pub struct Statistics {
     pub min: Value,
     /// Maximum, as appended.
     pub max: Value,
-    /// Standard deviation (divided by count − 1), in the column's unit; 0 for a single sample.
+    /// Standard deviation in the column's unit, with the divisor count − 1. It is 0 for a single sample.
     pub deviation: f64,
 }
 
 impl History {
-    /// Returns the statistics of a column over the samples `indices`, or `None` if no sample has a valid value.
+    /// Returns the statistics of a column over the samples `indices`. Returns `None` if no sample has a valid value.
     pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
         let all = self.all();
         let indices = indices.start.max(all.start)..indices.end.min(all.end);

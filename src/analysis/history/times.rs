@@ -9,7 +9,7 @@ use crate::analysis::SampleTime;
 #[derive(Debug)]
 pub(super) struct Times {
     blocks: VecDeque<Vec<SampleTime>>,
-    /// First time of each block, stored contiguously for fast search.
+    /// First time of each block. The times are stored contiguously for a fast search.
     starts: VecDeque<SampleTime>,
     /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
@@ -66,7 +66,8 @@ impl Times {
         }
     }
 
-    /// Returns the absolute index of the first sample at or after `time`, or the end index if no such sample is stored.
+    /// Returns the absolute index of the first sample at or after `time`. Returns the end index if no such sample is
+    /// stored.
     pub(super) fn search(&self, time: SampleTime) -> u64 {
         let Some(number) = self.starts.partition_point(|start| *start < time).checked_sub(1) else { return self.first };
         let inside = self.blocks.get(number).map_or(0, |block| search_times(block, time));
@@ -80,8 +81,8 @@ impl Times {
     }
 }
 
-/// Returns the index of the first time at or after `time`. Samples are usually evenly spaced, so the expected index is
-/// tried first.
+/// Returns the index of the first time at or after `time`. The expected index is tried first, because samples are
+/// usually evenly spaced.
 fn search_times(times: &[SampleTime], time: SampleTime) -> usize {
     const NEAR: usize = 4;
     let before = |other: &SampleTime| *other < time;

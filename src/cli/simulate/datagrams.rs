@@ -12,14 +12,14 @@ use super::PATIENCE;
 use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
-/// Maximum sleep of the sender. No packet is due sooner after a request.
+/// Maximum sleep of the sender. Every packet is due at least this long after its request.
 const REST: Duration = Duration::from_millis(4);
 /// Number of ports to try if the port is not specified.
 const TRIES: usize = 50;
 /// Buffer size in bytes, larger than any packet.
 const ROOM: usize = 2048;
 
-/// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects one that is free for both.
+/// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects a port that is free for both.
 pub(super) fn bind_tcp_and_udp(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
@@ -45,7 +45,7 @@ fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketA
 
 pub(super) struct Served {
     socket: UdpSocket,
-    /// Device, locked while its packets are taken and sent, so that no packet overtakes another.
+    /// Device, locked while its packets are taken and sent. Packets then cannot overtake each other.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }
@@ -95,7 +95,7 @@ impl Served {
         }
     }
 
-    /// Calls `work` with the device, sends all due packets, and returns the time until the next packet.
+    /// Calls `work` with the device and sends all packets that are due. Returns the time until the next packet.
     fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

@@ -1,11 +1,11 @@
-//! The echo of a line whose adapter returns the bytes sent by the host.
+//! Echoes: some adapters return the bytes that the host sends.
 
 use crate::parameter::Words;
 
 /// Whether the adapter echoes sent bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// Not known yet; determined during the first exchange.
+    /// Not known yet. The first exchange shows whether there is an echo.
     Unknown,
     /// The adapter echoes.
     On,
@@ -17,7 +17,7 @@ impl Echo {
     /// Accepted values of the `echo=` parameter.
     pub(crate) const WORDS: Words<Echo> = Words(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
 
-    /// Returns the bytes after the echo of `sent`, or `None` while `line` may still be an incomplete echo.
+    /// Returns the received bytes without the echo of `sent`, or `None` if the echo may still be incomplete.
     pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
         match self {
             Echo::Off => Some(line),
@@ -30,7 +30,7 @@ impl Echo {
         }
     }
 
-    /// Learns whether the line echoes from the first exchange with a valid reply.
+    /// Stores whether there was an echo, unless this is already known.
     pub(crate) fn learn(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

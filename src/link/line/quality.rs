@@ -12,30 +12,30 @@ pub struct LineQuality {
     pub replies: u64,
     /// Number of repeated requests.
     pub retries: u64,
-    /// Number of damaged replies, including those to requests that the device reported as damaged.
+    /// Number of damaged replies and of requests that the device reported as damaged.
     pub damaged: u64,
     /// Number of requests without a reply.
     pub silent: u64,
     /// Number of replies that arrived too late.
     pub late: u64,
-    /// The most recent reply times, from the first byte of a request to the first byte of its reply.
+    /// Most recent reply times, each from the first byte of a request to the first byte of its reply.
     answers: VecDeque<Duration>,
 }
 
 impl LineQuality {
     const ANSWERS: usize = 1000;
 
-    /// Returns whether a request had to be repeated or a reply arrived too late.
+    /// Returns whether any error has been counted.
     pub fn has_errors(&self) -> bool {
         self.troubles() != [0; 4]
     }
 
-    /// Returns the error counters.
+    /// Returns the numbers of retries, damaged replies, unanswered requests and late replies.
     pub fn troubles(&self) -> [u64; 4] {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
-    /// Returns the time within which `percent` of the most recent replies arrived, or `None` without replies.
+    /// Returns the reply time that `percent` of the most recent replies did not exceed, or `None` without replies.
     pub fn answer_time_percentile(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();

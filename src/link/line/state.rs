@@ -1,4 +1,4 @@
-//! The state of a line that is kept between jobs.
+//! Line state that is kept between jobs.
 
 use std::time::Duration;
 
@@ -6,26 +6,25 @@ use super::{Echo, LineQuality};
 use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
-/// Maximum reply delay of the slowest supported connection.
+/// Longest supported reply delay of a connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// Allowed reply delay beyond the protocol's worst case.
+/// Range of the allowed reply delay beyond the protocol's worst case.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
-/// Line state that is kept between jobs.
+/// The state of a line, kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// Tolerated delay of a reply beyond the protocol's worst case, because USB adapters and device servers deliver
-    /// late.
+    /// Allowed reply delay beyond the protocol's worst case. USB adapters and device servers deliver late.
     pub margin: Duration,
     /// Whether the adapter echoes sent bytes.
     pub echo: Echo,
-    /// Number of failed exchanges since the start of the session, whether they were repeated or given up.
+    /// Number of failed attempts since the start of the session.
     pub damaged: u64,
     /// Line quality.
     pub quality: LineQuality,
     pub(crate) quiet_until: Moment,
-    /// Time since which no valid reply has arrived.
+    /// Start of the first failed attempt since the last valid reply.
     pub(super) troubled_since: Option<Moment>,
     /// Time of the first request that is still unanswered.
     pub(super) outstanding_since: Option<Moment>,
@@ -67,17 +66,15 @@ impl LineState {
         self.quality.replies += 1;
     }
 
-    /// Records the time at which the reply began.
     pub(crate) fn record_answer_start(&mut self, at: Moment) {
         self.quality.record_answer_time(at.since(self.last_sent));
     }
 
-    /// Resets the error state after a valid reply.
     pub(crate) fn clear_error(&mut self) {
         self.troubled_since = None;
     }
 
-    /// Raises the margin for further replies to one and a half times the sum of the margin and `lateness`, up to
+    /// Raises the margin to one and a half times the sum of the margin and `lateness`. The maximum is
     /// [`LONGEST_MARGIN`].
     pub(super) fn extend_allowance(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;

@@ -1,16 +1,16 @@
-//! Application of a change to a file content, leaving everything else unchanged.
+//! Application of changes to a text. The rest of the text stays as it is.
 
 use std::ops::Range;
 
 use super::changes::{Change, Step, is_equivalent_value, steps};
 use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
 
-/// Applies the changes one after the other, or returns `None` if one of them cannot be placed in the text.
+/// Applies the changes in order. Returns `None` if a change does not fit the text.
 pub(in crate::profile) fn apply_all(text: &str, changes: &[Change]) -> Option<String> {
     changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
 }
 
-/// Applies a change to a text, or returns `None` if the change cannot be placed.
+/// Applies a change. Returns `None` if the change does not fit the text.
 pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     let root = read(text)?;
     let (last, way) = match change.path.split_last() {
@@ -24,7 +24,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     match (part_at(text, within, last), &change.to) {
         (Some(part), Some(to)) => {
             let own = text.get(part.value.span.clone())?;
-            // Elements that only have an index are the same only if their content is the same.
+            // Elements identified only by their index are the same only if their content is the same.
             if let (Step::At(_), Some(from)) = (last, &change.from)
                 && !is_equivalent_value(own, from)
             {
@@ -39,7 +39,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     }
 }
 
-/// Finds the value at a path, along with the steps to its predecessors, nearest first.
+/// Returns the value at a path and the steps to the preceding values, nearest first.
 pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
@@ -63,8 +63,7 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// Moves the comment that this program wrote after an entry along with its value, while a user's own comment stays in
-/// place.
+/// Replaces the comment that this program wrote after an entry. A comment by the user is left unchanged.
 fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = trailing_comment(text, at);
     match (found, comments) {
@@ -76,7 +75,7 @@ fn replace_comment(text: &str, at: usize, comments: &(Option<String>, Option<Str
     }
 }
 
-/// Returns the text without an entry, and without the line if the entry is alone on its line.
+/// Returns the text without an entry. If the entry is alone on its line, the line is removed.
 fn without(text: &str, part: &Part) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
@@ -134,7 +133,7 @@ fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str)
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
     let close = match follows.trim() {
         "" => String::new(),
-        // The comment after the new line must not include it.
+        // Text that follows on the same line would become part of the new comment.
         _ if parts.is_empty() => format!("{end}{}", indent_at(text, within.span.start)),
         _ => format!("{end}{indent}"),
     };
@@ -145,7 +144,7 @@ fn with(text: &str, within: &SourceNode, change: &Change, last: &Step, to: &str)
     }
 }
 
-/// Returns the text after an opening bracket and any comment on the same line.
+/// Skips a comment directly after an opening bracket.
 fn skip_comment(text: &str) -> &str {
     match trailing_comment(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),

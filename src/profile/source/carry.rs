@@ -1,4 +1,4 @@
-//! Transfer of changes between two generated texts to the text of the user.
+//! Transfer of changes between two generated texts to the user's text.
 
 use super::apply::{apply, value_at};
 use super::changes::{Change, changes};
@@ -9,12 +9,14 @@ use super::tree::comments;
 pub struct Carried {
     /// Updated text.
     pub text: String,
-    /// User comments for which the new content has no location.
+    /// User comments that the new text does not contain.
     pub lost: Vec<String>,
 }
 
-/// Applies the changes from `before` to `after` to the user's text, which contains what the program wrote as `before`.
-/// Returns `None` if the text cannot be matched; the caller must check that the result means the same as `after`.
+/// Applies the changes from `before` to `after` to the user's text. `before` is the generated text with the same
+/// content as the user's text.
+///
+/// Returns `None` if a change does not fit. The caller must check that the result means the same as `after`.
 pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
     let mut carried = text.to_owned();
     for change in changes(before, after)? {
@@ -24,7 +26,7 @@ pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option
     Some(Carried { text: carried, lost })
 }
 
-/// Replaces the enclosing value if one of its parts cannot be placed.
+/// Replaces the nearest enclosing value that can be replaced.
 fn replace_enclosing_value(text: &str, change: &Change, after: &str) -> Option<String> {
     (1..change.path.len()).rev().find_map(|length| {
         let path = change.path.get(..length)?.to_vec();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{Kind, Part, SourceNode, read, trailing_comment};
 
-/// Entries that identify the elements of a list; the first existing one takes precedence.
+/// Entries that identify the elements of a list. The first one that exists is used.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
 
 /// A step of the path to an entry.
@@ -26,9 +26,9 @@ pub enum Step {
 pub struct Change {
     /// Path of the entry.
     pub path: Vec<Step>,
-    /// Source text on the left, if the entry exists on that side.
+    /// Source text on the left, or `None` if the entry does not exist there.
     pub from: Option<String>,
-    /// Source text on the right, if the entry exists on that side.
+    /// Source text on the right, or `None` if the entry does not exist there.
     pub to: Option<String>,
     /// Preceding entries in the same structure or list on the right, nearest first.
     pub behind: Vec<Step>,
@@ -69,7 +69,7 @@ pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>
     Some(walk.found)
 }
 
-/// Returns whether two plain values are equivalent, such as `0x10` and `16`.
+/// Returns whether two simple values are equal, even if they are written differently, such as `0x10` and `16`.
 pub(super) fn is_equivalent_value(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
@@ -102,7 +102,7 @@ fn name_of(text: &str, element: &SourceNode) -> Option<Step> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// Normalizes a value, so that `0x10` and `16` yield the same name.
+/// Normalizes the notation of a value. For example, `0x10` and `16` yield the same text.
 fn plain(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }
@@ -168,8 +168,8 @@ impl TreeWalk<'_> {
     }
 }
 
-/// Returns whether the order is unchanged. Named elements may be added or removed if the others keep their order,
-/// and unnamed elements must keep their index.
+/// Returns whether both sides have the same order. Named elements may be added or removed if the others keep their
+/// order. Unnamed elements must keep their index.
 fn is_same_order(own: &[Step], other: &[Step]) -> bool {
     let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()

@@ -1,5 +1,5 @@
-//! Source text of a profile edited by a user: entries with their locations, differences between two texts, and changes
-//! that preserve comments, order, notation and line endings.
+//! Source text of a profile that a user has edited: entries with their locations, differences between two texts, and
+//! changes. Comments, order, notation and line endings are preserved.
 
 mod apply;
 mod carry;

@@ -1,5 +1,5 @@
-//! RON syntax tree with source locations. It parses text that the `ron` crate has already accepted, and returns `None`
-//! if it cannot; the file is then rewritten completely.
+//! RON syntax tree with source locations. The `ron` crate has already accepted the text. If this parser returns `None`,
+//! the file is rewritten completely.
 
 use std::ops::Range;
 
@@ -22,10 +22,9 @@ pub(super) enum Kind {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
-    /// Range of the key before the colon.
     pub(super) key: Option<Range<usize>>,
     pub(super) value: SourceNode,
-    /// End of the value, or of the comma after the value.
+    /// End of the value, including a comma after it.
     pub(super) end: usize,
     pub(super) comma: bool,
 }
@@ -72,7 +71,7 @@ pub(super) fn comments(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns the comment that follows a position on the same line, along with its range.
+/// Returns the comment after a position on the same line, and its range.
 pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();

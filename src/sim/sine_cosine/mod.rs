@@ -1,18 +1,18 @@
 //! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a given speed, with adjustable
-//! errors. Deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of the
-//! block sizes requested. This module uses no clock, thread or device.
+//! errors. It is deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of
+//! the block sizes requested. This module uses no clock, thread or device.
 //!
-//! The model is that of Heydemann (Applied Optics 20, 3382), section 7 of the project's sine/cosine reference, with θ
-//! the true angle: cosine channel R·cos θ + p, sine channel R·sin(θ − α)/r + q. Both tracks have the same shape a
-//! quarter of a period apart, so a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
+//! The model is that of Heydemann (Applied Optics 20, 3382). See section 7 of the project's sine/cosine reference. With
+//! θ as the true angle, the cosine channel is R·cos θ + p, and the sine channel is R·sin(θ − α)/r + q. Both tracks have
+//! the same shape a quarter of a period apart, so a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
 //!
-//! Angles are integer fractions of a turn and times are whole nanoseconds, so no error accumulates over time.
+//! Angles are integer fractions of a turn, and times are whole nanoseconds. No error accumulates over time.
 //!
-//! Assumptions without a manual: at a receiver with a resistor between the wires of a pair, an open wire takes the
-//! voltage of its partner, so that their difference is zero; without the resistor it stays at the mean level, at which
-//! the bias of the receiver holds it. Interference and hum reach SIN and COS but not their references, which is the
-//! part that a receiver does not reject; the interference is half as strong in the cosine channel, with the opposite
-//! sign.
+//! The following assumptions have no source in a manual. At a receiver with a resistor between the wires of a pair, an
+//! open wire takes the voltage of its partner, and their difference is zero. Without the resistor it stays at the mean
+//! level, where the bias of the receiver holds it. Interference and hum reach SIN and COS but not their references,
+//! because a receiver rejects the part common to both. The interference is half as strong in the cosine channel and has
+//! the opposite sign there.
 
 mod settings;
 
@@ -24,9 +24,9 @@ pub use settings::{Checked, Quantity, ReferenceLevel, SettingError, Settings};
 use crate::analysis::SampleTime;
 use crate::analysis::wiring::{Wire, Wires};
 
-/// Parts per turn, chosen so that 0.001 rev/min corresponds to one part per nanosecond.
+/// Parts per turn. At 0.001 rev/min, the shaft turns by one part per nanosecond.
 const TURN: u64 = 60_000 * 1_000_000_000;
-/// Parts per interference period, chosen so that 0.001 Hz corresponds to one part per nanosecond.
+/// Parts per interference period. At 0.001 Hz, the phase advances by one part per nanosecond.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
 /// Maximum number of setting changes remembered.
 const REMEMBERED: usize = 64;
@@ -50,13 +50,13 @@ struct Segment {
 }
 
 impl Source {
-    /// Creates a source whose first sample is taken at `start`, at angle 0.
+    /// Creates a source. Its first sample is taken at `start`, at angle 0.
     pub fn new(checked: Checked, start: SampleTime) -> Self {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
-    /// Changes the settings, starting with sample `at`, while the shaft continues from its position. A change at or
-    /// before the latest one replaces it.
+    /// Changes the settings from sample `at` on. The shaft continues from its position. A change at or before the
+    /// latest one replaces it.
     pub fn change(&mut self, at: u64, checked: Checked) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
         let Some(before) = self.segments.back() else { return };
@@ -74,14 +74,14 @@ impl Source {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample, or `None` if the changes before the sample are no longer stored.
+    /// Returns the time of a sample. Returns `None` if the changes before the sample are no longer stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// Returns `count` samples starting at `first`, or `None` if the changes before these samples are no longer stored.
-    /// The latest 64 changes are stored.
+    /// Returns `count` samples from `first` on. Returns `None` if the changes before these samples are no longer
+    /// stored. The latest 64 changes are stored.
     pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
@@ -175,15 +175,15 @@ impl PhaseAccumulator {
     }
 }
 
-/// Settings in the form used to calculate each sample.
+/// Settings in a form that is fast to calculate with.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
-    /// Amplitude of the signal's phase shift due to eccentricity, in radians.
+    /// Amplitude of the signal's phase shift from eccentricity, in radians.
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire, chosen so that the difference of two wires has the configured noise.
+    /// Noise of each wire. The difference of two wires then has the noise of the settings.
     noise: f64,
 }
 
@@ -203,7 +203,7 @@ impl<'a> Model<'a> {
     fn channels(&self, shaft: PhaseAccumulator) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle().sin_cos();
-        // The periods are multiplied while the angle is still whole parts: 65 536 turns fit into 64 bits.
+        // The angle is still in whole parts when it is multiplied by the periods. 65 536 turns fit into 64 bits.
         let signal = PhaseAccumulator { at: shaft.at * self.periods % TURN, ..shaft };
         let angle = signal.angle() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
@@ -242,7 +242,7 @@ impl<'a> Model<'a> {
 }
 
 fn remainder(number: i128, whole: u64) -> u64 {
-    // The remainder of a division by a number of 64 bits fits into 64 bits.
+    // The remainder of a division by a 64-bit number fits into 64 bits.
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
@@ -250,7 +250,7 @@ fn remainder(number: i128, whole: u64) -> u64 {
 fn gaussian_pair(seed: u64, place: u64) -> [f64; 2] {
     let first = splitmix64(seed ^ splitmix64(place));
     let second = splitmix64(first ^ seed);
-    // 53 bits each, the first of them above 0.
+    // Use 53 bits of each. The first number must be above 0.
     let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
     let length = (-2.0 * (1.0 - unit(first)).ln()).sqrt();
     let (sine, cosine) = (TAU * unit(second)).sin_cos();

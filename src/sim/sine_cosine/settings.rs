@@ -1,4 +1,4 @@
-//! Settings of the virtual sine/cosine source with their ranges. Plain data.
+//! Settings of the virtual sine/cosine source with their ranges.
 
 use crate::analysis::wiring::Wire;
 
@@ -7,9 +7,9 @@ use crate::analysis::wiring::Wire;
 pub struct Settings {
     /// Number of signal periods per revolution, a whole number.
     pub periods: f64,
-    /// Speed in revolutions per minute, in steps of 0.001. For negative values the angle decreases.
+    /// Speed in revolutions per minute, in steps of 0.001. The angle decreases at a negative speed.
     pub speed_rpm: f64,
-    /// Sample rate in hertz. The sample period is a whole number of nanoseconds (see [`Settings::period_ns`]).
+    /// Sample rate in hertz. The sample period is rounded to whole nanoseconds. See [`Settings::period_ns`].
     pub rate_hz: f64,
     /// Differential amplitude R of the cosine channel in volts.
     pub amplitude_v: f64,
@@ -19,7 +19,7 @@ pub struct Settings {
     pub offset_cosine_v: f64,
     /// Amplitude ratio r of the cosine channel to the sine channel.
     pub gain_ratio: f64,
-    /// Phase error α in degrees, the delay of the sine beyond a quarter of a period after the cosine.
+    /// Phase error α in degrees. The sine follows the cosine by this much more than a quarter of a period.
     pub phase_error_deg: f64,
     /// Mean level of the references in volts.
     pub level_v: f64,
@@ -36,10 +36,10 @@ pub struct Settings {
     pub interference_v: f64,
     /// Mains frequency in hertz, in steps of 0.001.
     pub hum_hz: f64,
-    /// Hum amplitude in volts, equal and in phase in both channels.
+    /// Hum amplitude in volts. It is equal and in phase in both channels.
     pub hum_v: f64,
-    /// Eccentricity of the scale, given as the amplitude of the once-per-revolution angle error in mechanical seconds
-    /// of arc.
+    /// Eccentricity of the scale. It is the amplitude of the once-per-revolution angle error in mechanical seconds of
+    /// arc.
     pub eccentricity_arcsec: f64,
     /// Broken wire, if any.
     pub open_wire: Option<Wire>,
@@ -54,9 +54,9 @@ pub struct Settings {
 /// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReferenceLevel {
-    /// The mean level, as in HIPERFACE encoders, where only SIN and COS carry the signal.
+    /// The mean level. HIPERFACE encoders have it, and only SIN and COS carry the signal.
     Level,
-    /// The inverted signal, as in encoders with complementary outputs, where each wire carries half of the signal.
+    /// The inverted signal. Encoders with complementary outputs have it, and each wire carries half of the signal.
     Complement,
 }
 
@@ -99,7 +99,7 @@ pub enum Quantity {
     Eccentricity,
 }
 
-/// An error for a setting that is outside its range.
+/// The error for a setting outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
@@ -139,7 +139,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the unit symbol, which is the same in every language, or an empty string for a plain number.
+    /// Returns the unit symbol, which is the same in every language. A plain number has an empty string.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",
@@ -201,8 +201,8 @@ impl Settings {
     /// Validates the settings.
     ///
     /// # Errors
-    /// [`SettingError`] with the first setting outside its range, and the range. A number of periods that is not whole
-    /// is also refused.
+    /// Returns a [`SettingError`] with the first setting outside its range, and the range. A number of periods that is
+    /// not whole is also refused.
     pub fn checked(self) -> Result<Checked, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.range());
@@ -245,9 +245,9 @@ impl Checked {
 }
 
 impl Default for Settings {
-    /// Returns the settings of a good HIPERFACE encoder with 1024 periods at 60 rev/min, sampled at 100 kHz, with an
-    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequencies are set to the usual 8 kHz of a drive and
-    /// 50 Hz of the mains.
+    /// Returns the settings of a good HIPERFACE encoder: 1024 periods at 60 rev/min, sampled at 100 kHz, with an
+    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequencies are the usual 8 kHz of a drive and 50 Hz of
+    /// the mains.
     fn default() -> Self {
         Settings {
             periods: 1024.0,

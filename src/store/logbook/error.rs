@@ -39,7 +39,7 @@ pub enum LogbookErrorKind {
         /// Latest schema that this version of the program knows.
         known: i64,
     },
-    /// The entry to be concluded does not exist or has already been concluded.
+    /// The entry does not exist or has already been concluded.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
     #[error("{what}")]

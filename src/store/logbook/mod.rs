@@ -1,9 +1,10 @@
-//! The logbook: this program's writes to each device, and the write cycles that they took. An intent is recorded before
-//! the first byte is sent and concluded afterwards, so a program that dies in between leaves a trace. The format is
-//! SQLite, so two windows can share the logbook and any tool can read it.
+//! The logbook, which records this program's writes to each device and the write cycles they took. An intent is
+//! recorded before the first byte is sent, and its outcome afterwards. If the program dies in between, the intent
+//! remains. The format is SQLite: two windows can share the logbook, and any tool can read it.
 //!
-//! It never contains access codes: `what` and failure messages are made from the plan, not from frames. It never
-//! decides whether a device may be written to: if it fails, the caller refuses writes that are not forced.
+//! The logbook never contains access codes, because descriptions and failure messages are made from the plan instead of
+//! frames. It does not decide whether a device may be written to. If it fails, the caller refuses writes that are not
+//! forced.
 
 mod error;
 mod schema;
@@ -20,23 +21,22 @@ pub use error::{LogbookError, LogbookErrorKind};
 /// Maximum time to wait for another window that is writing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// An open logbook. Opening and reading may wait for another window, so they must not be done on the UI thread.
+/// An open logbook. Opening and reading may wait for another window, so they must not run on the UI thread.
 #[derive(Debug)]
 pub struct Logbook {
     path: PathBuf,
     database: Connection,
 }
 
-/// Device to which an entry belongs.
+/// The device to which an entry belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DeviceKey {
     /// Kind of device, such as `hiperface`.
     pub kind: String,
-    /// Device type within the kind, as written in its manual, such as `37h`. Serial numbers are unique only within a
-    /// type.
+    /// Type of the device as written in its manual, such as `37h`. Serial numbers are unique only within a type.
     pub device_type: String,
     pub serial_number: String,
-    /// Whether the device is simulated. A simulated device never shares a count with a real one.
+    /// Whether the device is simulated. Simulated and real devices are counted separately.
     pub is_virtual: bool,
 }
 
@@ -63,7 +63,7 @@ pub enum Outcome {
     Cancelled,
 }
 
-/// A logged write with its plan and its outcome.
+/// A recorded write with its plan and its outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Identifier of the entry. Later entries have greater identifiers.
@@ -74,8 +74,7 @@ pub struct Entry {
     pub planned_cycles: u64,
     /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.
     pub backup: Option<PathBuf>,
-    /// Conclusion of the write, or `None` while the write is running and permanently if the program died in the
-    /// meantime.
+    /// Result of the write. `None` means that the write is still running or that the program died during the write.
     pub conclusion: Option<WriteResult>,
 }
 
@@ -83,7 +82,7 @@ pub struct Entry {
 pub struct WriteResult {
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Number of write cycles spent, including those of a write that failed half-way.
+    /// Number of write cycles spent. A write that failed half-way counts as well.
     pub cycles_spent: u64,
 }
 
@@ -91,7 +90,7 @@ pub struct WriteResult {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatusEntry {
     pub at: Timestamp,
-    /// Formatted codes in the device's order.
+    /// Formatted codes, in the order of the device.
     pub codes: String,
 }
 
@@ -171,8 +170,8 @@ impl Logbook {
         }
     }
 
-    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as
-    /// planned, since the program may have died before or after the last byte. Writes by other programs are not
+    /// Returns the number of write cycles that this program has spent on a device. An intent without an outcome counts
+    /// with its planned cycles, because the program may have died after the last byte. Writes by other programs are not
     /// included, so the count is a minimum.
     ///
     /// # Errors
@@ -239,7 +238,7 @@ impl Logbook {
     }
 }
 
-/// Limits the cycles of an entry to 32 bits, so that no sum of entries overflows. No EEPROM survives a thousandth of
+/// Limits the cycles of an entry to 32 bits, which rules out an overflow of the sum. No EEPROM survives a thousandth of
 /// that number.
 fn saturating_cycle_count(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)
@@ -261,7 +260,7 @@ fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<WriteResult>> {
     let outcome = match row.get::<_, String>("outcome")?.as_str() {
         "done" => Outcome::Done,
         "cancelled" => Outcome::Cancelled,
-        // The schema allows no fourth word.
+        // The schema allows no other word.
         _ => Outcome::Failed(row.get::<_, Option<String>>("failure")?.unwrap_or_default()),
     };
     Ok(Some(WriteResult {

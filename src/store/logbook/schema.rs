@@ -11,7 +11,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 use super::LogbookErrorKind;
 use crate::store::files::create_folder;
 
-/// Migrations from each schema to the next. Migrations may be added but never changed, because logbooks created by them
+/// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
 const STEPS: [&str; 2] = [
     "
@@ -55,13 +55,13 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
     if let Some(folder) = path.parent() {
         create_folder(folder).map_err(LogbookErrorKind::Folder)?;
     }
-    // Without SQLITE_OPEN_URI: a file may be called "file:x?mode=memory".
+    // SQLITE_OPEN_URI is not set, because a file may be called "file:x?mode=memory".
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let mut database = Connection::open_with_flags(path, flags)?;
     database.busy_timeout(patience)?;
-    // Before anything is changed, the journal's mode included.
+    // The version is checked before any change, including that of the journal mode.
     if let Err(problem) = check_version(&database) {
-        // Closing would clean up after a newer version that crashed, which must be left to that version.
+        // Closing would clean up after a newer version that crashed. That must be left to the newer version.
         let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
         return Err(problem);
     }
@@ -74,18 +74,19 @@ pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
     text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
 }
 
-/// Converts a cycle count read from the tables to unsigned, because SQLite has no unsigned integers.
+/// Converts a cycle count to unsigned, because SQLite has no unsigned integers.
 pub(super) fn parse_cycles(count: i64) -> rusqlite::Result<u64> {
     u64::try_from(count).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(0, count))
 }
 
-/// Selects a mode in which readers do not wait for a writer and every commit is flushed, because an intent has to
-/// survive a power failure.
+/// Selects a mode in which readers do not wait for a writer and every commit is flushed. An intent must survive a power
+/// failure.
 fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
-    // The query returns the resulting mode; a network disk without support for WAL keeps its old one and works too.
+    // The query returns the resulting mode. A network disk without support for WAL keeps its old mode, which also
+    // works.
     match database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get::<_, String>(0)) {
-        // Another window is switching or writing at this moment, and SQLite does not wait here: it would wait for a window
-        // that waits for this one. Either mode is safe; the next window to open switches.
+        // Another window is switching or writing at this moment. SQLite does not wait here, because that window may be
+        // waiting for this one. Either mode is safe, and the next window that opens the logbook switches.
         Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) => {}
         result => drop(result?),
     }
@@ -93,12 +94,12 @@ fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
 }
 
 fn migrate(database: &mut Connection) -> Result<(), LogbookErrorKind> {
-    // In almost all cases the schema is current, and no lock is needed.
+    // The schema is almost always current, and then no lock is needed.
     if check_version(database)? == STEPS.len() {
         return Ok(());
     }
     let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    // Another window may have been first.
+    // Another window may have migrated the database in the meantime.
     let done = check_version(&transaction)?;
     for step in STEPS.iter().skip(done) {
         transaction.execute_batch(step)?;
@@ -107,7 +108,7 @@ fn migrate(database: &mut Connection) -> Result<(), LogbookErrorKind> {
     Ok(transaction.commit()?)
 }
 
-/// Returns how many migrations have been applied to the database.
+/// Returns the number of migrations that have been applied to the database.
 fn check_version(database: &Connection) -> Result<usize, LogbookErrorKind> {
     let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
     match usize::try_from(found) {

@@ -1,4 +1,4 @@
-//! The about dialog: the program and its components; and the help of the open page, with the manual's section.
+//! The about dialog, with the program and its components, and the help of the open page, with the manual's section.
 
 use egui::{ScrollArea, Ui};
 

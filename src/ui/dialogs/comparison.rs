@@ -1,4 +1,4 @@
-//! A device or an open profile beside a profile on disk: what differs, and what only one side has.
+//! Comparison of a device or an open profile with a profile on disk: the differences, and the items of only one side.
 
 use egui::{Grid, ScrollArea, Ui};
 
@@ -7,9 +7,9 @@ use crate::profile::Comparison;
 use crate::ui::controls::{button, modal, paragraph, primary_button, right_aligned};
 use crate::ui::{Theme, icons};
 
-/// Maximum height of the list in points, so that a long list leaves the buttons visible.
+/// Maximum height of the list in points. The buttons stay visible below a long list.
 const LIST: f32 = 340.0;
-/// Maximum number of characters shown of a value, which is drawn on one line. The tooltip shows the rest.
+/// Maximum number of characters shown of a value, on one line. The tooltip shows the whole value.
 const SHOWN: usize = 40;
 
 pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {

@@ -25,13 +25,12 @@ pub(in crate::ui) struct ConnectView {
     more: bool,
 }
 
-/// Maximum number of previously used links offered.
+/// Maximum number of recent links offered.
 const LINKS: usize = 5;
 const WIDTH: f32 = 600.0;
 /// Height of the two lines reserved for the reason why the dialog cannot continue.
 const WHY: f32 = 40.0;
 
-/// Draws the dialog if it is open.
 pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
     theme: &Theme,
@@ -48,7 +47,7 @@ pub(in crate::ui) fn connect_ui(
             devices_ui(ui, theme, tabs, dialog.device, actions);
         });
         ui.add_space(theme.space.inside);
-        // Constant height: nothing moves under the pointer.
+        // The height is constant, so nothing moves under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
             recent_links_ui(ui, theme, studio.settings.links(dialog.device), actions);
             if let Some(own) = tabs.device(dialog.device) {
@@ -102,7 +101,7 @@ fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut V
     ui.add_space(theme.space.between);
 }
 
-/// Draws the entry for the link as used on the command line. The link and the form update each other.
+/// Draws the entry for the link in the form of the command line. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());
     let (word, hint) = (theme.say("connect.link"), theme.words(&hint));
@@ -120,7 +119,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
     });
 }
 
-/// Draws the reason why the dialog cannot continue. Two lines are reserved, so that the buttons do not move under the
+/// Draws the reason why the dialog cannot continue. Two lines are always reserved, so the buttons do not move under the
 /// pointer.
 fn reason_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();

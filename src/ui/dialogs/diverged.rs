@@ -1,4 +1,4 @@
-//! A profile that others have changed in its file: both versions side by side, and the choice between them.
+//! A profile whose file another program has changed: both versions side by side, and the choice between them.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -8,14 +8,14 @@ use crate::profile::ChangedSide;
 use crate::ui::controls::{button, enabled_button, modal, options, paragraph, primary_button, problem, right_aligned};
 use crate::ui::{Theme, icons};
 
-/// Maximum height of the list in points, so that a long list leaves the buttons visible.
+/// Maximum height of the list in points. The buttons stay visible below a long list.
 const LIST: f32 = 320.0;
-/// Maximum number of displayed characters of a value, since a memory may contain thousands.
+/// Maximum number of characters shown of a value. A memory may contain thousands.
 const SHOWN: usize = 60;
 
 /// Draws the dialog if there is a conflict to resolve.
 pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // A resulting question is shown before it.
+    // A question that results from the choice is shown first.
     let Some(diverged) = studio.diverged.as_ref().filter(|_| studio.question.is_none()) else { return };
     modal(ctx, theme, "diverged", 640.0, |ui| {
         ui.label(theme.heading(theme.say("diverged.title")));
@@ -63,7 +63,6 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
     ui.add_space(theme.space.between);
 }
 
-/// Returns the beginning of a value, on one line.
 fn shortened_text(value: &str) -> String {
     let words: Vec<&str> = value.split_whitespace().collect();
     let line = words.join(" ");

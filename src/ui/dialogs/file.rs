@@ -1,4 +1,5 @@
-//! Asking for a file: with the dialog of the system, on its own thread; if there is none, with an entry for the path.
+//! Choice of a file in the dialog of the system, on a separate thread. If the system has no dialog, the user types the
+//! path.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -12,16 +13,16 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Folder to which relative paths refer.
+    /// Folder that relative paths start from.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// Time below which a dialog closed without an answer is assumed never to have opened, since no user closes a dialog so
-/// fast.
+/// Time within which no user closes a dialog. A dialog that ends sooner without an answer is assumed never to have
+/// opened.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
-/// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] is used
+/// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] asks
 /// instead.
 pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: ActionMailbox) {
     let filter = theme.words(&kind(&question));
@@ -33,7 +34,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: ActionM
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
         let dialog = rfd::FileDialog::new().add_filter(filter, question.file_extensions());
-        // Loggers use many extensions for their tables, and users name traces freely.
+        // Offer all files. Loggers use many extensions for their tables, and users name traces freely.
         let any = matches!(question, FileQuestion::OpenCapture | FileQuestion::Recording);
         let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
         let chosen = match question.suggested_path() {
@@ -96,7 +97,8 @@ fn title(question: &FileQuestion) -> Text {
 }
 
 impl FileView {
-    /// Creates the state for typing a path. The path starts at the user's home unless the question specifies a folder.
+    /// Creates the state for typing a path. The path starts in the user's home folder unless the question names another
+    /// one.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &BaseFolders) -> Self {
         let home = folders.home_folder().unwrap_or(Path::new(""));
         let path = home.join(question.suggested_path().unwrap_or(Path::new("")));
@@ -124,7 +126,7 @@ pub(in crate::ui) fn file_ui(
         let response = text_entry(ui, &mut view.path, ui.available_width(), &theme.say("file.path"), "");
         if std::mem::take(&mut view.fresh) {
             response.request_focus();
-            // Typing replaces the name, not the folder.
+            // Select only the file name. Typing then keeps the folder.
             let name = view.path.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or_default().chars().count();
             let end = view.path.chars().count();
             let range =

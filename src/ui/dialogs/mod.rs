@@ -1,4 +1,4 @@
-//! Dialogs over the window: connecting, a question, a path to type, what this program is, help, the command palette.
+//! Dialogs over the window: connecting, a question, typing a path, the about dialog, help, and the command palette.
 
 mod about;
 mod comparison;

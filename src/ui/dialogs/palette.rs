@@ -1,4 +1,4 @@
-//! The command palette: finds an action or a page by its name.
+//! The command palette, which finds an action or a page by its name.
 
 use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
@@ -12,7 +12,7 @@ const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
 const ROWS: usize = 11;
 
-/// The text typed into the palette, and the row that Enter selects.
+/// State of the palette: the typed text, and the row that Enter selects.
 #[derive(Default)]
 pub(in crate::ui) struct PaletteUiState {
     typed: String,
@@ -52,7 +52,7 @@ pub(in crate::ui) fn palette_ui(
     })
 }
 
-/// Returns the commands that match the typed text, best match first. Unavailable commands come last.
+/// Returns the commands that match the typed text. The best match comes first, and unavailable commands come last.
 fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
         let fit = fit(typed, &command.name)

@@ -1,4 +1,4 @@
-//! A question before something is lost.
+//! The question before an action by which something would be lost.
 
 use egui::RichText;
 

@@ -1,4 +1,4 @@
-//! Jobs and the log: completed work, and notices.
+//! The panels of jobs and of the log, with completed work and notices.
 
 use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
@@ -8,7 +8,7 @@ use crate::ui::controls::{empty_placeholder, severity};
 use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
-/// Maximum number of notices drawn. The log file contains all of them.
+/// Maximum number of notices drawn. The log file has all of them.
 const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 
@@ -22,7 +22,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     TableBuilder::new(ui)
         .id_salt("jobs")
         .auto_shrink(false)
-        // Else the last rows of a low panel are below its end.
+        // Otherwise, the last rows of a low panel would be below its end.
         .min_scrolled_height(0.0)
         .column(Column::exact(64.0))
         .column(Column::exact(72.0))

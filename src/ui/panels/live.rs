@@ -1,4 +1,4 @@
-//! The position, large, and the plot of its recording.
+//! The position in large digits, and the plot of its recording.
 
 use std::time::Duration;
 
@@ -18,14 +18,14 @@ const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5
 /// Polling interval in microseconds used if the chosen rate is not offered.
 const USUAL: u64 = 50_000;
 
-/// Panel height in points below which the numbers beside the position are drawn on one line.
+/// Panel height in points below which the numbers beside the position are on one line.
 pub(crate) const LOW: f32 = 460.0;
 
-/// Minimum width of the rate selector, and the panel width from which the first button has a label.
+/// Minimum width of the rate selector, and panel width from which the first button has a label.
 const RATE: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
-/// Time in seconds after which an unchanged position is marked as such.
+/// Time in seconds after which an unchanged position is marked.
 const NOTICED: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
@@ -53,7 +53,7 @@ pub(in crate::ui) fn live_ui(
     }
 }
 
-/// Draws the reason why the values are paused. The space is always reserved, so that the content below does not move.
+/// Draws the reason why the values are paused. The space is always reserved, so the content below does not move.
 fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     let size = egui::vec2(ui.available_width().max(0.0), theme.sizes.caption + theme.space.inside);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -70,7 +70,7 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
-    // Also if nothing waits: the next job starts from zero.
+    // The animation runs even without a job, so the next job starts from zero.
     let share = ui.ctx().animate_bool_with_time(id, waits, if waits { NOTICED } else { 0.0 });
     waits && share >= 1.0
 }
@@ -92,13 +92,13 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-/// Draws a short remark beside the position, truncated at the edge of the panel so that the panel never outgrows the
-/// window.
+/// Draws a short remark beside the position. It is truncated at the edge of the panel, because a panel must not outgrow
+/// the window.
 pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
-/// Draws the rows of a position that has not been read yet, so that the buttons below keep their place when it is.
+/// Draws the rows of a position that is not read yet. They reserve the space, so the buttons below do not move later.
 pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) {
     const UNKNOWN: &str = "–";
     if ui.available_height() < LOW {
@@ -110,7 +110,7 @@ pub(crate) fn unknown_rows(ui: &mut Ui, theme: &Theme, labels: &[&'static str]) 
     }
 }
 
-/// Draws the position as sent by the device, in a smaller font if it would not fit on one line.
+/// Draws the position as sent by the device. The font is smaller if one line is too short.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let value = theme.monospace(value);
     let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;
@@ -133,7 +133,7 @@ fn controls_ui(
     let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.say(id))).collect();
     let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
     ui.horizontal_wrapped(|ui| {
-        // In the usual width they stand in one row.
+        // At the usual width, they fit in one row.
         ui.spacing_mut().item_spacing.x = theme.space.inside;
         ui.spacing_mut().combo_width = RATE;
         let button = if ui.available_width() < ONE_ROW { icon_button } else { enabled_button };

@@ -1,6 +1,6 @@
 //! The trace panel of the selected session: time, gap, direction, bytes, meaning. The newest frame is at the bottom and
-//! stays visible until the user scrolls up or pauses the list. Frames that are being read keep their place while others
-//! arrive.
+//! stays visible until the user scrolls up or pauses the list. After that, the visible frames keep their place while
+//! others arrive.
 
 use egui::{Align, RichText, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
@@ -21,9 +21,9 @@ pub(in crate::ui) struct TraceView {
     session: Option<SessionId>,
     filter: TraceFilter,
     matches: TraceMatches,
-    /// Number of the first frame that is not shown because the list is paused.
+    /// Number of the first frame that is hidden because the list is paused.
     paused_at: Option<u64>,
-    /// Rows that the log had removed when the list was last drawn with the same filter.
+    /// Number of rows that the log had removed when the list was last drawn with the same filter.
     removed: Option<u64>,
     offset: f32,
     /// Whether the user has scrolled up.
@@ -36,7 +36,7 @@ impl TraceView {
             let filter = std::mem::take(&mut self.filter);
             *self = TraceView { session: Some(session), filter, ..TraceView::default() };
         }
-        // A new connection starts a new log.
+        // A new connection starts a new log, to which an old pause does not apply.
         self.paused_at = self.paused_at.filter(|end| *end <= log.end());
     }
 }
@@ -76,7 +76,7 @@ pub(in crate::ui) fn trace_ui(
     let mut table = TableBuilder::new(ui)
         .id_salt("trace")
         .auto_shrink(false)
-        // Else the last rows of a low panel are below its end.
+        // Otherwise, the last rows of a low panel would be below its end.
         .min_scrolled_height(0.0)
         .stick_to_bottom(true);
     if jumps_to_end {
@@ -105,7 +105,7 @@ pub(in crate::ui) fn trace_ui(
     view.is_behind = view.offset + drawn.inner_rect.height() < drawn.content_size.y - pitch / 2.0;
 }
 
-/// Draws search, filter, pause and save. Returns whether to show the newest frame.
+/// Draws search, filter, pause and save. Returns whether the newest frame is to be shown.
 fn toolbar(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, actions: &mut Vec<Action>) -> bool {
     let mut jumps_to_end = false;
     ui.horizontal(|ui| {

@@ -1,10 +1,10 @@
-//! Ticks and their labels: round steps of values, and of time in a suitable unit. Pure.
+//! Ticks and their labels: round steps of values, and of time in a suitable unit. All functions are pure.
 
 use crate::analysis::SampleTime;
 use crate::app::recorder::SAMPLE;
 use crate::app::{Language, decimal};
 
-/// Returns a step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
+/// Returns a step of 1, 2 or 5 times a power of ten. It divides `span` into at most `most` parts.
 pub(super) fn step(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     if !least.is_finite() || least <= 0.0 {
@@ -22,11 +22,11 @@ pub(super) fn decimals(step: f64) -> usize {
 }
 
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Maximum number of ticks, more than any picture can show. Without this limit, a step of zero would loop forever.
+    /// Maximum number of ticks, more than any picture can show. Without it, a step of zero would loop forever.
     const MOST: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
-    // Counted from the first, so that errors do not accumulate; −0 is 0.
+    // Each tick is calculated from the first, so errors do not accumulate. Adding 0 turns −0 into 0.
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
@@ -36,8 +36,8 @@ pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
 }
 
-/// Returns a range that contains `low` to `high` and is at least `least` long. It ends at round steps, so that it does
-/// not change with every sample.
+/// Returns a range that contains `low` to `high` and has at least the length `least`. It ends at round steps, so it
+/// does not change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);
@@ -47,7 +47,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     };
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {
-        // So large that a double cannot hold the difference: not a measured value.
+        // The values are so large that a double cannot hold their difference. They are not measured.
         return (f64::MIN / 4.0, f64::MAX / 4.0);
     }
     let (low, high) = (low - span * 0.04, high + span * 0.04);
@@ -58,7 +58,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
     pub(super) ticks: Vec<(SampleTime, String)>,
-    /// Reference time of the labels, or `None` if they count from the beginning.
+    /// Reference time of the labels. `None` if they count from the beginning.
     pub(super) base: Option<String>,
 }
 
@@ -67,7 +67,7 @@ const SECOND: i64 = 1_000_000_000;
 pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
-    // Labels that would differ in their last digits only count from a round point before them.
+    // If labels would differ in their last digits only, they count from a round time before them.
     let coarse =
         if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(axis_base_time(from, step)) } else { None };
     let origin = coarse.unwrap_or(0);
@@ -87,7 +87,7 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
     TimeTicks { ticks, base: coarse.map(|base| clock(base, 1, language)) }
 }
 
-/// Returns ticks that are labelled with sample numbers instead of times.
+/// Returns ticks labelled with sample numbers instead of times.
 pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
     let number = |time: SampleTime| time.nanoseconds() as f64 / SAMPLE as f64;
     let step = step(number(to) - number(from), most as f64).max(1.0);
@@ -95,7 +95,7 @@ pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, langua
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
-/// Returns the base time at or before `from`, a multiple of 0.1 s for steps below 1 ms and of 10 s otherwise.
+/// Returns the base time at or before `from`. It is a multiple of 0.1 s for steps below 1 ms, and of 10 s otherwise.
 fn axis_base_time(from: SampleTime, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
@@ -107,7 +107,7 @@ fn time_step(span: i64, most: usize) -> i64 {
     let mut decimal = 1_i64;
     while decimal <= SECOND {
         for factor in [1, 2, 5] {
-            // 20 and 50 seconds are no steps of a minute.
+            // A minute is not divided into steps of 20 or 50 seconds.
             if factor * decimal >= least && factor * decimal <= 10 * SECOND {
                 return factor * decimal;
             }
@@ -134,7 +134,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
         1_000_000..SECOND => ("ms", 1e6, 0),
         _ => return clock(nanoseconds, step, language),
     };
-    // Milliseconds of whole seconds are shown as seconds.
+    // Whole seconds are shown as seconds and not as milliseconds.
     if step >= 1_000_000 && nanoseconds.abs() >= SECOND {
         let decimals = if step >= 100_000_000 {
             1

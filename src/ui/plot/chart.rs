@@ -30,7 +30,7 @@ pub(super) fn paint(
     time_axis(painter, context, layout, &font);
     for lane in &layout.lanes {
         value_axis(painter, theme, lane, &font);
-        // The names hide the grid, and never a line.
+        // The names may cover the grid but never a line.
         paint_names(painter, context, lane);
         paint_lines(painter, context, layout, lane, reduced);
     }
@@ -81,9 +81,9 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
 const EDGE: f32 = 2.0;
 const HALF: f32 = 5.5;
 
-/// Returns the labelled ticks with the heights of their labels. A label normally sits beside its tick line, since the
-/// space between two lanes holds half a label. A low lane with fewer than two such ticks labels its outermost ticks on
-/// the inside.
+/// Returns the labelled ticks with the heights of their labels. A label is normally beside its tick line, because the
+/// space between two lanes holds half a label. In a low lane with fewer than two such ticks, the labels of the
+/// outermost ticks are on the inside.
 fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
         ticks.iter().copied().filter(|(_, y)| (top + EDGE..=bottom - EDGE).contains(y)).collect();
@@ -131,7 +131,7 @@ fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: 
 fn paint_names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
     if lane.rect.height() < LOW {
-        // They would cover the line; the numbers below show them too.
+        // The names would cover the line. The numbers below show them too.
         return;
     }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
@@ -161,7 +161,7 @@ fn paint_cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font
         let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
         painter.rect_filled(handle, 3.0, palette.text);
         painter.text(handle.center(), Align2::CENTER_CENTER, cursor.word(), font.clone(), palette.sunken.into());
-        // Intersections with the lines: the raw samples being read.
+        // Mark where the cursor crosses the lines. These are the raw samples of the readout.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
             if let Some(line) = context.recorder.line(*line) {
                 paint_dot(painter, context, layout, lane, line, time);
@@ -214,7 +214,6 @@ fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layo
     }
 }
 
-/// Paints the trigger level and the position of the trigger event.
 fn paint_trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let Some((trigger, state)) = context.recorder.trigger() else { return };
     let palette = context.theme.palette;

@@ -1,5 +1,5 @@
-//! The layout of a plot: lanes one below the other, or one for all; the values of each; and the reduced samples, which
-//! are recalculated only when samples or view have changed.
+//! The layout of a plot: one lane per line or a common lane, and the values of each. The reduced samples are
+//! recalculated only when samples or view have changed.
 
 use std::ops::Range;
 
@@ -51,7 +51,7 @@ pub(super) struct Reduced {
     gutter: f32,
 }
 
-/// Inputs of a picture. The picture is redrawn only if they change.
+/// Inputs of a picture. It is made again only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<SampleGroupStamp>,
@@ -76,7 +76,7 @@ impl Reduced {
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }
-            // Lines whose samples were taken together share one cut.
+            // Lines share one cut if their samples were taken together.
             if !cuts.iter().any(|(made, _)| *made == wanted) {
                 cuts.push((wanted.clone(), history.cut(grid)));
             }
@@ -96,7 +96,7 @@ impl Reduced {
     /// Returns the minimum and maximum of the visible values, in the line's unit.
     fn extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
         let picture = self.picture(line.id)?;
-        // The neighbours beyond the edges are included for the line to lead to them, and do not count for the range.
+        // The neighbours beyond the edges only continue the line. They do not count for the range.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
         };
@@ -110,8 +110,8 @@ impl Reduced {
 }
 
 pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut Reduced) -> Layout {
-    // The width of the labels is known only with the values, which depend on the width: the width of the previous frame is
-    // tried first, so that a picture that changes little is made once.
+    // The width of the labels depends on the values, and the values depend on the width. The width of the previous
+    // frame is tried first. A picture that changes little is then made only once.
     let (from, to) = recorder.window();
     let groups = groups(recorder);
     let mut gutter = reduced.gutter.clamp(LEAST, MOST);
@@ -126,7 +126,8 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let lanes = lay_out_lanes(chart, &groups, &time, reduced);
         let needed = (max_label_len(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
         if needed <= gutter || rect.width() < gutter * 3.0 {
-            // Released in the next frame, if it is more than a character or two: it must not jump with every sample.
+            // The space is released in the next frame if it is more than a character or two. The width must not jump
+            // with every sample.
             reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
             return Layout { lanes, time, chart };
         }
@@ -161,14 +162,14 @@ fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced:
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// Returns the step between two ticks of a lane. Ticks are closer in a low lane, so that at least two are visible.
+/// Returns the step between two ticks of a lane. Ticks are closer in a low lane, where at least two must be visible.
 fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     let of_distance = |distance: f32| axes::step(high - low, f64::from((height / distance).max(2.0)));
     let step = of_distance(APART);
     if axes::ticks(low, high, step).count() < 2 { of_distance(CLOSE) } else { step }
 }
 
-/// Returns the value range of a lane, either chosen by the user or fitted to the values. Returns `None` if the lane has
+/// Returns the value range of a lane. It is chosen by the user or fitted to the values. Returns `None` if the lane has
 /// no values.
 fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {

@@ -1,8 +1,8 @@
-//! The plot: draws a recorder, and turns input of the pointer and the keyboard into actions.
+//! The plot. It draws a recorder, and turns input of the pointer and the keyboard into actions.
 //!
-//! Drag: a box to zoom into; on a cursor: moves it. Right button or Shift: moves the picture. Wheel: longer or shorter
-//! about the pointer. Double click: everything. Keys: ← → move, + − zoom, Home everything, End the newest, A and B the
-//! cursors.
+//! A drag selects a box to zoom into, or moves a cursor. With the right button or Shift, it moves the picture. The
+//! wheel makes the time span longer or shorter around the pointer. A double click shows everything. Keys: ← → move, + −
+//! zoom, Home everything, End the newest, A and B the cursors.
 
 mod axes;
 mod chart;
@@ -28,7 +28,7 @@ pub struct PlotUiState {
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     shot: snapshot::Screenshot,
-    /// Whether the plot fills the page, or `None` if it cannot be enlarged.
+    /// Whether the plot fills the page. `None` if it cannot be enlarged.
     large: Option<bool>,
 }
 
@@ -50,7 +50,7 @@ impl PlotUiState {
     }
 }
 
-/// Recorder of a plot, with the list that collects the user's actions.
+/// Recorder of a plot, with the list of the user's actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
@@ -75,17 +75,17 @@ pub fn plot_ui(
     actions: &mut Vec<Action>,
 ) {
     if view.owner.replace(owner).is_some_and(|before| before != owner) {
-        // Drags and typed text belonged to another one.
+        // Discard the drags and typed text of another recorder.
         *view = PlotUiState { owner: view.owner, large: view.large, ..PlotUiState::default() };
     }
     let context = &mut Context { theme, recorder, owner, actions };
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();
-    // The readout is below the chart and takes its height from the previous frame.
+    // The readout is below the chart. Its height is known from the previous frame.
     let readout_id = ui.scope_id().with("readout");
     let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
-    // In a low panel the numbers scroll: the chart keeps half of the space.
+    // In a low panel, the numbers scroll, and the chart keeps half of the space.
     let height = (below - readout.min(below * 0.5) - ui.spacing().item_spacing.y).max(60.0);
     let hovered = chart_ui(ui, context, view, height, invitation);
     let numbers = egui::ScrollArea::vertical().id_salt("readout").auto_shrink([false, true]);
@@ -94,7 +94,7 @@ pub fn plot_ui(
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();
     }
-    // The tools are not part of the picture; the numbers are if all of them are visible.
+    // The picture excludes the tools. It includes the numbers if all of them are visible.
     let shown = ui.min_rect();
     let bottom = if used <= shown.bottom() - top - height + 0.5 { shown.bottom() } else { top + height };
     let picture = Rect::from_min_max(egui::pos2(shown.left(), top), egui::pos2(shown.right(), bottom));

@@ -19,7 +19,7 @@ pub(super) enum Drag {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture itself, with the time that was under the pointer when the drag began.
+    /// The picture itself, with the time under the pointer at the start of the drag.
     Picture {
         under: SampleTime,
         window: (SampleTime, SampleTime),
@@ -86,7 +86,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
         }
         Drag::Box { to, .. } => *to = place,
         Drag::Picture { under, window: (from, to) } => {
-            // Relative to its start: the layout moves with it.
+            // The time is relative to the start of the visible span, because the layout moves with it.
             let here = from.plus((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
             let by = under.nanoseconds_since(here);
             context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
@@ -94,7 +94,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
     }
 }
 
-/// Zooms into the chosen box. A wide box selects a time span, a tall box a value range, and a box that is both selects
+/// Zooms into the chosen box. A wide box selects a time span, and a tall box a value range. A box that is both selects
 /// both.
 fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
@@ -103,7 +103,8 @@ fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
-    // Dragging is never exactly along a line: a flat box means time only, and so does one over the whole lane.
+    // A drag is never exactly along a line. A flat box therefore selects only the time, and so does one over the whole
+    // lane.
     if part >= CLICK * 3.0 && part < lane.rect.height() * 0.9 {
         let axis = lane.axis();
         let low = axis.value(chosen.bottom().min(lane.rect.bottom()));
@@ -120,7 +121,7 @@ fn handle_hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout:
         ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
     }
     let zoom = ui.input(egui::InputState::zoom_delta);
-    // Consumed: the page around the plot must not scroll as well.
+    // Take the wheel input, or the page around the plot would scroll too.
     let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {
@@ -135,7 +136,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     if !response.has_focus() {
         return;
     }
-    // Otherwise the arrows would lead to the next widget.
+    // Otherwise, the arrow keys would move the focus to the next widget.
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));

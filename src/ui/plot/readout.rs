@@ -1,5 +1,5 @@
-//! The numbers below the chart: for each line the raw sample under the pointer, or the newest, and the readings of the
-//! cursors.
+//! The numbers below the chart. For each line, they show the raw sample under the pointer, or the newest one, and the
+//! readings of the cursors.
 
 use egui::{RichText, Sense, Ui, vec2};
 
@@ -66,7 +66,7 @@ fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<SampleTime>) {
         let row = |ui: &mut Ui, cells: Vec<RichText>| {
             let last = cells.len().saturating_sub(1);
             for (at, words) in cells.into_iter().enumerate() {
-                // The last column has no right edge for alignment.
+                // The last column needs no padding on the right.
                 if at == last {
                     ui.label(words);
                 } else {
@@ -136,7 +136,7 @@ fn swatch_ui(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
 }
 
-/// Formats the raw sample under the pointer, or the newest sample if the pointer is elsewhere.
+/// Formats the raw sample under the pointer. Without the pointer on the chart, formats the newest sample.
 fn now(context: &Context<'_>, line: &Series, hovered: Option<SampleTime>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
@@ -156,7 +156,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
             (theme.say("recorder.mean"), number(Some(between.mean))),
             (theme.say("recorder.min"), number(Some(between.min))),
             (theme.say("recorder.max"), number(Some(between.max))),
-            // Noise is smaller than the measured values.
+            // One more decimal, because noise is smaller than the values.
             ("σ".to_owned(), theme.number(between.deviation, decimals + 1)),
             ("n".to_owned(), between.count.to_string()),
         ]);
@@ -164,7 +164,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
     figures
 }
 
-/// Draws the reason why there are no samples, and the number of invalid samples.
+/// Draws the reason why there are no samples. Also draws the number of invalid samples.
 fn remarks_ui(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {
@@ -196,7 +196,7 @@ fn small(theme: &Theme, words: impl Into<String>) -> RichText {
 }
 
 fn figure_ui(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
-    // Sign and number stay together at the end of a line.
+    // The sign and the number must not be separated at the end of a line.
     let mut job = egui::text::LayoutJob::default();
     let format = |size, colour: crate::app::Rgb| egui::TextFormat {
         font_id: egui::FontId::monospace(size),

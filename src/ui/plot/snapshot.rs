@@ -1,5 +1,5 @@
-//! A picture of the plot: the window delivers its pixels some frames later, and a part of them is kept. The whole plot
-//! must be visible, without a menu or the pointer over it.
+//! A picture of the plot. The window delivers its pixels some frames later, and the part with the plot is cut out. The
+//! whole plot must be visible, without a menu or the pointer over it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -11,10 +11,9 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// A picture has been requested, to be taken as soon as the plot is visible. Holds the number of frames waited so
-    /// far.
+    /// A picture was requested and waits until the plot is visible. The number counts the frames so far.
     Wanted(usize),
-    /// The window's pixels have been requested. Holds the plot's position in the previous frame.
+    /// The window's pixels were requested. The rectangle is the plot's position in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
 }
 
@@ -22,19 +21,19 @@ pub(super) enum Screenshot {
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture of a later frame, because the menu is still open in the current one.
+    /// Requests a picture of a later frame. In the current one, the menu is still open.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
-    /// Returns whether a picture is pending, so that the next frame may be captured.
+    /// Returns whether a picture is pending. The next frame may then be captured.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Screenshot::None)
     }
 
-    /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible, and crops the
-    /// picture to the plot when the pixels have arrived.
+    /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible. When the pixels
+    /// have arrived, crops the picture to the plot.
     pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}
@@ -55,7 +54,7 @@ impl Screenshot {
             }
             Screenshot::Wanted(_) => *self = Screenshot::Asked(ask(ui.ctx()), plot),
             Screenshot::Asked(place, before) => match place.get().cloned() {
-                // The pixels are those of the previous frame.
+                // The pixels belong to the previous frame.
                 Some(image) => {
                     let wanted = *before;
                     *self = Screenshot::None;
@@ -71,7 +70,7 @@ fn ask(ctx: &Context) -> Arc<OnceLock<Arc<ColorImage>>> {
     let place: Arc<OnceLock<Arc<ColorImage>>> = Arc::default();
     let (kept, waker) = (place.clone(), ctx.clone());
     ctx.request_screenshot(move |image| {
-        // It is called once.
+        // The callback is called only once.
         let _ = kept.set(image);
         waker.request_repaint();
     });

@@ -1,4 +1,4 @@
-//! The plot's tools: hold and follow, the length of the view, cursors, trigger, lines and their units, export.
+//! The plot's tools: hold and follow, the time span, cursors, trigger, lines and their units, export.
 
 use egui::{RichText, Ui};
 
@@ -22,7 +22,7 @@ const SPANS: [(i64, &str); 10] = [
     (86_400, "recorder.span_86400"),
 ];
 
-/// Width in points from which all tools are in one row. In narrower panels, some of them are in a menu.
+/// Width in points from which all tools are in one row. In a narrower panel, a menu has some of them.
 const ONE_ROW: f32 = 284.0;
 
 pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut PlotUiState) {
@@ -30,7 +30,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
     let narrow = ui.available_width() < ONE_ROW;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme.space.inside, theme.space.inside);
-        // In one row in a panel at the side of the window.
+        // The padding is smaller, so one row suffices in a panel at the side of the window.
         ui.spacing_mut().button_padding.x = 6.0;
         let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
             icon_button(ui, enabled, icon, &theme.say(id)).clicked()
@@ -77,11 +77,11 @@ fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: 
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// Draws the time span selector, which shows a preset or the span that results from zooming.
+/// Draws the time span selector. It shows a preset, or the span that results from zooming.
 fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
-        // Seconds have no meaning here; zooming selects the number of samples.
+        // Samples without times have no seconds. The number of samples is selected by zooming.
         return;
     }
     let (theme, span) = (context.theme, context.recorder.span());
@@ -103,7 +103,6 @@ fn has_cursors(recorder: &Recorder) -> bool {
     Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some())
 }
 
-/// Draws the menu with the tools for which a narrow panel has no room.
 fn more_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let (theme, recorder) = (context.theme, context.recorder);
     let some = !recorder.is_empty();
@@ -194,7 +193,7 @@ fn export_menu_ui(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::S
     context.actions.extend(chosen);
 }
 
-/// Draws the state of the operation in progress: a trigger waiting, or a table being written.
+/// Draws the state of a waiting trigger or of a table that is being written.
 fn state_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {

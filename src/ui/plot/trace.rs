@@ -1,5 +1,5 @@
-//! A line of samples as shapes: dense ones as one mesh without antialiasing, which is cheap to fill; sparse ones as a
-//! smooth line with its points. Breaks stay gaps, and samples marked bad or with a warning stay visible.
+//! A line of samples as shapes. Dense samples are one mesh without antialiasing, which is cheap to fill. Sparse samples
+//! are a smooth line with its points. Breaks stay gaps, and invalid samples and warnings stay visible.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
@@ -8,7 +8,7 @@ use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, Picture};
 
 const WIDTH: f32 = 1.5;
-/// Maximum number of points up to which a line is drawn smoothly.
+/// Number of points up to which a line is drawn smoothly.
 const SMOOTH: usize = 1500;
 /// Minimum sample spacing in points at which each sample gets a dot.
 const DOTS: f32 = 8.0;
@@ -28,8 +28,8 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column for a time. Columns have fixed positions, wherever the samples
-    /// lie within them.
+    /// Returns the left edge of the pixel column for a time. Columns have fixed positions, independent of the samples
+    /// in them.
     fn column(&self, time: SampleTime) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }
@@ -43,7 +43,7 @@ impl TimeAxis {
 pub(super) struct ValueAxis {
     pub(super) low: f64,
     pub(super) bottom: f32,
-    /// Points per value unit, never zero.
+    /// Points per value unit. It is never zero.
     pub(super) scale: f64,
 }
 
@@ -55,7 +55,7 @@ impl ValueAxis {
     }
 
     pub(super) fn y(&self, value: f64) -> f32 {
-        // Far outside the exact place does not matter; beyond the range of f32 it would.
+        // The exact place does not matter far outside, but it must stay in the range of f32.
         let y = f64::from(self.bottom) - (value - self.low) * self.scale;
         y.clamp(-1e6, 1e6) as f32
     }
@@ -94,8 +94,8 @@ pub(super) fn shapes(
     }
 }
 
-/// Draws one vertical bar per pixel column, from the minimum to the maximum of its samples, extended to join the end of
-/// the previous column.
+/// Draws one vertical bar per pixel column. The bar spans the minimum to the maximum of the samples, and is extended to
+/// join the end of the previous column.
 fn draw_dense_trace(
     picture: &Picture,
     lane: Rect,
@@ -113,11 +113,11 @@ fn draw_dense_trace(
         let y = |own: f64| value.y(own * pen.factor);
         let (one, other) = (y(values.min), y(values.max));
         let (mut top, mut bottom) = (one.min(other), one.max(other));
-        // Its last sample is in it, while its first may be slightly before it.
+        // The last sample is always in the column. The first may be slightly before it.
         let left = time.column(pixel.to);
         if let Some((x, y)) = before.filter(|_| pixel.joined) {
             (top, bottom) = (top.min(y), bottom.max(y));
-            // Columns without samples in between are bridged.
+            // Bridge the columns without samples in between.
             if left > x + 0.01 {
                 bar(
                     &mut mesh,
@@ -158,7 +158,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     for (at, pixel) in picture.pixels.iter().enumerate() {
         let Some(values) = pixel.values else { continue };
         let here = pos2(time.x(pixel.from), value.y(values.first * pen.factor));
-        // One that is joined to neither side would be invisible.
+        // A sample that is joined to neither side would be invisible.
         let lonely = !pixel.joined && picture.pixels.get(at + 1).is_none_or(|next| !next.joined);
         if (dots || lonely) && lane.contains(here) {
             out.push(Shape::circle_filled(here, 2.0, pen.colour));
@@ -185,7 +185,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
-    // Slightly extended, so that pieces at an angle leave no notch.
+    // Extend the pieces slightly, because they would leave a notch at an angle.
     let (from, to) = (from - along * 0.5, to + along * 0.5);
     mesh.vertices.extend([from + across, to + across, from - across, to - across].map(|pos| Vertex {
         pos,

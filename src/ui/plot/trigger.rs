@@ -1,4 +1,4 @@
-//! The form of a trigger: the line, the event, the level, and the share before it.
+//! The form of a trigger: the line, the event, the level, and the share of samples before it.
 
 use egui::{RichText, Ui};
 

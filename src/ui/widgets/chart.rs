@@ -23,15 +23,15 @@ pub struct Chart<'a> {
     pub height: f32,
     pub x_unit: &'a str,
     pub y_unit: &'a str,
-    /// Limits of the horizontal axis, or `None` to fit the limits to the data.
+    /// Limits of the horizontal axis. `None` fits them to the data.
     pub x_range: Option<(f64, f64)>,
-    /// Tick spacing of the horizontal axis, or `None` for automatic spacing.
+    /// Tick spacing of the horizontal axis. `None` is automatic.
     pub x_step: Option<f64>,
-    /// Lowest value that the vertical axis always includes.
+    /// Value that the vertical axis always includes.
     pub y_floor: Option<f64>,
     /// Labels at individual points, such as peaks.
     pub marks: &'a [(f64, f64, String)],
-    /// Whether to draw bars instead of lines. The positions of bars are whole numbers.
+    /// Whether to draw bars instead of lines. Bars have whole numbers as positions.
     pub bars: bool,
 }
 
@@ -59,7 +59,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
         HoverPosition::Elsewhere { .. } => None,
     };
     theme.sunken_frame().show(ui, |ui| {
-        // Ticks fade from one colour into the other as they get closer together.
+        // Use one colour for all ticks. Otherwise, they fade as they get closer together.
         ui.visuals_mut().widgets.noninteractive.fg_stroke.color = theme.palette.muted.into();
         ui.visuals_mut().override_text_color = Some(theme.palette.muted.into());
         let mut plot = Plot::new(chart.label)
@@ -169,7 +169,7 @@ fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'stati
     hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
-/// Returns a step of 1, 2 or 5 times a power of ten that divides the range into about five parts.
+/// Returns a step of 1, 2 or 5 times a power of ten. It divides the range into about five parts.
 fn round_step((least, most): (f64, f64)) -> f64 {
     let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
     let power = 10_f64.powf(rough.log10().floor());
@@ -177,7 +177,7 @@ fn round_step((least, most): (f64, f64)) -> f64 {
     times * power
 }
 
-/// Returns the ticks of a range at the given step, limited to as many as can be distinguished.
+/// Returns the ticks of a range at the given step. Their number is limited to those that can be distinguished.
 fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     const MOST: usize = 64;
     let first = (least / step).ceil();

@@ -25,7 +25,7 @@ use strip::Strip;
 #[derive(Clone, Debug, Default)]
 pub struct MapField {
     pub number: u8,
-    /// Number of blocks in the field; an empty field is drawn as one block.
+    /// Number of blocks in the field. An empty field is drawn as one block.
     pub blocks: usize,
     pub label: String,
     /// Caption below the number, in parts separated by ` · `. As many parts are shown as fit.
@@ -35,7 +35,7 @@ pub struct MapField {
     pub locked: bool,
     /// Whether the field's access code is unknown.
     pub unreadable: bool,
-    /// Whether the field has unwritten edits.
+    /// Whether the field has edits that are not written.
     pub edited: bool,
     pub tooltip: String,
 }
@@ -50,7 +50,7 @@ pub struct FieldMap<'a> {
     pub free_tooltip: &'a str,
     pub selected: Option<u8>,
     pub block_bytes: usize,
-    /// Sizes in blocks to which the last field may be dragged, or `None` to hide the handle.
+    /// Sizes in blocks to which the last field can be dragged. `None` hides the handle.
     pub resize: Option<RangeInclusive<usize>>,
 }
 
@@ -58,13 +58,13 @@ pub struct FieldMap<'a> {
 pub enum MapEvent {
     Select(u8),
     SelectFree,
-    /// The user resized the last field to a size that differs from the current one.
+    /// The user resized the last field. The size differs from the current one.
     ResizeLast {
         blocks: usize,
     },
 }
 
-/// Draws the map and returns the user's action. Only one map per `Ui` is possible without a separate id (`push_id`).
+/// Draws the map and returns the user's action. A `Ui` can have only one map, unless each has its own id (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();
@@ -100,8 +100,8 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Handles arrow keys before the parts of the map are announced, so that the focus moves in memory order rather than
-/// to the nearest widget.
+/// Handles the arrow keys before the parts of the map are announced. The focus then moves in memory order and not to
+/// the nearest widget.
 fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
     let focused = ui.memory(egui::Memory::focused);
@@ -149,18 +149,18 @@ fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>,
             });
             part.state.focused = response.has_focus();
             if response.gained_focus() {
-                // The next arrow must be handled here.
+                // The map must receive the next arrow key too.
                 ui.request_repaint();
             }
             response
         } else {
-            // egui uses the plain numbers for tooltips.
+            // These ids must differ from the plain numbers, which egui uses for tooltips.
             ui.interact(*rect, id.with("line").with(number), Sense::CLICK)
         };
         part.clicked |= response.clicked();
         part.state.hovered |= response.hovered();
         if response.clicked() {
-            // The arrows continue from here.
+            // The arrow keys continue from the clicked field.
             ui.memory_mut(|memory| memory.request_focus(id));
         }
         show_tooltip(response, tooltip);

@@ -28,9 +28,9 @@ pub struct StripField {
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
-    /// Colour index, one of eight colours, or `None` if the field only encloses other fields.
+    /// Colour index, one of eight colours. `None` if the field only encloses other fields.
     pub colour: Option<usize>,
-    /// Verdict that the field reports (a fault, a warning or no problem), or `None` if it reports nothing.
+    /// Verdict that the field reports. `None` if it reports nothing.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }
@@ -40,7 +40,7 @@ pub struct FrameStrip<'a> {
     pub label: &'a str,
     /// Fields in transmission order.
     pub fields: &'a [StripField],
-    /// Bits in transmission order. Missing or `None` bits are unknown.
+    /// Bits in transmission order. A bit that is `None` or beyond the end is unknown.
     pub bits: &'a [Option<bool>],
 }
 
@@ -104,7 +104,6 @@ impl StripField {
     }
 }
 
-/// The text lines below a field, which show its name and its value.
 struct Words {
     name: Arc<Galley>,
     value: Arc<Galley>,
@@ -135,7 +134,7 @@ impl Words {
     }
 }
 
-/// Draws the bits of a piece and the bar below them that joins them.
+/// Draws the bits of a piece, and a bar below that joins them.
 fn paint_cells(
     painter: &Painter,
     theme: &Theme,

@@ -33,12 +33,12 @@ pub use view::HexView;
 
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// Bytes read from the device. Displayed bytes beyond the end count as changed.
+    /// Bytes read from the device. Displayed bytes beyond their end count as changed.
     pub device: &'a [u8],
     /// Displayed bytes, including the user's edits.
     pub wanted: &'a [u8],
     pub marks: &'a [HexMark<'a>],
-    /// Reason why the bytes cannot be edited, or `None` if they are editable.
+    /// Reason why the bytes cannot be edited. `None` if they are editable.
     pub read_only: Option<&'a Text>,
     /// Maximum number of lines shown at once.
     pub lines: usize,
@@ -56,7 +56,7 @@ pub enum HexEdit {
     /// Writes bytes starting at an address. The range always fits.
     Put {
         address: usize,
-        /// New bytes, of which there is at least one.
+        /// New bytes. There is at least one.
         bytes: Vec<u8>,
     },
     Undo,
@@ -92,7 +92,7 @@ const AROUND: f32 = 60.0;
 const TYPED: f32 = 240.0;
 
 /// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
-/// height; above the typed view, it leaves room for the view but shows at least sixteen lines.
+/// height. Above the typed view, it leaves space for the view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
@@ -116,7 +116,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     let grid = Grid::new(ui, theme, model);
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        // A half-visible line of bytes must be readable.
+        // Scrolling must not fade the edges. A half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
         let frame = theme.sunken_frame().show(ui, |ui| {
@@ -165,7 +165,7 @@ fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>
 
 fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
     if response.gained_focus() {
-        // The next arrow must move the cursor, not the focus.
+        // The editor must receive the next arrow key. It moves the cursor and not the focus.
         ui.request_repaint();
     }
     if response.has_focus() {
@@ -182,7 +182,7 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
     let (pressed, down, shift) =
         ui.input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down(), input.modifiers.shift));
     let Some(pos) = response.interact_pointer_pos() else { return };
-    // Outside, it scrolls by one line at a time.
+    // Outside the lines, the editor scrolls by one line at a time.
     let pos = response.interact_rect.expand(grid.row).clamp(pos);
     if model.wanted.is_empty() {
         return;
@@ -202,7 +202,7 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
     }
 }
 
-/// Sets the accessible name and value for screen readers and tests.
+/// Sets the accessible name and value. Screen readers and tests use them.
 fn set_widget_info(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &HexView) {
     let selected = view.selection();
     let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
@@ -251,7 +251,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view
     });
 }
 
-/// Returns a caption with its addresses in the monospaced font, since the text font would display the `x` in `0x` as a
+/// Returns a caption with its addresses in the monospaced font. The text font would display the `x` in `0x` as a
 /// multiplication sign.
 fn caption_layout(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();

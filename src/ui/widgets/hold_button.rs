@@ -26,11 +26,11 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
-    /// Whether what the hold started has ended by itself; the button then looks released.
+    /// Whether the action of the hold has ended by itself. The button then looks released.
     pub has_ended: bool,
 }
 
-/// Context of the hold buttons, which the window sets before they are drawn.
+/// Context of the hold buttons. The window sets it before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldSurroundings {
     /// Whether the window is covered, so that no hold button can be pressed.
@@ -60,8 +60,8 @@ pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurr
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. In this case, keys
-/// belong to the button.
+/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. Keys then belong to the
+/// button.
 pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
     let drawn = drawn(ctx);
     let focused = ctx.memory(|memory| memory.focused());
@@ -103,7 +103,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     state.begin(scene, last + 1 == pass);
     let place = response.interact_rect;
     let pressed_here = response.is_pointer_button_down_on();
-    // All events in order: those that the window has hidden from the widgets count here too.
+    // All events count here in their order, even those that the window has hidden from the widgets.
     let (down, inside) = ui.input(|input| {
         for event in &input.raw.events {
             if let Event::ModifiersChanged(now) = event
@@ -148,8 +148,8 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     event
 }
 
-/// Translates an event for the button at `place`. `pressed_here` states whether the pointer press in progress began on
-/// the button.
+/// Translates an event for the button at `place`. `pressed_here` states whether the current pointer press began on the
+/// button.
 fn translate_event(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
     Some(match event {
         Event::WindowFocused(has) => HoldInput::WindowFocus(*has),
@@ -158,7 +158,7 @@ fn translate_event(event: &Event, place: Rect, pressed_here: bool) -> Option<Hol
             Some(key) => HoldInput::Down { key, plain: modifiers.is_none() },
             None => HoldInput::OtherKey,
         },
-        // Keys that the window received as commands.
+        // The window received these keys as commands.
         Event::Copy | Event::Cut | Event::Paste(_) | Event::PasteImage(_) | Event::Ime(_) => HoldInput::OtherKey,
         Event::ModifiersChanged(_) => HoldInput::Modifiers,
         Event::PointerButton { pos, button, pressed: true, .. } => {

@@ -31,7 +31,7 @@ pub struct Lissajous<'a> {
 
 #[derive(Clone, Debug, Default)]
 pub struct LissajousFigure {
-    /// Picture of the samples in the series colour, with the square that the picture covers.
+    /// Picture of the samples in the colour of the series, with the square that it covers.
     pub picture: Option<(TextureId, PlotSquare)>,
     /// Fitted closed curve as (cosine, sine) points, in volts.
     pub curve: Vec<(f64, f64)>,
@@ -41,7 +41,7 @@ pub struct LissajousFigure {
 }
 
 const CIRCLE: usize = 120;
-/// Label steps of an axis in volts. The finest step with few enough labels is used.
+/// Label steps of an axis in volts. The axis uses the finest step with few enough labels.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
 /// The square on the screen in which the figure is drawn, with the voltage at its edge.
@@ -95,8 +95,8 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns a single-colour picture of a sample density. More samples are brighter, and even a single sample stays
-/// visible.
+/// Returns a single-colour picture of a sample density. It is brighter where there are more samples, and even a single
+/// sample stays visible.
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
@@ -106,7 +106,7 @@ pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
         0 => 0.0,
         count => LEAST + (1.0 - LEAST) * (f64::from(count).ln_1p() / scale) as f32,
     };
-    // Pictures begin at the top, densities at the bottom.
+    // Pictures begin at the top, and densities at the bottom.
     let rows = density.counts().chunks(side).rev();
     let pixels = rows.flatten().map(|count| colour.gamma_multiply(brightness(*count))).collect();
     ColorImage::new([side, side], pixels)
@@ -159,7 +159,7 @@ fn paint_labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     }
     let sine = format!("{} / V", theme.say("signals.sine"));
     let cosine = format!("{} / V", theme.say("signals.cosine"));
-    // Each at the end of its own axis.
+    // Each label is at the end of its axis.
     let (top, right) = (Pos2::new(rect.center().x + inside, rect.top() + inside), rect.right_center());
     text(top, Align2::LEFT_TOP, sine);
     text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine);

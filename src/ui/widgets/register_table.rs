@@ -49,7 +49,7 @@ pub struct RegisterTable<'a> {
     pub kind: RegisterKind,
 }
 
-/// Value type of a table, which determines the columns.
+/// Value type of a table. It determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// Byte values, shown both in hexadecimal digits and as numbers.
@@ -72,8 +72,8 @@ pub struct RegisterRow {
     /// Register address such as `0x04:0x1F`, or a number.
     pub address: String,
     pub name: String,
-    /// Value in the form in which it is entered, either bytes in hexadecimal digits or a number. Empty if the register
-    /// has not been read.
+    /// Value in the form in which it is entered: bytes in hexadecimal digits, or a number. Empty if the register has
+    /// not been read.
     pub value: String,
     pub decimal: String,
     pub meaning: String,
@@ -86,13 +86,13 @@ pub struct RegisterRow {
     pub changed: bool,
     /// Previous value, or empty if unknown.
     pub before: String,
-    /// Whether the value has been edited but not yet written.
+    /// Whether the value has edits that are not written.
     pub edited: bool,
     /// Description of the cost of writing the register, if any.
     pub cost: Option<String>,
-    /// Details of non-volatile storage, if the register keeps its value without supply voltage.
+    /// Details of non-volatile storage. `None` if the register loses its value without supply voltage.
     pub kept: Option<String>,
-    /// Reason why the value cannot be edited, or `None` if it is editable.
+    /// Reason why the value cannot be edited. `None` if it is editable.
     pub read_only: Option<String>,
     pub fields: Vec<RegisterBits>,
 }
@@ -116,14 +116,14 @@ pub enum RegisterEvent {
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Whether columns are hidden or narrower than usual, so that parts of a row may be cut.
+    /// Whether columns are hidden or narrower than usual. Parts of a row may then be cut off.
     pub is_narrow: bool,
 }
 
 const LINE: f32 = 16.0;
 /// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Number of characters reserved for the longest number. −2³¹ takes eleven.
+/// Number of characters reserved for a number. The longest, −2³¹, takes eleven.
 const NUMBER: usize = 12;
 
 /// Returns the width of a value, including the gap to the next column.
@@ -132,7 +132,7 @@ fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
         RegisterKind::Bytes { widest } => widest * 3,
         RegisterKind::Numbers => NUMBER,
     };
-    // Every character of the font for bytes is 0.6 of its size wide.
+    // In the font for bytes, the width of a character is 0.6 of its size.
     characters as f32 * 0.6 * theme.sizes.body + theme.space.between
 }
 
@@ -151,8 +151,8 @@ impl RegisterRow {
     }
 }
 
-/// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register
-/// and returns the reason if it is refused.
+/// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register.
+/// If it refuses the text, it returns the reason.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -174,7 +174,7 @@ pub fn register_table(
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let frame = theme.sunken_frame().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill(ui);
-            // The lines are beside their scroll bar.
+            // The lines are beside the scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
             output.is_narrow = columns.is_narrow();
@@ -210,7 +210,7 @@ fn body(
     let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
         let size = Vec2::new(columns.width(), lines.total() as f32 * LINE);
         let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
-        // The clip rectangle extends beside the table, over its neighbours.
+        // The clip rectangle is wider than the table and includes its neighbours.
         let body = Rect::from_x_y_ranges(whole.x_range(), ui.clip_rect().y_range());
         let response = ui.interact(body, id, Sense::click());
         let at = |line: usize| {
@@ -252,7 +252,7 @@ fn body(
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
-        // A value refused by that stays visible, and is discarded by the next press.
+        // A value that was just refused stays visible. The next press discards it.
         let refused_now = view.is_refused() && !was_refused;
         if let Some(place) = view.wanted.take()
             && !refused_now
@@ -328,7 +328,7 @@ fn row(
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
     if in_box || response.double_clicked() {
-        // The editor elsewhere is handled first.
+        // An open editor in another row is handled before this request.
         view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);

@@ -20,7 +20,7 @@ pub struct StepRing<'a> {
     pub step: u64,
     /// Analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// Offset in periods from the analogue to the absolute position, or `None` if its direction is ambiguous.
+    /// Offset in periods from the analogue to the absolute position. `None` if its direction is ambiguous.
     pub apart: Option<f64>,
     pub colour: Color32,
     pub label: &'a str,
@@ -87,7 +87,7 @@ fn paint_segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     }
 }
 
-/// Labels every eighth step with its number.
+/// Writes the number of every eighth step.
 fn paint_quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in

@@ -25,10 +25,10 @@ pub struct StepRow {
     pub title: String,
     pub state: StepState,
     pub word: String,
-    /// Current task, result, or reason for failure. May be empty.
+    /// Current task, result, or reason for failure. It may be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed share, from 0 to 1, or `None` if the step is not running or the share is unknown.
+    /// Completed share, from 0 to 1. `None` if the step is not running or the share is unknown.
     pub progress: Option<f32>,
 }
 
@@ -51,7 +51,7 @@ pub struct Gauge {
     /// Value with its unit, formatted for display.
     pub shown: String,
     pub allowed: RangeInclusive<f64>,
-    /// Best range, or `None` if all allowed values are equally good.
+    /// Best range. `None` if all allowed values are equally good.
     pub best: Option<RangeInclusive<f64>>,
     /// Label for the allowed range, such as `498…502 rpm`.
     pub limits: String,
@@ -63,7 +63,7 @@ pub struct Steps<'a> {
     pub steps: &'a [StepRow],
     /// Label of the waiting step's start button, with the reason if the button is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// Label of the button that skips the waiting step, or `None` if the step cannot be skipped.
+    /// Label of the button that skips the waiting step. `None` if it cannot be skipped.
     pub skip: Option<&'a str>,
 }
 
@@ -109,7 +109,7 @@ const RAIL: f32 = 32.0;
 pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();
-    // The step that was the present one in the last frame, and its height.
+    // This id stores which step was the current one in the last frame, and its height.
     let at = ui.scope_id().with("step");
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
@@ -124,7 +124,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
                     event = event.or(content_ui(ui, theme, model, step));
                 });
             });
-            // Again when it grows: its gauges and buttons must be visible.
+            // Scroll again when the step grows: its gauges and buttons must be visible.
             let height = drawn.response.rect.height();
             let before: Option<(usize, f32)> = ui.data(|data| data.get_temp(at));
             if step.state.counts() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
@@ -183,14 +183,14 @@ fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> 
     buttons_ui(ui, theme, model)
 }
 
-/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle, so that Start does not
-/// move while a motor is brought up to speed.
+/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle. Start thus does not move
+/// while a motor is brought up to speed.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {
         return None;
     }
-    // One line high: centred in the remaining space, they would be misplaced.
+    // The line has a fixed height. Centred in the remaining space, the buttons would be misplaced.
     let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {

@@ -25,7 +25,7 @@ struct Columns {
 pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     let font = FontId::monospace(theme.sizes.body);
     let glyph = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));
-    // The longest is a float: -3.4028235e38.
+    // The longest value is a float: -3.4028235e38.
     let value = (glyph * 13.0 / 4.0).ceil() * 4.0 + theme.space.groups;
     let columns = Columns { name: theme.space.groups * 4.0, value, row: theme.space.inside * 5.0 };
     theme.sunken_frame().show(ui, |ui| {

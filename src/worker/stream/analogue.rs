@@ -1,5 +1,5 @@
-//! The virtual sine/cosine source as a producer, paced by the clock like a real one. Samples missed while the computer
-//! was busy or asleep are made up for, up to a quarter of a second; older ones are lost and counted.
+//! The virtual sine/cosine source as a producer, paced by the clock like a real one. If the computer was busy or
+//! asleep, it makes up for the missed samples of the last quarter of a second. Older samples are lost and counted.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const BATCH_NS: i64 = 10_000_000;
 /// Maximum delay for which the source catches up, in nanoseconds.
 const LATE_NS: i64 = 250_000_000;
 
-/// An error for samples whose settings are no longer stored, because the source was changed too often in the meantime.
+/// The error for samples whose settings are no longer stored. The source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
 pub struct StaleSettings;
@@ -49,7 +49,7 @@ impl Producer for AnalogueSource {
         };
         let period_ns = settings.period_ns();
         let now = clock.now();
-        // The last sample of a batch: the samples of a batch exist when its last one is due.
+        // The samples of a batch exist when the last of them is due.
         let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
         let full = Moment::from_elapsed(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));

@@ -9,7 +9,7 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::cli::output::count;
 
-/// Describes a message and its kind, or returns `None` if the bytes are not a message.
+/// Returns the kind and the description of a message, or `None` if the bytes are not a message.
 pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec<String>)> {
     let request = Request::parse(bytes).ok().filter(|request| is_request(request, device));
     if let Some(request) = request {
@@ -20,8 +20,8 @@ pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec
     known.then(|| ("reply", reply_lines(&reply)))
 }
 
-/// Returns whether the bytes really are a request. Almost any data can look like a request, so it must address an
-/// object, and a known device must have no services of its own.
+/// Returns whether the bytes are really a request. Almost any data can look like one, so a request must address an
+/// object. For a known device, the service must also be known.
 fn is_request(request: &Request, device: Device) -> bool {
     let class_first = matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }));
     let whole = !request.path.0.iter().any(|segment| matches!(segment, Segment::Unknown(_)));

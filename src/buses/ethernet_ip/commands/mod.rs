@@ -1,5 +1,4 @@
-//! `decode ethernet-ip`: explains frames, cyclic packets and CIP messages offline, and detects which of them the input
-//! is.
+//! `decode ethernet-ip`: explains frames, cyclic packets and CIP messages offline. It detects the kind of the input.
 
 mod cip;
 
@@ -18,17 +17,18 @@ use crate::cli::output::{Output, count};
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     pub(crate) more: Map<String, Json>,
-    /// Process data of a cyclic packet, and whether the packet is sent to the target.
+    /// Process data of a cyclic packet, and whether the packet goes to the target.
     pub(crate) data: Option<(Vec<u8>, bool)>,
 }
 
-/// A function that returns the name and value of an attribute of a class, or the reason why there is none.
+/// A function that decodes an attribute of a class. Returns its name, and its value or the reason why the value is
+/// invalid.
 pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
-    /// A device without services of its own, whose attributes have known meanings.
+    /// A known device. All its services are standard ones, and its attributes have known meanings.
     Known(AttributeWords),
 }
 
@@ -67,7 +67,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Decodes a packet, or returns `None` if the bytes do not begin like a packet.
+/// Decodes a packet. Returns `None` if the bytes do not begin like a packet.
 pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     if let Some(explained) = cyclic(bytes) {
         return Some(Ok(explained));
@@ -83,8 +83,7 @@ fn packet(kind: &str) -> Map<String, Json> {
     Map::from_iter([("packet".to_owned(), json!(kind))])
 }
 
-/// Describes a cyclic packet. Its length reveals whether there is a header, since process data consist of whole 32-bit
-/// words.
+/// Describes a cyclic packet. The header is detected by its value and by the length of the data.
 fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
     let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {
@@ -108,8 +107,10 @@ fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     Some(DecodedBytes { lines, more, data: Some((data, to_target)) })
 }
 
-/// Decodes consecutive frames, or returns `None` if the first command is unknown. NOP of a known device also yields
-/// `None`, because NOP does not occur in captures but process data of idle drives look like NOP.
+/// Decodes consecutive frames. Returns `None` if the first command is unknown.
+///
+/// For a known device, NOP also yields `None`. Captures do not contain NOP, but process data of idle drives look like
+/// it.
 fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));

@@ -1,4 +1,4 @@
-//! Filtering of cyclic packets: duplicates and packets overtaken by newer ones are dropped.
+//! Filtering of cyclic packets. Duplicates are dropped, and so are packets that a newer one has overtaken.
 
 /// A tracker for the packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,7 +13,7 @@ pub struct PacketTracker {
 pub enum PacketVerdict {
     /// The packet is new.
     New {
-        /// Number of preceding packets that have not arrived. If they arrive later, they are stale.
+        /// Number of preceding packets that have not arrived. They are stale if they arrive later.
         missing: u32,
     },
     /// This packet, or a newer one, has already been received.
@@ -21,8 +21,8 @@ pub enum PacketVerdict {
 }
 
 impl PacketTracker {
-    /// Classifies a packet by its sequence number. Numbers wrap around, so a newer packet is ahead by less than half of
-    /// their range.
+    /// Classifies a packet by its sequence number. Numbers wrap around: a newer packet is ahead by less than half their
+    /// range.
     pub fn take(&mut self, sequence: u32) -> PacketVerdict {
         let ahead = match self.newest {
             None => 1,

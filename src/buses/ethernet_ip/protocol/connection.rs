@@ -1,4 +1,4 @@
-//! Fields of a connection request (reference 7; bit layout by ODVA, `P`).
+//! Fields of a connection request. See reference 7 (bit layout by ODVA, `P`).
 
 use std::time::Duration;
 
@@ -9,41 +9,41 @@ pub struct NetworkParameters(u16);
 /// Type of connection, bits 14 and 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkType {
-    /// 0: no data in this direction.
+    /// No data in this direction, encoded as 0.
     Null,
-    /// 1: to all listeners.
+    /// Packets to all listeners, encoded as 1.
     Multicast,
-    /// 2: to one other node only.
+    /// Packets to one other node only, encoded as 2.
     PointToPoint,
-    /// 3: reserved.
+    /// Reserved, encoded as 3.
     Reserved,
 }
 
 /// Priority, bits 11 and 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkPriority {
-    /// 0: low.
+    /// Low priority, encoded as 0.
     Low,
-    /// 1: high.
+    /// High priority, encoded as 1.
     High,
-    /// 2: scheduled, used for cyclic data.
+    /// Scheduled priority, encoded as 2 and used for cyclic data.
     Scheduled,
-    /// 3: urgent.
+    /// Urgent, encoded as 3.
     Urgent,
 }
 
-/// Transport class and trigger, which determine when data are produced and by which node.
+/// The transport class and trigger of a connection. They determine when data are produced, and by which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Transport(u8);
 
 /// Trigger, bits 6 to 4 of [`Transport`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trigger {
-    /// 0: cyclic.
+    /// Cyclic production, encoded as 0.
     Cyclic,
-    /// 1: on a change of state.
+    /// Production on a change of state, encoded as 1.
     ChangeOfState,
-    /// 2: by the application.
+    /// Production by the application, encoded as 2.
     Application,
     /// A reserved value.
     Unknown(u8),
@@ -53,11 +53,11 @@ pub enum Trigger {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ConnectionTimeout(u8);
 
-/// Time-out of a request in two bytes. The first holds priority and tick length, the second the number of ticks.
+/// The time-out of a request. Its first byte holds priority and tick length, and the second the number of ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RequestTimeout {
-    /// Priority and tick length. Bits 3 to 0 are the exponent n of the tick length of 2ⁿ milliseconds, and other bits
-    /// are preserved.
+    /// Priority and tick length. Bits 3 to 0 hold the exponent n of the tick length, which is 2ⁿ milliseconds. Other
+    /// bits are preserved.
     pub priority_and_tick: u8,
     /// Number of ticks.
     pub ticks: u8,
@@ -71,8 +71,8 @@ impl NetworkParameters {
     /// Maximum connection size in bytes.
     pub const MOST: u16 = SIZE;
 
-    /// Creates the parameters of an exclusive-owner connection with a fixed size, or returns `None` beyond 511 bytes.
-    /// The size includes the sequence count and the run/idle header.
+    /// Creates the parameters of an exclusive-owner connection with a fixed size. The size includes the sequence count
+    /// and the run/idle header. Returns `None` for a size above 511 bytes.
     pub const fn new(kind: NetworkType, priority: NetworkPriority, size: u16) -> Option<Self> {
         let kind = match kind {
             NetworkType::Null => 0,
@@ -89,12 +89,12 @@ impl NetworkParameters {
         if size <= SIZE { Some(NetworkParameters(kind << 13 | priority << 10 | size)) } else { None }
     }
 
-    /// Parses the word.
+    /// Creates the parameters from a received word.
     pub const fn of_word(word: u16) -> Self {
         NetworkParameters(word)
     }
 
-    /// Returns the word to send.
+    /// Returns the encoded word.
     pub const fn word(self) -> u16 {
         self.0
     }
@@ -136,25 +136,26 @@ impl NetworkParameters {
 }
 
 impl Transport {
-    /// Transport class 1 with cyclic trigger, as the client. Used for cyclic data.
+    /// Transport of cyclic data: class 1 with cyclic trigger, as the client.
     pub const CYCLIC: Transport = Transport(0x01);
 
-    /// Parses the byte.
+    /// Creates the transport from a received byte.
     pub const fn of_byte(byte: u8) -> Self {
         Transport(byte)
     }
 
-    /// Returns the byte to send.
+    /// Returns the encoded byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns the transport class, which is 1 for data with a sequence count and without a reply, and 3 for messages.
+    /// Returns the transport class. Class 1 carries data with a sequence count and without a reply. Class 3 carries
+    /// messages.
     pub const fn class(self) -> u8 {
         self.0 & 0x0F
     }
 
-    /// Returns the trigger for producing data.
+    /// Returns the trigger that makes the node produce data.
     pub const fn trigger(self) -> Trigger {
         match self.0 >> 4 & 7 {
             0 => Trigger::Cyclic,
@@ -171,15 +172,15 @@ impl Transport {
 }
 
 impl ConnectionTimeout {
-    /// Maximum exponent: 512 intervals.
+    /// Maximum exponent, for 512 intervals.
     const MOST: u8 = 7;
 
-    /// Creates the multiplier with the given exponent, or returns `None` beyond 7.
+    /// Creates the multiplier with the given exponent. Returns `None` for an exponent above 7.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
     }
 
-    /// Returns the exponent to send.
+    /// Returns the exponent.
     pub const fn number(self) -> u8 {
         self.0
     }
@@ -196,7 +197,7 @@ impl ConnectionTimeout {
 }
 
 impl RequestTimeout {
-    /// Time-out of two seconds, as 250 ticks of 8 ms.
+    /// A time-out of two seconds: 250 ticks of 8 ms.
     pub const TWO_SECONDS: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
 
     /// Returns the time-out as a duration.

@@ -1,4 +1,4 @@
-//! The encapsulation frame around every explicit message: command, session, status and context (reference 7).
+//! The encapsulation frame around every explicit message: command, session, status and context. See reference 7.
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, ItemList};
@@ -13,37 +13,37 @@ pub struct Command(u16);
 pub struct Frame {
     /// Command code, repeated in the reply.
     pub command: Command,
-    /// Session handle, assigned by the target in the RegisterSession reply; otherwise 0.
+    /// Session handle, assigned by the target in the RegisterSession reply. Before that, it is 0.
     pub session: u32,
-    /// Status, which is 0 in a request.
+    /// Status. It is 0 in a request.
     pub status: EncapsulationStatus,
     /// Sender context, chosen by the originator and repeated in the reply.
     pub context: [u8; 8],
-    /// Options; always 0.
+    /// Options, always 0.
     pub options: u32,
     /// Data after the header, at most [`Frame::MAX_DATA`] bytes. [`Frame::emit`] truncates longer data.
     pub data: Vec<u8>,
 }
 
-/// Content of a frame.
+/// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// No data, as in a list request, the end of a session, or a refusal.
+    /// No data. List requests, the end of a session and refusals have none.
     Empty,
-    /// RegisterSession, request or reply.
+    /// Data of a RegisterSession request or reply.
     Register {
-        /// Protocol version, 1.
+        /// Protocol version, which is 1.
         version: u16,
-        /// Options, 0.
+        /// Options, which are 0.
         options: u16,
     },
-    /// The requested list.
+    /// Items of a list reply.
     List(ItemList),
-    /// SendRRData or SendUnitData, as a request or a reply.
+    /// Data of a SendRRData or SendUnitData request or reply.
     Data {
-        /// Interface handle, 0 for CIP.
+        /// Interface handle, which is 0 for CIP.
         interface: u32,
-        /// Time-out in seconds, or 0 if CIP has its own time-out.
+        /// Time-out in seconds. It is 0 if CIP has its own time-out.
         timeout_s: u16,
         /// Address item and data item.
         items: ItemList,
@@ -64,7 +64,7 @@ const NAMES: [(Command, &str); 8] = [
 ];
 
 impl Command {
-    /// No operation.
+    /// Command that does nothing.
     pub const NOP: Command = Command(0x00);
     /// Command that requests the list of services.
     pub const LIST_SERVICES: Command = Command(0x04);
@@ -72,9 +72,9 @@ impl Command {
     pub const LIST_IDENTITY: Command = Command(0x63);
     /// Command that requests the list of interfaces other than CIP.
     pub const LIST_INTERFACES: Command = Command(0x64);
-    /// Opens a session.
+    /// Command that opens a session.
     pub const REGISTER_SESSION: Command = Command(0x65);
-    /// Closes a session.
+    /// Command that closes a session.
     pub const UNREGISTER_SESSION: Command = Command(0x66);
     /// Command that carries an unconnected request or reply.
     pub const SEND_RR_DATA: Command = Command(0x6F);
@@ -91,7 +91,7 @@ impl Command {
         self.0
     }
 
-    /// Returns the name used by ODVA, or `None` for an unknown code.
+    /// Returns the name that ODVA uses for the command, or `None` for an unknown code.
     pub fn name(self) -> Option<&'static str> {
         NAMES.iter().find(|(command, _)| *command == self).map(|(_, name)| *name)
     }
@@ -102,14 +102,14 @@ impl Frame {
     pub const HEADER: usize = 24;
     /// Maximum length of the data in bytes.
     pub const MAX_DATA: usize = 65511;
-    /// Protocol version.
+    /// Version of the encapsulation protocol.
     pub const VERSION: u16 = 1;
 
     fn request(command: Command, context: [u8; 8], body: &Body) -> Self {
         Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
     }
 
-    /// Creates an identity request.
+    /// Creates a ListIdentity request.
     pub fn list_identity(context: [u8; 8]) -> Self {
         Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
     }
@@ -134,7 +134,7 @@ impl Frame {
         }
     }
 
-    /// Creates the reply to this frame in its session.
+    /// Creates a reply to this frame in the same session.
     pub fn reply(&self, body: &Body) -> Self {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
@@ -144,8 +144,8 @@ impl Frame {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
 
-    /// Returns whether this frame is the reply to `request`. Command and context must be equal, and so must the session
-    /// handle once there is a session.
+    /// Returns whether this frame is the reply to `request`. Command and context must be equal. In a session, the
+    /// session handles must also be equal.
     pub fn answers(&self, request: &Frame) -> bool {
         let session = request.session == 0 || request.session == self.session;
         self.command == request.command && self.context == request.context && session
@@ -154,7 +154,7 @@ impl Frame {
     /// Returns the length of the frame that begins with these bytes, or `None` if the header is incomplete.
     ///
     /// # Errors
-    /// [`PacketError::Value`] if the length exceeds the maximum.
+    /// Returns [`PacketError::Value`] if the length exceeds the maximum.
     pub fn length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
         let Some(header) = bytes.first_chunk::<{ Frame::HEADER }>() else { return Ok(None) };
         let [_, _, low, high, ..] = header;
@@ -168,7 +168,7 @@ impl Frame {
     /// Parses a complete frame.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are not exactly one frame.
+    /// Returns a [`PacketError`] if the bytes are not exactly one frame.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         Frame::length(bytes)?;
         let mut fields = Fields::new(WHAT, bytes);
@@ -187,7 +187,7 @@ impl Frame {
         let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
         let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
         bytes.extend(self.command.0.to_le_bytes());
-        // At most 65511.
+        // The length is at most 65511.
         bytes.extend((data.len() as u16).to_le_bytes());
         bytes.extend(self.session.to_le_bytes());
         bytes.extend(self.status.code().to_le_bytes());
@@ -200,7 +200,7 @@ impl Frame {
     /// Parses the data of the frame.
     ///
     /// # Errors
-    /// [`PacketError`] if the data do not match the command.
+    /// Returns a [`PacketError`] if the data do not match the command.
     pub fn body(&self) -> Result<Body, PacketError> {
         if self.data.is_empty() {
             return Ok(Body::Empty);

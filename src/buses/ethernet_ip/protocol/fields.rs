@@ -1,6 +1,6 @@
 //! Parsing and emitting packets field by field.
 
-/// An EtherNet/IP structure, as named in errors.
+/// A structure of EtherNet/IP, named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum Structure {
@@ -48,7 +48,7 @@ pub enum Structure {
     Path,
 }
 
-/// A field with a restricted range of values, as named in errors.
+/// A field that allows only some values, named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum PacketField {
@@ -95,7 +95,7 @@ pub enum PacketError {
     },
 }
 
-/// The remaining bytes to be parsed.
+/// A cursor over the bytes that remain to be parsed.
 #[derive(Clone)]
 pub(super) struct Fields<'a> {
     what: Structure,
@@ -140,7 +140,7 @@ impl<'a> Fields<'a> {
         self.rest.is_empty()
     }
 
-    /// Returns `value` if no bytes remain.
+    /// Returns `value` if no bytes remain, or an error otherwise.
     pub(super) fn end<T>(self, value: T) -> Result<T, PacketError> {
         match self.rest.len() {
             0 => Ok(value),
@@ -157,21 +157,21 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a SHORT_STRING, whose length fits into one byte. Non-ASCII bytes become question marks in both directions,
-/// and strings longer than 255 bytes are truncated.
+/// Appends a SHORT_STRING, whose length fits into one byte. Longer strings are truncated to 255 bytes. Non-ASCII
+/// characters become question marks.
 pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     let ascii: Vec<u8> = ascii(text).take(0xFF).collect();
-    // At most 255.
+    // There are at most 255 bytes.
     bytes.push(ascii.len() as u8);
     bytes.extend(ascii);
 }
 
-/// Returns the characters of a string as bytes to send.
+/// Converts a string to ASCII bytes. Other characters become question marks.
 pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
     text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
 }
 
-/// Returns characters as received.
+/// Converts received ASCII bytes to a string. Other bytes become question marks.
 pub(super) fn text(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| if byte.is_ascii() { char::from(*byte) } else { '?' }).collect()
 }

@@ -1,5 +1,5 @@
-//! ForwardOpen and ForwardClose: opening and closing a cyclic connection (reference 7). The target chooses the
-//! connection id of packets sent to it, the originator that of packets from the target.
+//! ForwardOpen and ForwardClose, which open and close a cyclic connection. The receiver of the packets chooses their
+//! connection ID. See reference 7.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::message::{Reply, Request, Service};
 use super::path::EPath;
 
-/// Identification of a connection and its originator, repeated in every message about the connection.
+/// Identification of a connection and its originator. Every message about the connection repeats it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Owner {
-    /// Connection serial number, chosen by the originator and unique to each connection.
+    /// Connection serial number. The originator chooses a different one for each connection.
     pub connection_serial: u16,
     /// Vendor ID of the originator.
     pub vendor: u16,
@@ -24,7 +24,7 @@ pub struct Owner {
 pub struct ForwardOpen {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
-    /// Requested connection ID of packets to the target, or 0 to let the target choose.
+    /// Requested connection ID of packets to the target. If it is 0, the target chooses the ID.
     pub to_target_id: u32,
     /// Connection ID of packets to the originator.
     pub to_originator_id: u32,
@@ -34,11 +34,11 @@ pub struct ForwardOpen {
     pub connection_timeout: ConnectionTimeout,
     /// Requested interval of packets to the target, in microseconds.
     pub to_target_interval_us: u32,
-    /// Parameters towards the target.
+    /// Network parameters of the direction to the target.
     pub to_target: NetworkParameters,
     /// Requested interval of packets to the originator, in microseconds.
     pub to_originator_interval_us: u32,
-    /// Parameters towards the originator.
+    /// Network parameters of the direction to the originator.
     pub to_originator: NetworkParameters,
     /// Transport class and trigger.
     pub transport: Transport,
@@ -68,7 +68,7 @@ pub struct ForwardOpenSuccess {
 pub struct ForwardErrorReply {
     /// Owner of the connection.
     pub owner: Owner,
-    /// Number of path words that remained unprocessed when the error occurred.
+    /// Number of path words that were not processed because of the error.
     pub remaining_path_words: u8,
 }
 
@@ -115,10 +115,10 @@ impl ForwardOpen {
         self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
     }
 
-    /// Parses the data after the path of the request.
+    /// Parses the service data of the request.
     ///
     /// # Errors
-    /// [`PacketError`] if the data are incomplete, too long, or contain an invalid time-out number.
+    /// Returns a [`PacketError`] if the data are incomplete, are too long, or contain an invalid time-out number.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardOpen, data);
         let timeout = RequestTimeout::take(&mut fields)?;
@@ -127,7 +127,7 @@ impl ForwardOpen {
         let multiplier = fields.u8()?;
         let connection_timeout =
             ConnectionTimeout::new(multiplier).ok_or(fields.value(PacketField::TimeoutMultiplier, multiplier))?;
-        // Reserved.
+        // Three bytes are reserved.
         fields.array::<3>()?;
         let to_target_interval_us = fields.u32()?;
         let to_target = NetworkParameters::of_word(fields.u16()?);
@@ -170,7 +170,7 @@ impl ForwardOpenSuccess {
     /// Parses the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] if the data are incomplete or too long.
+    /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardOpenReply, data);
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
@@ -201,15 +201,15 @@ impl ForwardOpenSuccess {
 }
 
 impl ForwardErrorReply {
-    /// Parses the data of a refusal, which many devices send empty.
+    /// Parses the data of a refusal. Many devices send none.
     ///
     /// # Errors
-    /// [`PacketError`] if the data are incomplete or too long.
+    /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::Refusal, data);
         let owner = Owner::take(&mut fields)?;
         let remaining_path_words = fields.u8()?;
-        // Reserved.
+        // One byte is reserved.
         fields.u8()?;
         fields.end(ForwardErrorReply { owner, remaining_path_words })
     }
@@ -233,16 +233,16 @@ impl ForwardErrorReply {
 }
 
 impl ForwardClose {
-    /// Parses the data after the path of the request.
+    /// Parses the service data of the request.
     ///
     /// # Errors
-    /// [`PacketError`] if the data are incomplete or too long.
+    /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardClose, data);
         let timeout = RequestTimeout::take(&mut fields)?;
         let owner = Owner::take(&mut fields)?;
         let words = fields.u8()?;
-        // Reserved.
+        // One byte is reserved.
         fields.u8()?;
         let path = EPath::parse(fields.bytes(usize::from(words) * 2)?)?;
         fields.end(ForwardClose { timeout, owner, path })
@@ -254,7 +254,7 @@ impl ForwardClose {
         self.owner.push_to(&mut data);
         let mut path = Vec::new();
         self.path.push_to(&mut path);
-        // Between the length of the path and the path, unlike everywhere else.
+        // Only in this request, a reserved byte follows the length of the path.
         path.insert(1, 0);
         data.extend(path);
         Request::for_connection_manager(Service::FORWARD_CLOSE, data)
@@ -265,7 +265,7 @@ impl ForwardCloseSuccess {
     /// Parses the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] if the data are incomplete or too long.
+    /// Returns a [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardCloseReply, data);
         let owner = Owner::take(&mut fields)?;
@@ -282,7 +282,7 @@ impl ForwardCloseSuccess {
     }
 }
 
-/// Parses application data, which consist of a length in words, a reserved byte, and the words.
+/// Parses application data: a length in words, a reserved byte, and the words.
 fn parse_application_data(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
     let words = fields.u8()?;
     fields.u8()?;
@@ -291,7 +291,7 @@ fn parse_application_data(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketErr
 
 fn push_application(words: &[u16], data: &mut Vec<u8>) {
     let words = words.get(..usize::from(u8::MAX)).unwrap_or(words);
-    // At most 255.
+    // There are at most 255 words.
     data.extend([words.len() as u8, 0]);
     data.extend(words.iter().flat_map(|word| word.to_le_bytes()));
 }

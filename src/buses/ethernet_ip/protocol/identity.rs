@@ -31,7 +31,7 @@ pub struct Revision {
     pub minor: u8,
 }
 
-/// Identity item, type 000Ch.
+/// The item with the identity of a device, type 000Ch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdentityItem {
     /// Version of the encapsulation protocol, which is 1.
@@ -40,7 +40,7 @@ pub struct IdentityItem {
     pub socket: SocketAddress,
     /// Identity of the device.
     pub identity: Identity,
-    /// Device state, attribute 8, where 3 is operational and 255 is unknown.
+    /// Device state, attribute 8. State 3 is operational, and 255 is unknown.
     pub state: u8,
 }
 
@@ -48,10 +48,10 @@ impl Identity {
     /// Class code of the identity object.
     pub const CLASS: u16 = 0x01;
 
-    /// Parses attributes 1 to 7 of a Get_Attributes_All reply and ignores any attributes that a device appends.
+    /// Parses attributes 1 to 7 of a Get_Attributes_All reply. Any further attributes are ignored.
     ///
     /// # Errors
-    /// [`PacketError`] if the attributes are incomplete.
+    /// Returns a [`PacketError`] if the attributes are incomplete.
     pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
         Identity::take(&mut Fields::new(Structure::IdentityObject, bytes))
     }

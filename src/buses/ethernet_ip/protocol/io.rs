@@ -18,8 +18,8 @@ pub struct IoPacket {
     pub data: Vec<u8>,
 }
 
-/// Format of the header in front of the data, as defined by the EDS of the device (`U`: a header towards the target,
-/// none from the target).
+/// Format of the header before the data, as defined by the EDS of the device (`U`: only packets to the target have a
+/// header).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RealTimeFormat {
     /// The 32-bit run/idle header.
@@ -33,18 +33,17 @@ pub enum RealTimeFormat {
 pub struct RunIdleHeader(u32);
 
 impl RunIdleHeader {
-    /// Header with bit 0 set, which means that the data are valid.
+    /// Header with bit 0 set: the data are valid.
     pub const RUN: RunIdleHeader = RunIdleHeader(1);
-    /// Header with bit 0 clear, which means that the application of the sender is not running and the data are not
-    /// valid.
+    /// Header with bit 0 clear: the application of the sender is not running, and the data are not valid.
     pub const IDLE: RunIdleHeader = RunIdleHeader(0);
 
-    /// Parses the word.
+    /// Creates the header from a received word.
     pub const fn of_word(word: u32) -> Self {
         RunIdleHeader(word)
     }
 
-    /// Returns the word to send.
+    /// Returns the encoded word.
     pub const fn word(self) -> u32 {
         self.0
     }
@@ -56,8 +55,7 @@ impl RunIdleHeader {
 }
 
 impl IoPacket {
-    /// Returns the number of bytes that a connection size includes in addition to the data, for the sequence count and
-    /// the header.
+    /// Returns the number of bytes for the sequence count and the header. A connection size includes them.
     pub const fn overhead(format: RealTimeFormat) -> u16 {
         match format {
             RealTimeFormat::Header => 6,
@@ -65,10 +63,11 @@ impl IoPacket {
         }
     }
 
-    /// Parses a packet, which may also contain socket addresses.
+    /// Parses a packet. It may also contain socket addresses.
     ///
     /// # Errors
-    /// [`PacketError`] if the packet is incomplete or does not consist of a sequenced address and connected data.
+    /// Returns a [`PacketError`] if the packet is incomplete or does not consist of a sequenced address and connected
+    /// data.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
         const WHAT: Structure = Structure::CyclicPacket;
         let items = ItemList::parse(bytes)?;
@@ -76,7 +75,7 @@ impl IoPacket {
             [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
                 (*connection, *sequence, data)
             }
-            // No more than fits into a UDP packet.
+            // A UDP packet contains few enough items for this cast.
             other => return Err(PacketError::Value { what: WHAT, field: PacketField::Items, got: other.len() as u32 }),
         };
         let mut fields = Fields::new(WHAT, data);

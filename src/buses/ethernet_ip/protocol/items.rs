@@ -5,7 +5,7 @@ use core::net::Ipv4Addr;
 use super::fields::{Fields, PacketError, Structure};
 use super::identity::IdentityItem;
 
-/// A list of items in which each address precedes its data.
+/// A list of items. Each address precedes its data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ItemList(pub Vec<Item>);
 
@@ -30,7 +30,7 @@ pub enum Item {
     SequencedAddress {
         /// Connection ID, chosen by the receiver.
         connection: u32,
-        /// Sequence number, incremented with every packet even if the data have not changed.
+        /// Sequence number, incremented with every packet. This includes packets with unchanged data.
         sequence: u32,
     },
     /// An item of unknown type.
@@ -45,11 +45,11 @@ pub enum Item {
 /// A socket address in network byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SocketAddress {
-    /// Address family, where 2 is IPv4.
+    /// Address family, which is 2 for IPv4.
     pub family: u16,
     /// Port number.
     pub port: u16,
-    /// IPv4 address, where 0.0.0.0 stands for the sender of the frame.
+    /// IPv4 address. 0.0.0.0 stands for the sender of the frame.
     pub address: Ipv4Addr,
 }
 
@@ -66,7 +66,7 @@ impl ItemList {
     /// Parses a list that occupies all of `bytes`.
     ///
     /// # Errors
-    /// [`PacketError`] if an item is incomplete or has the wrong length for its type, or if bytes remain.
+    /// Returns a [`PacketError`] if an item is incomplete or has the wrong length for its type, or if bytes remain.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::Items, bytes);
         let count = fields.u16()?;
@@ -81,7 +81,7 @@ impl ItemList {
     /// Returns the encoded list. Items longer than 65535 bytes are truncated.
     pub fn emit(&self) -> Vec<u8> {
         let most = usize::from(u16::MAX);
-        // A frame has fewer than that many.
+        // A frame has fewer items than the maximum count.
         let mut bytes = (self.0.len().min(most) as u16).to_le_bytes().to_vec();
         for item in self.0.iter().take(most) {
             let (kind, data) = item.emit();
@@ -117,7 +117,7 @@ impl ItemList {
         })
     }
 
-    /// Returns the identity item.
+    /// Returns the identity item, if the list contains one.
     pub fn identity(&self) -> Option<&IdentityItem> {
         self.0.iter().find_map(|item| match item {
             Item::Identity(identity) => Some(identity),
@@ -172,12 +172,12 @@ impl SocketAddress {
     pub const INTERNET: u16 = 2;
     pub(super) const LENGTH: usize = 16;
 
-    /// Creates an IPv4 address.
+    /// Creates an IPv4 socket address.
     pub const fn new(address: Ipv4Addr, port: u16) -> Self {
         SocketAddress { family: SocketAddress::INTERNET, port, address }
     }
 
-    /// Parses 16 bytes, ignoring the last eight.
+    /// Parses 16 bytes. The last eight are ignored.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::SocketAddress, bytes);
         let family = u16::from_be_bytes(fields.array()?);

@@ -11,7 +11,7 @@ pub struct Service(u8);
 /// A CIP request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
-    /// The service.
+    /// Requested service.
     pub service: Service,
     /// Path to the object.
     pub path: EPath,
@@ -22,11 +22,11 @@ pub struct Request {
 /// A CIP reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
-    /// The service requested.
+    /// Service of the request.
     pub service: Service,
     /// General status.
     pub status: GeneralStatus,
-    /// Extended status words, at most 255. Their meaning is defined by the service.
+    /// Extended status words, at most 255. The service defines their meaning.
     pub extended: Vec<u16>,
     /// Reply data.
     pub data: Vec<u8>,
@@ -46,7 +46,7 @@ const CONNECTION_NAMES: [(Service, &str); 4] = [
     (Service(0x5B), "Large_ForwardOpen"),
 ];
 
-/// Classes of objects that many devices have.
+/// Object classes that many devices have.
 const CLASSES: [(u16, &str); 6] = [
     (0x01, "identity"),
     (0x02, "message router"),
@@ -62,35 +62,35 @@ pub fn class_name(class: u16) -> Option<&'static str> {
 }
 
 impl Service {
-    /// Reads all attributes.
+    /// Service that reads all attributes.
     pub const GET_ALL: Service = Service(0x01);
-    /// Sets all attributes.
+    /// Service that sets all attributes.
     pub const SET_ALL: Service = Service(0x02);
-    /// Resets the device.
+    /// Service that resets the device.
     pub const RESET: Service = Service(0x05);
-    /// Reads one attribute.
+    /// Service that reads one attribute.
     pub const GET: Service = Service(0x0E);
-    /// Sets one attribute.
+    /// Service that sets one attribute.
     pub const SET: Service = Service(0x10);
-    /// Service of the connection manager that closes a connection.
+    /// Service that closes a connection, provided by the connection manager.
     pub const FORWARD_CLOSE: Service = Service(0x4E);
-    /// Service of the connection manager that opens a connection.
+    /// Service that opens a connection, provided by the connection manager.
     pub const FORWARD_OPEN: Service = Service(0x54);
 
     const REPLY_BIT: u8 = 0x80;
 
-    /// Returns the service with the given code, or `None` from 80h on, where the codes of replies begin.
+    /// Returns the service with the given code. Returns `None` for codes from 80h on, which belong to replies.
     pub const fn new(code: u8) -> Option<Self> {
         if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
     }
 
-    /// Returns the service code of a request.
+    /// Returns the code of the service in a request.
     pub const fn code(self) -> u8 {
         self.0
     }
 
-    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class, and only codes of the
-    /// connection manager are known.
+    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class. Of these codes, only
+    /// those of the connection manager are known.
     pub fn name(self, class: Option<u16>) -> Option<&'static str> {
         let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
         let names = NAMES.iter().chain(connections.into_iter().flatten());
@@ -129,7 +129,7 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are a reply or the path is incomplete.
+    /// Returns a [`PacketError`] if the bytes are a reply or the path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
@@ -161,12 +161,12 @@ impl Reply {
     /// Parses a reply.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are a request or are incomplete.
+    /// Returns a [`PacketError`] if the bytes are a request or are incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipReply, bytes);
         let code = fields.u8()?;
         let service = code.checked_sub(Service::REPLY_BIT).ok_or(fields.value(PacketField::Service, code))?;
-        // Reserved.
+        // The second byte is reserved.
         fields.u8()?;
         let status = GeneralStatus::new(fields.u8()?);
         let words = fields.u8()?;
@@ -177,7 +177,7 @@ impl Reply {
     /// Returns the encoded reply, with at most 255 words of extended status.
     pub fn emit(&self) -> Vec<u8> {
         let extended = self.extended.get(..usize::from(u8::MAX)).unwrap_or(&self.extended);
-        // At most 255.
+        // There are at most 255 words.
         let mut bytes = vec![self.service.0 | Service::REPLY_BIT, 0, self.status.code(), extended.len() as u8];
         bytes.extend(extended.iter().flat_map(|word| word.to_le_bytes()));
         bytes.extend(&self.data);

@@ -1,5 +1,5 @@
-//! EtherNet/IP: encapsulation, common packet format and CIP messages, as far as an adapter with one cyclic connection
-//! requires them. Covers both host and device; unknown values are preserved.
+//! EtherNet/IP: encapsulation, common packet format, and the CIP messages of an adapter with one cyclic connection. The
+//! types serve both host and device. Unknown values are preserved.
 //!
 //! Source: section 7 of the project's HIPERDRIVE reference, and the public parts of ODVA's CIP networks library as
 //! quoted there (`P ODVA`). Integers are little-endian, except in socket addresses.
@@ -46,7 +46,7 @@ pub use status::{
 };
 pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceConfiguration};
 
-/// Port for explicit messages over TCP and for ListIdentity over UDP.
+/// TCP port for explicit messages, and UDP port for ListIdentity.
 pub const EXPLICIT_PORT: u16 = 44818;
-/// UDP port for cyclic data, unless another port was given when the connection was opened.
+/// Default UDP port for cyclic data. Another port can be given when a connection is opened.
 pub const IMPLICIT_PORT: u16 = 2222;

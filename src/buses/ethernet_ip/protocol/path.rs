@@ -2,7 +2,7 @@
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 
-/// A path padded to whole words.
+/// A path of segments, padded to whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EPath(pub Vec<Segment>);
 
@@ -18,11 +18,11 @@ pub enum Segment {
         /// Width of the encoded value. Values above 255 always use the wide form.
         width: Width,
     },
-    /// 34h: electronic key of the required device.
+    /// 34h: the electronic key of the required device.
     Key(ElectronicKey),
     /// 80h: data words for the addressed object, at most 255.
     Data(Vec<u16>),
-    /// An unknown segment and all bytes after it, because its length is unknown.
+    /// An unknown segment and all bytes after it. The length of the segment is unknown.
     Unknown(Vec<u8>),
 }
 
@@ -44,11 +44,11 @@ pub enum LogicalKind {
 pub enum Width {
     /// One byte after the segment type.
     Byte,
-    /// A two-byte word after a padding byte.
+    /// A two-byte word, after a padding byte.
     Word,
 }
 
-/// The electronic key that the device compares before a connection is opened. A value of 0 matches any value.
+/// The electronic key that a device compares before it opens a connection. A value of 0 matches any value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElectronicKey {
     /// Vendor ID, as in the identity object.
@@ -69,7 +69,7 @@ const KINDS: [(u8, LogicalKind); 4] = [
     (0x2C, LogicalKind::ConnectionPoint),
     (0x30, LogicalKind::Attribute),
 ];
-/// The first bytes of an electronic key, which are the segment type and the only key format.
+/// First bytes of an electronic key: the segment type and the key format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
 const WHAT: Structure = Structure::Path;
@@ -87,8 +87,8 @@ impl EPath {
         EPath(segments)
     }
 
-    /// Creates the path to the assemblies of a cyclic connection in the order configuration, originator to target, and
-    /// target to originator.
+    /// Creates the path to the assemblies of a cyclic connection. Their order is configuration, originator to target,
+    /// and target to originator.
     pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
         let EPath(mut segments) = EPath::instance(ASSEMBLY, configuration);
@@ -112,7 +112,7 @@ impl EPath {
     /// Parses a path that occupies all of `bytes`.
     ///
     /// # Errors
-    /// [`PacketError`] if a segment is incomplete.
+    /// Returns a [`PacketError`] if a segment is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(WHAT, bytes);
         let mut segments = Vec::new();
@@ -132,11 +132,11 @@ impl EPath {
         EPath::parse(fields.bytes(usize::from(words) * 2)?)
     }
 
-    /// Appends the path and its length in words, or nothing for a path longer than 255 words.
+    /// Appends the length in words and the path. A path longer than 255 words is truncated.
     pub(super) fn push_to(&self, bytes: &mut Vec<u8>) {
         let mut path = self.emit();
         path.truncate(usize::from(u8::MAX) * 2);
-        // At most 255.
+        // There are at most 255 words.
         bytes.push(path.len().div_ceil(2) as u8);
         let odd = path.len() % 2 == 1;
         bytes.extend(path);
@@ -202,7 +202,7 @@ impl Segment {
             }
             Segment::Data(words) => {
                 let words = words.get(..usize::from(u8::MAX)).unwrap_or(words);
-                // At most 255.
+                // There are at most 255 words.
                 let mut bytes = vec![DATA, words.len() as u8];
                 bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
                 bytes

@@ -1,4 +1,4 @@
-//! Frame reassembly from a TCP byte stream in arbitrary chunks.
+//! Reassembly of frames from the chunks of a TCP byte stream.
 
 use super::encapsulation::Frame;
 use super::fields::PacketError;
@@ -8,7 +8,7 @@ use super::fields::PacketError;
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// Bytes that do not form a frame and have not been taken yet.
+    /// Bytes from an invalid header on, until they are taken.
     rest: Vec<u8>,
 }
 
@@ -20,11 +20,11 @@ impl Receiver {
         }
     }
 
-    /// Returns the next complete frame.
+    /// Returns the next complete frame, or `None` if more bytes are needed.
     ///
     /// # Errors
-    /// [`PacketError`], also on all later calls. After an invalid header the start of the next frame is unknown, and
-    /// the connection must be closed.
+    /// Returns a [`PacketError`] for an invalid frame, and on all later calls. The start of the next frame is then
+    /// unknown, and the connection must be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {
             return Err(why);
@@ -35,13 +35,13 @@ impl Receiver {
         })
     }
 
-    /// Takes the bytes that do not form a frame.
+    /// Takes the bytes that do not form a complete frame.
     pub fn take_remaining(&mut self) -> Vec<u8> {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
-    /// Returns the number of bytes of an incomplete frame. If any remain when the connection ends, the frame was
-    /// truncated.
+    /// Returns the number of bytes that do not yet form a complete frame. If any remain when the connection ends, the
+    /// last frame was truncated.
     pub const fn pending(&self) -> usize {
         self.bytes.len()
     }

@@ -1,5 +1,5 @@
-//! Status codes of both layers: encapsulation status, CIP general status, and the extended status of a connection that
-//! was not opened (reference 7; names by ODVA, `P`; remedies `U`).
+//! Status codes: encapsulation status, CIP general status, and the extended status of a connection that was not opened.
+//! See reference 7 (names by ODVA, `P`; remedies `U`).
 
 use std::fmt;
 
@@ -166,11 +166,11 @@ impl GeneralStatus {
     pub const STATE: GeneralStatus = GeneralStatus(0x0C);
     /// 0Eh: the attribute is read-only.
     pub const NOT_SETTABLE: GeneralStatus = GeneralStatus(0x0E);
-    /// 13h: not enough data.
+    /// 13h: the request contains too little data.
     pub const TOO_SHORT: GeneralStatus = GeneralStatus(0x13);
     /// 14h: the object does not support the attribute.
     pub const NO_ATTRIBUTE: GeneralStatus = GeneralStatus(0x14);
-    /// 15h: too much data.
+    /// 15h: the request contains too much data.
     pub const TOO_LONG: GeneralStatus = GeneralStatus(0x15);
 
     /// Creates a status from its code. Every value is valid.

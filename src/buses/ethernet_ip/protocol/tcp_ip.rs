@@ -4,18 +4,18 @@ use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, Structure, ascii, text};
 
-/// Configuration control, attribute 3. The default 0 selects the stored address, and unknown bits are preserved.
+/// Configuration control, attribute 3. The default 0 selects the stored address. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ConfigurationControl(u32);
 
 /// Source of the IP address, bits 3 to 0 of [`ConfigurationControl`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSource {
-    /// 0: stored in the device.
+    /// Address stored in the device, encoded as 0.
     Stored,
-    /// 1: BOOTP.
+    /// BOOTP, encoded as 1.
     Bootp,
-    /// 2: DHCP.
+    /// DHCP, encoded as 2.
     Dhcp,
     /// A reserved value up to 15.
     Unknown(u8),
@@ -30,7 +30,7 @@ pub struct InterfaceConfiguration {
     pub mask: Ipv4Addr,
     /// Default gateway, or 0.0.0.0 if there is none.
     pub gateway: Ipv4Addr,
-    /// Name servers, each 0.0.0.0 if there is none.
+    /// Name servers. 0.0.0.0 means that there is none.
     pub name_servers: [Ipv4Addr; 2],
     /// Domain name of up to 48 ASCII characters.
     pub domain: String,
@@ -45,7 +45,7 @@ pub enum AddressError {
     /// The address is reserved.
     #[error("{0} cannot be a device's address: it is kept for the computer itself, for groups or for later")]
     Reserved(Ipv4Addr),
-    /// The mask is not a contiguous run of ones, or leaves too few addresses.
+    /// The mask does not consist of ones followed by zeros, or leaves too few addresses.
     #[error("{0} is no mask: ones come first and zeros behind them, at least two of these, as in 255.255.255.0")]
     Mask(Ipv4Addr),
     /// The address is the network address.
@@ -66,7 +66,7 @@ pub enum AddressError {
         /// Prefix length of the network mask.
         prefix: u32,
     },
-    /// The gateway address is the address of the device itself.
+    /// The gateway is the device itself, or a network or broadcast address.
     #[error("the gateway cannot be {0}: it is another device's address in the same network, or 0.0.0.0 for none")]
     Gateway(Ipv4Addr),
     /// The domain name is invalid. A valid name has up to 48 letters, digits, hyphens and dots.
@@ -77,13 +77,13 @@ pub enum AddressError {
 impl ConfigurationControl {
     /// Class code of the TCP/IP interface object.
     pub const CLASS: u16 = 0xF5;
-    /// Attribute number.
+    /// Attribute number of the configuration control.
     pub const ATTRIBUTE: u16 = 3;
 
     /// Parses the four bytes of the attribute.
     ///
     /// # Errors
-    /// [`PacketError`] if the length is not four.
+    /// Returns a [`PacketError`] if the length is not four.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ConfigurationControl, data);
         let word = fields.u32()?;
@@ -118,14 +118,14 @@ impl ConfigurationControl {
 }
 
 impl InterfaceConfiguration {
-    /// Attribute number.
+    /// Attribute number of the interface configuration.
     pub const ATTRIBUTE: u16 = 5;
 
-    /// Parses the attribute, which consists of five little-endian addresses and a string with a two-byte length, padded
-    /// to whole words.
+    /// Parses the attribute. It consists of five little-endian addresses and a string with a two-byte length, padded to
+    /// whole words.
     ///
     /// # Errors
-    /// [`PacketError`] if the attribute is incomplete or too long.
+    /// Returns a [`PacketError`] if the attribute is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::InterfaceConfiguration, data);
         let mut address = || fields.u32().map(Ipv4Addr::from);
@@ -142,7 +142,7 @@ impl InterfaceConfiguration {
     /// Checks that a device would be reachable. The address must be valid in a network with this mask, and the gateway
     /// must be unset or in the same network.
     ///
-    /// # Errors
+    /// Returns an [`AddressError`] if an address, the mask or the domain name is not usable.
     /// [`AddressError`].
     pub fn check(&self) -> Result<(), AddressError> {
         let InterfaceConfiguration { address, mask, gateway, .. } = *self;
@@ -182,7 +182,7 @@ impl InterfaceConfiguration {
         let addresses = [self.address, self.mask, self.gateway, first, second];
         let mut data: Vec<u8> = addresses.into_iter().flat_map(|address| u32::from(address).to_le_bytes()).collect();
         let domain: Vec<u8> = ascii(&self.domain).take(usize::from(u16::MAX)).collect();
-        // At most 65535.
+        // The length is at most 65535.
         data.extend((domain.len() as u16).to_le_bytes());
         let odd = domain.len() % 2 == 1;
         data.extend(domain);
@@ -198,7 +198,7 @@ fn check_device_address(address: Ipv4Addr) -> Result<(), AddressError> {
     let [first, ..] = address.octets();
     match first {
         _ if address.is_unspecified() => Err(AddressError::None),
-        // This network, the computer itself, multicast groups and reserved addresses.
+        // These are this network, the computer itself, multicast groups and reserved addresses.
         0 | 127 | 224.. => Err(AddressError::Reserved(address)),
         _ => Ok(()),
     }

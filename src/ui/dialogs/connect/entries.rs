@@ -95,10 +95,9 @@ pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-/// A function that returns a device message in the window's language.
+/// Function that returns a device message in the window's language.
 type Say = fn(&Theme, &'static str) -> String;
 
-/// Draws the parameter entries. `say` returns the device's labels.
 pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIterator<Item = Entry>, typed: &mut Typed) {
     for own in entries {
         let word = say(theme, own.label);
@@ -106,7 +105,7 @@ pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIter
     }
 }
 
-/// Draws the parameter entries side by side, each followed by its label.
+/// Draws parameter entries side by side, each followed by its label.
 pub(crate) fn entry_row(
     ui: &mut Ui,
     theme: &Theme,
@@ -123,7 +122,7 @@ pub(crate) fn entry_row(
 
 pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut Typed) {
     let mut text = typed.get(own.key).to_owned();
-    // A number needs less room than a list of faults.
+    // The width depends on the hint. A number needs less space than a list of faults.
     let width = match own.hint.len() {
         1..=4 => 56.0,
         _ if own.hint.parse::<f64>().is_ok() => 96.0,
@@ -137,7 +136,7 @@ pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: 
     }
 }
 
-/// Draws the option to leave the encoder's supply on when the adapter is closed.
+/// Draws the choice to leave the encoder's supply on when the adapter is closed.
 pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     ui.checkbox(leave_on, theme.say("connect.leave_supply"));
     paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));

@@ -1,5 +1,5 @@
-//! The form of a kind of device in the connection dialog: typed in the device's folder, object-safe for the dialog. One
-//! adapter connects the two.
+//! The form of a kind of device in the connection dialog. It is typed in the device's folder and object-safe for the
+//! dialog. One adapter connects the two.
 
 use egui::Ui;
 
@@ -13,7 +13,7 @@ pub trait TypedConnectForm: 'static {
     /// UI selections that are not part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` states whether the rarely needed entries are expanded, a setting shared by all kinds.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this setting.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -26,7 +26,7 @@ pub trait TypedConnectForm: 'static {
 
 /// The connection form of a kind of device with its selections, as used by the dialog.
 pub trait ConnectForm {
-    /// Draws the form. `more` states whether the rarely needed entries are expanded, a setting shared by all kinds.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded. All kinds share this setting.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
@@ -42,7 +42,7 @@ impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {
         let mut form = own.clone();
         F::form_ui(ui, theme, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
-            // Before the other clicked actions, which must see it.
+            // The edit comes first, because the other clicked actions depend on it.
             actions.insert(0, Action::Connect(Connect::edit(form)));
         }
     }

@@ -1,4 +1,4 @@
-//! The painting of a field map.
+//! Painting of a field map.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, Ui, Vec2};
 
@@ -14,8 +14,8 @@ pub(super) struct State {
     pub(super) hovered: bool,
 }
 
-/// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field and square where the
-/// field continues on another line.
+/// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field. They are square
+/// where the field continues on another line.
 fn run_outline(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
@@ -44,7 +44,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left() + strip.block.x;
         while x < run.right() - 1.0 {
-            // Only at the edges: the field's texts are between.
+            // The lines are only at the edges, because the texts of the field are in between.
             let (top, bottom) = (rect.top(), rect.bottom());
             let stroke = Stroke::new(1.0, colour.gamma_multiply(0.7));
             painter.vline(x - 0.5, top..=top + theme.space.inside, stroke);
@@ -62,8 +62,8 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, the
-/// icons replace the caption.
+/// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, icons
+/// replace the caption.
 fn draw_inscription(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
@@ -87,7 +87,7 @@ fn draw_inscription(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     if number.size().x <= run.width() - 2.0 {
         painter.galley(egui::pos2(left, y - number.size().y / 2.0), number, palette.text.into());
     }
-    // As many as fit; the tooltip has all.
+    // Draw as many icons as fit. The tooltip has all of them.
     let room = if beside { shown.len() } else { (((run.width() - 2.0) / pitch) as usize).max(1) };
     let count = shown.len().min(room);
     let width = count as f32 * pitch;
@@ -158,7 +158,7 @@ pub(super) fn draw_drag_ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rec
         painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), theme.space.inside, theme.space.inside));
     }
     let Some(last) = runs.last() else { return };
-    // A label on the accent, inside the end of the preview and never outside the map.
+    // The label is on the accent, inside the end of the preview and always inside the map.
     let font = FontId::monospace(theme.sizes.caption);
     let galley = painter.layout_no_wrap(words.to_owned(), font, theme.palette.on_accent.into());
     let size = galley.size() + Vec2::new(theme.space.between, theme.space.inside);

@@ -1,4 +1,4 @@
-//! The layout of the fields of a frame: on as few lines as possible, with all bits in cells of one width.
+//! The layout of the fields of a frame. All bits have cells of one width, on as few lines as possible.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RequiredSpace {
@@ -63,7 +63,7 @@ fn with_cell(wants: &[RequiredSpace], width: f32, gap: f32, cell: f32) -> StripP
             if left > 0.0 && left + whole > width {
                 (left, line) = (0.0, line + 1);
             }
-            // Whole bytes, as many as fit, at least one.
+            // Take whole bytes, as many as fit but at least one.
             let fit = (1..=rest).rev().find(|bits| cells(first, *bits, want.bits, cell) <= width).unwrap_or(1);
             let bits = if fit == rest { rest } else { (fit - fit % 8).clamp(8.min(rest), rest) };
             let own = cells(first, bits, want.bits, cell).max(words);

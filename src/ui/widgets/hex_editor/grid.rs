@@ -41,7 +41,7 @@ impl Grid {
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
-        // In a small window the columns are closer together so that no characters are truncated.
+        // In a small window, the columns are closer together, so no characters are truncated.
         let wide = places(theme.space.between);
         let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
         let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
@@ -72,7 +72,8 @@ impl Grid {
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// Returns the byte nearest to the pointer, either in the column under the pointer or in the given column.
+    /// Returns the byte nearest to the pointer. If `free` is set, it may be in either column. Otherwise, it is in the
+    /// given column.
     pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

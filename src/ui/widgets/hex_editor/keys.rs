@@ -1,4 +1,4 @@
-//! Keyboard input of a hex editor. Handled keys are consumed, so nothing else acts on them.
+//! Keyboard input of a hex editor. The keys that it handles are consumed, and nothing else acts on them.
 
 use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 
@@ -15,8 +15,8 @@ struct KeyReaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of the current frame. This must be called before the widget is announced, because otherwise Tab
-/// cannot leave the widget.
+/// Handles the keys of the current frame. This must be called before the widget is announced. Otherwise, Tab cannot
+/// leave the widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !handle_input(event, model, view, &mut reaction)));
@@ -60,7 +60,7 @@ fn handle_input(event: &Event, model: &HexModel<'_>, view: &mut HexView, reactio
     }
 }
 
-/// Handles Tab, which moves from the hex column to the text column and on to the next widget, or backwards.
+/// Handles Tab. It moves from the hex column to the text column and on to the next widget, or backwards.
 fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
@@ -82,7 +82,7 @@ fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView
     let (at, last) = (view.cursor(), model.wanted.len().saturating_sub(1));
     let page = WIDTH * view.page.max(1);
     let up = |by: usize| if at >= by { at - by } else { at % WIDTH };
-    // Below the last line: the same place in the last line that has it.
+    // Below the last line, the cursor keeps its column in the last line that has it.
     let down = |by: usize| if at + by <= last { at + by } else { at + (last - at) / WIDTH * WIDTH };
     let to = match key {
         Key::ArrowLeft => at.saturating_sub(1),
@@ -133,7 +133,7 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
     true
 }
 
-/// Applies a change, or reports why the change is not possible.
+/// Applies a change. Reports the reason if it is not possible.
 fn change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -200,8 +200,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Writes bytes at the start of the selection. Afterwards, the written bytes are selected or the cursor is placed after
-/// them.
+/// Writes bytes at the start of the selection. The written bytes are then selected, or the cursor is after them.
 fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

@@ -6,7 +6,7 @@ use super::HexModel;
 use crate::bits;
 use crate::ui::{Theme, icons};
 
-/// Draws a byte in every representation, with the device's byte and the mark that contains it.
+/// Draws a byte in every representation. Adds the device's byte and the mark that contains it.
 pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) {
     let Some(byte) = model.wanted.get(at).copied() else { return };
     ui.spacing_mut().item_spacing = egui::vec2(theme.space.groups, theme.space.inside);
@@ -22,7 +22,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) 
         row(ui, theme.say("widget.hex_tip_decimal"), theme.monospace(byte.to_string()));
         row(ui, theme.say("widget.hex_tip_binary"), theme.monospace(bits::binary_text(byte)));
         if let Some(character) = bits::ascii(byte) {
-            // In quotes: it may be a blank.
+            // The quotation marks show a blank.
             row(ui, theme.say("widget.hex_tip_character"), theme.monospace(format!("'{character}'")));
         }
         if let Some(own) = model.device.get(at).filter(|own| **own != byte) {

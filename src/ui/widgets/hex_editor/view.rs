@@ -31,7 +31,7 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses. The selection contains at least the cursor unless the editor has no bytes.
+    /// Returns the selected addresses. They include at least the cursor, unless the editor has no bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
@@ -46,7 +46,7 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to show as numbers: the selection, or everything from the cursor on if only one byte is
+    /// Returns the bytes to show as numbers. They are the selection, or all bytes from the cursor on if only one is
     /// selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();
@@ -54,7 +54,7 @@ impl HexView {
         bytes.get(range).unwrap_or_default()
     }
 
-    /// Moves the cursor to the first byte changed by an undo or redo. `before` holds the bytes before that change.
+    /// Moves the cursor to the first byte changed by an undo or redo. `before` are the bytes before the change.
     pub fn follow(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());
@@ -68,7 +68,7 @@ impl HexView {
         }
     }
 
-    /// Returns the reason if the last request was not carried out.
+    /// Returns the reason why the last request was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }

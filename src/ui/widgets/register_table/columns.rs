@@ -1,5 +1,5 @@
-//! Columns of a register table: the least important ones are hidden if they do not fit, and two share the remaining
-//! width.
+//! Columns of a register table. The least important ones are hidden if they do not fit, and two columns share the
+//! remaining width.
 
 use egui::Rangef;
 
@@ -41,7 +41,7 @@ const NUMBERS: [Widths; 7] = [
     (Column::Range, 146.0, 88.0),
     (Column::Default, 84.0, 78.0),
 ];
-/// Columns in the order in which they are hidden if space is short. Hidden values move to the tooltip.
+/// Columns in the order in which they are hidden if space is short. The tooltip shows hidden values.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
 /// Share of the remaining width given to the name column. The meaning column gets the rest.
 const NAME: f32 = 0.45;
@@ -69,7 +69,7 @@ impl Columns {
             }
         }
         let (usual, least) = total(&shown);
-        // In between, all are narrower by the same share of what they can spare.
+        // In between, all columns are reduced by the same share of the difference to their minimum.
         let share = if usual > least { ((width - least) / (usual - least)).clamp(0.0, 1.0) } else { 1.0 };
         let spare = (width - usual).max(0.0);
         let mut left = 0.0;
@@ -92,7 +92,7 @@ impl Columns {
         self.is_narrow
     }
 
-    /// Returns the horizontal extent of a column, measured from the table's left edge, or `None` if the column is
+    /// Returns the horizontal extent of a column, measured from the table's left edge. Returns `None` if the column is
     /// hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.ranges.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)

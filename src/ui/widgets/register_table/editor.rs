@@ -1,5 +1,5 @@
-//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus, unless it is refused;
-//! the editor then remains open with the reason.
+//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus. If it is refused, the
+//! editor stays open and shows the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
@@ -54,7 +54,7 @@ pub(super) fn editor_ui(
     if !given_up && let Err(why) = take(edit.place, edit.text.trim()) {
         edit.problem = Some(why);
         edit.begins = entered;
-        // It stays where it is.
+        // Without the arrow keys, the selection stays on its line.
         view.late.retain(|event| !keys::is_vertical(event));
         edit.typed = true;
         view.edit = Some(edit);
@@ -65,8 +65,8 @@ pub(super) fn editor_ui(
     }
 }
 
-/// Selects the whole value, so that typing replaces it. After a first typed character, the cursor is placed behind that
-/// character instead.
+/// Selects the whole value, so typing replaces it. If the edit began with a typed character, the cursor is placed after
+/// it instead.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};
     let end = CCursor::new(text.chars().count());

@@ -1,4 +1,4 @@
-//! Keyboard input of a register table. Handled keys are consumed, so nothing else acts on them.
+//! Keyboard input of a register table. The keys that it handles are consumed, and nothing else acts on them.
 
 use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
@@ -12,7 +12,8 @@ pub(super) fn hold(ui: &Ui, id: Id) {
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Inserts the events held back in the previous frame before the current events while the table has the keyboard focus.
+/// Inserts the events held back in the previous frame before the current events. Applies while the table has the
+/// keyboard focus.
 pub(super) fn restore_deferred_keys(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
@@ -25,8 +26,8 @@ pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back everything typed in the current frame after a key that ends an edit. Such a key is Enter, or an up or
-/// down arrow, which acts as Enter and then moves to another line.
+/// Holds back everything typed in the current frame after a key that ends an edit. This key is Enter, or an up or down
+/// arrow, which acts as Enter and then moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
@@ -47,7 +48,7 @@ pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
         input.events = kept;
     });
     if !view.late.is_empty() {
-        // An arrow would take the keyboard to a neighbour.
+        // Otherwise, an arrow key would move the focus to a neighbour.
         ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
         ui.ctx().request_repaint();
     }
@@ -63,7 +64,7 @@ pub(super) fn is_vertical(event: &Event) -> bool {
 }
 
 /// Returns whether the event counts as typing for the table and its editor. Keys that stop a drive or belong to the
-/// window do not count and are never held back.
+/// window do not count, and are never held back.
 fn is_typing_event(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {

@@ -1,5 +1,5 @@
-//! Lines of a register table: group headings, registers, and the bit fields of unfolded ones. Lines are not stored;
-//! thousands of registers cost no more than their groups.
+//! Lines of a register table: group headings, registers, and the bit fields of unfolded registers. The lines are not
+//! stored, so the effort depends on the number of groups and not of registers.
 
 use super::view::SelectedRow;
 use super::{RegisterLocation, RegisterTable, RegisterView};
@@ -70,7 +70,7 @@ impl Lines {
         self.sections.partition_point(|section| section.start <= line).checked_sub(1)
     }
 
-    /// Returns the line of an item, or `None` if the item is not shown.
+    /// Returns the line of an item. Returns `None` if the item is not shown.
     pub(super) fn line_of(&self, what: SelectedRow) -> Option<usize> {
         match what {
             SelectedRow::Group(group) => self.sections.get(group).map(|section| section.start),
@@ -82,7 +82,7 @@ impl Lines {
         }
     }
 
-    /// Returns the item that can be selected on a line. For a bit field, this is its register.
+    /// Returns the item that can be selected on a line. A bit field selects its register.
     pub(super) fn selection_at(&self, line: usize) -> Option<SelectedRow> {
         Some(match self.at(line)? {
             LineKind::Group(group) => SelectedRow::Group(group),

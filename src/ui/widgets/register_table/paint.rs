@@ -79,7 +79,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     draw_inscription(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
-/// Draws a register. The value is left out while it is being edited.
+/// Draws a register. Its value is left out while it is being edited.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -108,7 +108,7 @@ pub(super) fn row(
             Column::Value if row.value.is_empty() => (theme.monospace("–"), palette.muted),
             Column::Value => (theme.monospace(&row.value), value),
             Column::Decimal => (theme.monospace(&row.decimal), value),
-            // The number replaces the meaning if its own column is hidden.
+            // The number replaces an empty meaning if the column of the number is hidden.
             Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
                 (theme.monospace(&row.decimal), value)
             }
@@ -119,14 +119,14 @@ pub(super) fn row(
             Column::Default if row.differs => (theme.monospace(format!("≠ {}", row.default)), palette.text),
             Column::Default => (theme.monospace(&row.default), palette.muted),
         };
-        // A name or meaning that is too long is smaller, and cut only if it still does not fit.
+        // A name or meaning that is too long is drawn smaller. It is cut only if it still does not fit.
         let words = match column {
             Column::Name | Column::Meaning if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
             _ => words,
         };
         let right = column == Column::Decimal;
         let range = match (column, columns.range(Column::Meaning)) {
-            // A text may be longer than a number.
+            // A text may use the column of the meaning too.
             (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
             _ => range,
         };
@@ -147,7 +147,7 @@ pub(super) fn value_box(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
 }
 
 /// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost,
-/// a disk for storage.
+/// and a disk for storage.
 fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
@@ -188,14 +188,13 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
 }
 
-/// Returns whether a text does not fit into a column.
 fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) -> bool {
     let words = egui::WidgetText::from(words.clone());
     let galley = words.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);
     galley.size().x > range.span() - theme.space.between
 }
 
-/// Draws text within a column, truncated if it is too long. Returns the width of the drawn text.
+/// Draws text within a column and returns its width. A text that is too long is truncated.
 fn draw_inscription(
     ui: &Ui,
     theme: &Theme,

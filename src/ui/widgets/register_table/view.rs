@@ -17,13 +17,13 @@ pub struct RegisterView {
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     pub(super) wanted: Option<RegisterLocation>,
-    /// Reason why an attempt to edit the value was refused, if so.
+    /// Reason why the last attempt to edit the value was refused.
     pub(super) refused: Option<String>,
     /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Events typed in the previous frame after a key that moves the focus to or from the editor. Their recipient is
-    /// known only in the next frame.
+    /// Events typed in the previous frame after a key that moves the focus to or from the editor. The next frame shows
+    /// which of them is to receive these events.
     pub(super) late: Vec<Event>,
 }
 
@@ -59,7 +59,7 @@ impl RegisterView {
         }
     }
 
-    /// Returns the reason why the edited value was rejected, or why the value cannot be edited.
+    /// Returns the reason why the edited value was refused, or why the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
         typed.or_else(|| self.refused.clone())
@@ -93,8 +93,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Adapts to a changed set of registers. The selection and the edit stay with their register, and end if the
-    /// register no longer exists.
+    /// Adapts to a changed set of registers. The selection and the edit stay with their register. They end if it no
+    /// longer exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(SelectedRow::Row(place)) => now(place).map(SelectedRow::Row),

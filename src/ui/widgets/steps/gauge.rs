@@ -1,4 +1,4 @@
-//! A gauge: a value on a scale with the allowed band.
+//! A gauge, which shows a value on a scale with the allowed band.
 
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
@@ -13,13 +13,13 @@ const NAME: f32 = 112.0;
 const VALUE: f32 = 96.0;
 const HEIGHT: f32 = 20.0;
 
-/// Draws each gauge's name, value, scale and limits on one line, with the limits below if they do not fit.
+/// Draws each gauge's name, value, scale and limits on one line. If the limits do not fit, they are below.
 pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let width = |gauge: &Gauge| {
         let font = FontId::proportional(theme.sizes.caption);
         ui.painter().layout_no_wrap(gauge.limits.clone(), font, theme.palette.muted.into()).size().x
     };
-    // The scales of all of them are equally long.
+    // All scales have the same length.
     let limits = gauges.iter().map(width).fold(0.0, f32::max);
     let room = ui.available_width() - ICON - NAME - VALUE - theme.space.between * 3.0;
     let beside = room - limits - theme.space.between;
@@ -65,7 +65,7 @@ fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value lies beyond it.
+/// Draws the allowed band with a pointer at the value. If the value is beyond the scale, draws an arrow at its end.
 fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {
@@ -85,7 +85,7 @@ fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32)
     painter.rect_filled(track, 3.0, theme.palette.sunken);
     painter.rect_stroke(track, 3.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
     let band = |range: &std::ops::RangeInclusive<f64>, strength: f32| {
-        // A narrow band stays visible.
+        // Widen a narrow band to keep it visible.
         let (from, to) = (x(share(*range.start())), x(share(*range.end())));
         let half = ((to - from) / 2.0).max(1.5);
         let middle = (from + to) / 2.0;
