@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use encoder_studio::app::connect::ConnectAction as Connect;
-use encoder_studio::app::{Action, AnyDevice, DeviceCommand, Studio, StudioEnvironment, Tab, ThemeData};
+use encoder_studio::app::{Action, DeviceCommand, Studio, StudioEnvironment, Tab, ThemeData};
 use encoder_studio::kinds::program;
 use encoder_studio::signals::state::{SignalsAction, SourceAction};
 use encoder_studio::store::Store;
@@ -160,7 +160,7 @@ impl Usage {
             handles: count("/proc/self/fd"),
             threads: count("/proc/self/task"),
             recorded: devices.iter().map(|own| own.recorder().memory() as f64).sum(),
-            dropped: devices.iter().map(|own: &Box<AnyDevice>| own.dropped_count()).sum(),
+            dropped: devices.iter().map(|own| own.dropped_count()).sum(),
         }
     }
 

@@ -76,7 +76,7 @@ fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
         assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
         // Log and list of writes agree: place, area, old and new value.
         let told = log(&desk.studio);
-        for words in [&format!("at {link}."), "Started: Write 3 edited bytes", "read back: 3."] {
+        for words in [&format!("The device at {link} replied."), "Started: Write 3 edited bytes", "read back: 3."] {
             assert!(told.contains(words), "{words}: {told}");
         }
         for change in ["0x24:0x00 OEM data: 00 → 11", "0x24:0x3F OEM data: 00 → 33"] {
