@@ -1,4 +1,4 @@
-//! Signals: analysis of sine and cosine without a device.
+//! The Signals tool: analysis of recorded or live sine and cosine signals, without a session.
 
 pub(crate) mod commands;
 pub mod state;

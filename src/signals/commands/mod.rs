@@ -43,7 +43,7 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
     let bar = Bar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
-    // Ctrl-C ends a command that only reads.
+    // Never cancelled here: Ctrl-C ends the whole process, since the command only reads.
     let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
@@ -58,7 +58,7 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal_text()).collect();
     let analysis = analysis.map_err(|error| {
         let why = explain::signal::analysis(path, &error).terminal_text();
-        // Levels of the wires show more than the missing ellipse.
+        // If the wires were recorded, their findings explain more than the missing ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
@@ -86,8 +86,8 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     }
 }
 
-/// Prints DNL and INL if a reference and the number of periods are known, or otherwise a remark on why they are
-/// missing.
+/// Calculates DNL and INL against the reference angle. If the number of periods is missing, a remark explains how to
+/// give it.
 fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {

@@ -23,7 +23,7 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// Whether the number of periods comes from the virtual encoder and thus does not apply to a capture.
+    /// Whether the number of periods comes from the virtual encoder. It then does not apply to a capture from a file.
     periods_of_source: bool,
     pub(crate) source: Source,
     synchronise: SynchroniseState,
@@ -110,12 +110,12 @@ impl Tool for Signals {
 }
 
 impl Signals {
-    /// Creates the state with the links of previously used adapters, most recent first.
+    /// Creates the state from the links of previously used adapters, most recent first.
     pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
 
-    /// Starts an adapter once its connection is available, and stores its link in the settings.
+    /// Starts the adapter after other users have released its connection. The link is stored in the settings.
     fn begin_with_adapter(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
@@ -134,8 +134,8 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1, or `None` if unknown. Results that depend on them are
-    /// then omitted.
+    /// Returns the signal periods per revolution, at least 1. Without them, the results that depend on them are
+    /// omitted.
     pub fn periods(&self) -> Option<u32> {
         self.periods
     }
@@ -152,17 +152,17 @@ impl Signals {
         &self.source
     }
 
-    /// Returns the results of the capture used for comparison, if any.
+    /// Returns the results of the capture that was kept for comparison.
     pub fn comparison(&self) -> Option<&Arc<MeasurementResult>> {
         self.comparison.as_ref()
     }
 
-    /// Returns the last table, even if it could not be read.
+    /// Returns the last table, including a table that could not be read.
     pub fn table(&self) -> Option<&Table> {
         self.table.as_ref()
     }
 
-    /// Returns the reason why the last table could not be read. The previous capture is still displayed.
+    /// Returns the reason why the last table could not be read. The previous capture then remains on display.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -180,7 +180,7 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes since the capture used for comparison. Both captures are judged by the same limits.
+    /// Returns the changes relative to the capture kept for comparison. Both are judged by the same limits.
     pub fn changes(&self) -> Option<DiagnosisChanges> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.with_new_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -195,7 +195,7 @@ impl Signals {
         }
     }
 
-    /// Forgets the reading in progress, since its result will not arrive.
+    /// Discards the reading in progress.
     pub(super) fn forget_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
@@ -280,14 +280,15 @@ impl Signals {
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
-    /// Replaces the samples. A table of the previous samples that is still being written can then not be completed.
+    /// Replaces the displayed samples. This cancels an export of the previous samples.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::RecorderAction::CancelExport);
         task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
-        /// Number of samples above which releasing their memory takes longer than starting a thread to do so.
+        /// Number of samples above which memory is released on another thread. For fewer samples, starting the thread
+        /// takes longer than releasing them.
         const LARGE: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE
@@ -296,7 +297,7 @@ impl Signals {
         }
     }
 
-    /// Replaces the displayed capture with the newest samples from the source.
+    /// Displays a measurement of the newest samples instead of a capture.
     pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
         self.show(measurement, services);
         self.problem = None;
@@ -331,12 +332,11 @@ impl Signals {
         }
     }
 
-    /// Returns the table of the displayed capture, even while it is being read again with changed settings.
+    /// Returns the table of the displayed capture. A table that is still being read does not count.
     fn settled(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
 
-    /// Reads the table again with a changed setting.
     fn reread_table(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
@@ -373,7 +373,7 @@ impl Signals {
         });
     }
 
-    /// Starts reading a table and cancels a reading in progress.
+    /// Starts to read a table. A reading in progress is cancelled.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

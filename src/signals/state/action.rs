@@ -1,4 +1,4 @@
-//! Actions of the Signals tab, and the results of its tasks.
+//! Actions of the Signals tab and results of its tasks.
 
 use std::path::PathBuf;
 
@@ -10,24 +10,23 @@ use crate::store::ReadCaptureError;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SignalsAction {
     Open(PathBuf),
-    /// Reads one of the example captures that ship with the program.
+    /// Reads an example capture that ships with the program.
     Example(ExampleCapture),
-    /// Replaces the detected delimiter.
+    /// Sets the delimiter instead of the detected one.
     SetDelimiter(Delimiter),
-    /// Sets whether numbers have a decimal comma.
+    /// Sets whether the decimal sign is a comma.
     SetDecimalComma(bool),
-    /// Selects another column, counted from 1, or no column with `None`.
+    /// Selects a column by its number from 1. `None` selects no column.
     SetColumn(Column, Option<usize>),
     SetTimeUnit(TimeUnit),
-    /// Sets the volts per unit of the table, which must be finite and not zero.
+    /// Sets the volts per unit of the table. The value must be finite and not zero.
     SetVolts(f64),
-    /// Detects the table's format again.
+    /// Detects the format of the table again.
     Detect,
     Cancel,
     SetFamily(Family),
-    /// Sets the signal periods per revolution, at least 1.
     SetPeriods(u32),
-    /// Keeps the displayed capture for comparison with later ones.
+    /// Keeps the displayed capture for comparison with others.
     Keep,
     DropComparison,
     Source(SourceAction),
@@ -35,33 +34,32 @@ pub enum SignalsAction {
 }
 
 pub enum Done {
-    /// Reports that a capture has been read or that reading has failed.
+    /// A capture was read, or reading failed.
     Read {
-        /// Number of the attempt. Only the latest attempt counts.
+        /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,
         read: Box<Read>,
     },
-    /// Reports that the displayed capture has been judged again.
+    /// The displayed capture was judged again.
     Judged {
-        /// Number of the attempt. Only the latest attempt counts.
+        /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,
         measurement: Box<Measurement>,
     },
     Measured {
-        /// Number of the start. Only the latest start counts.
+        /// Number of the start. Results of earlier starts are ignored.
         number: u32,
         measurement: Box<Measurement>,
     },
-    /// Reports that a task could not be started or ended without a result.
+    /// A task could not be started, or ended without a result.
     Failed(FailedTask),
-    /// Reports that a large value has been dropped.
+    /// A large value was dropped.
     LetGo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FailedTask {
     Read(u32),
-    /// Judges the displayed capture again.
     Judge,
     Measure(u32),
 }

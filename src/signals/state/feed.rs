@@ -1,4 +1,4 @@
-//! Samples of sine and cosine as they arrive from the virtual encoder or an adapter.
+//! Live samples of sine and cosine from the virtual encoder or an adapter.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -20,12 +20,12 @@ use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{AnalogueSource, Batch, End, Producer, Stream};
 
-/// Both signals in volts, with the same number of samples.
+/// Sine and cosine in volts, with equal numbers of samples.
 #[derive(Clone, Debug)]
 pub(super) struct ChannelSamples {
     pub(super) sine_v: Vec<f64>,
     pub(super) cosine_v: Vec<f64>,
-    /// Voltages of the single wires, if known.
+    /// Voltages of the four wires, if known.
     pub(super) wires: Option<Wires>,
 }
 
@@ -34,7 +34,7 @@ impl ChannelSamples {
         self.sine_v.len()
     }
 
-    /// Returns the samples of a wire, or an empty slice if unknown.
+    /// Returns the samples of a wire, or an empty slice if they are unknown.
     pub(super) fn wire(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
         self.wires.as_ref().map_or(&[], |wires| of(wires))
     }
@@ -56,13 +56,13 @@ pub(super) enum SignalFeed {
     Virtual(Stream<AnalogueSource>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// The adapter and its actual sampling, once they are known.
+        /// Identity and actual sampling of the adapter. It is empty until the adapter has replied.
         streaming: Arc<OnceLock<Streaming>>,
         url: LinkUrl,
     },
 }
 
-/// Link to an adapter that has not been opened yet.
+/// Link to an adapter, before the connection is opened.
 pub(super) struct AdapterLink {
     url: LinkUrl,
     clock: Arc<dyn Clock>,
@@ -74,7 +74,7 @@ impl AdapterLink {
     /// Parses a link to an adapter.
     ///
     /// # Errors
-    /// Returns why the link does not lead to an adapter.
+    /// Returns the reason why the link cannot be used for an adapter.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
@@ -83,8 +83,8 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Starts sampling at the given rate, and switches the encoder's supply on if a voltage is given. The stream
-    /// reports whether the adapter is present.
+    /// Starts sampling at the given rate. If a voltage is given, the adapter supplies the encoder with it. A missing
+    /// adapter is reported later by the stream.
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
@@ -99,10 +99,10 @@ impl AdapterLink {
         let (before, patience) = (services.sessions_closing_on_link(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
             if let Some(earlier) = earlier {
-                // Nothing is sent on it: it disconnects, or never does.
+                // This waits for the disconnection only, because the channel carries no messages.
                 let _ = earlier.recv_timeout(patience);
             }
-            // The previous user releases the connection first; otherwise it cannot be opened.
+            // The connection can only be opened after its previous users have released it.
             for (ending, patience) in before {
                 ending.wait(patience);
             }
@@ -114,11 +114,11 @@ impl AdapterLink {
     }
 }
 
-/// Maximum number of samples waiting for the window: two seconds at 100 kHz.
+/// Maximum number of samples that wait for the window: two seconds at 100 kHz.
 const WAITING: usize = 200_000;
 
 impl SignalFeed {
-    /// Starts the virtual encoder.
+    /// Starts sampling the virtual encoder.
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
@@ -161,8 +161,7 @@ impl SignalFeed {
         }
     }
 
-    /// Returns the adapter and its actual sampling, or `None` for the virtual encoder and while the sampling is
-    /// unknown.
+    /// Returns the identity and actual sampling of the adapter. The virtual encoder has none.
     pub(super) fn streaming(&self) -> Option<&Streaming> {
         match self {
             SignalFeed::Virtual(_) => None,
@@ -192,7 +191,7 @@ impl SignalFeed {
         }
     }
 
-    /// Stops the feed without waiting for the adapter to end its stream.
+    /// Releases the feed. The adapter ends its stream in the background.
     pub(super) fn let_go(self, services: &mut Services) {
         if let SignalFeed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();

@@ -1,4 +1,4 @@
-//! Parsing of entries of the Signals tab. Errors state the valid values.
+//! Parsing of entries in the Signals tab. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};
@@ -7,7 +7,7 @@ use crate::signals::state::TEXTS;
 /// Parses the number of signal periods per revolution.
 ///
 /// # Errors
-/// Returns why the entry is invalid.
+/// Returns an error if the entry is invalid.
 pub fn periods(text: &str) -> Result<u32, Text> {
     whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
 }
@@ -15,7 +15,7 @@ pub fn periods(text: &str) -> Result<u32, Text> {
 /// Parses a finite number with a decimal point or comma.
 ///
 /// # Errors
-/// Returns why the entry is invalid.
+/// Returns an error if the entry is invalid.
 pub fn number(text: &str) -> Result<f64, Text> {
     crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
@@ -23,7 +23,7 @@ pub fn number(text: &str) -> Result<f64, Text> {
 /// Parses the volts per unit of a table.
 ///
 /// # Errors
-/// Returns why the entry is invalid.
+/// Returns an error if the entry is invalid.
 pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
     let refused = || TEXTS.text("signals.bad_volts").with("entry", text);
     number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)

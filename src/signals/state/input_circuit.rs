@@ -1,5 +1,6 @@
-//! Calculator for the input circuit of a drive: the signal frequency at a speed, and the effect of the filter there and
-//! up to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
+//! Calculator for the input circuit of a drive. It shows the signal frequency and the effect of the filter at a given
+//! speed, and at speeds up to the encoder's limit. See SICK 8010701, process data channel, and section 1 of the
+//! project's sine/cosine reference.
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, FilterResponse, InputFilter, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
@@ -9,11 +10,11 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
     pub periods: String,
-    /// Speed in revolutions per minute.
+    /// Speed in revolutions per minute, as typed.
     pub speed: String,
-    /// Resistance of the filter resistor, such as `10k`.
+    /// Resistance of the filter, as typed, such as `10k`.
     pub resistance: String,
-    /// Capacitor, such as `22p`.
+    /// Capacitance of the filter, as typed, such as `22p`.
     pub capacitance: String,
 }
 
@@ -22,16 +23,16 @@ pub struct OperatingPoint {
     pub speed_rpm: f64,
     pub frequency_hz: f64,
     pub response: FilterResponse,
-    /// Lag of the shaft angle in mechanical degrees.
+    /// Lag of the measured shaft angle in mechanical degrees.
     pub shaft_deg: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputCircuitResult {
     pub here: OperatingPoint,
-    /// Speed in revolutions per minute at which the signals reach the encoder's bandwidth.
+    /// Speed in revolutions per minute at which the signal frequency equals the encoder's bandwidth.
     pub most_rpm: f64,
-    /// Frequency in hertz at which the filter leaves 71 % of the amplitude.
+    /// Corner frequency of the filter in hertz, where 71 % of the amplitude remains.
     pub corner_hz: f64,
     periods: u32,
     filter: InputFilter,
@@ -48,10 +49,10 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Calculates the circuit.
+    /// Calculates the result from the entries.
     ///
     /// # Errors
-    /// Returns the reason for the first invalid entry.
+    /// Returns the reason why the first invalid entry was refused.
     pub fn circuit(&self) -> Result<InputCircuitResult, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
@@ -70,14 +71,15 @@ impl InputCircuitResult {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
 
-    /// Returns the response at `count` evenly spaced speeds above zero, the last at the encoder's bandwidth.
+    /// Returns the operating points at `count` evenly spaced speeds. The last speed is the highest within the encoder's
+    /// bandwidth.
     pub fn course(&self, count: u32) -> Vec<OperatingPoint> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
     }
 
-    /// Returns the error in electrical degrees caused by reading both channels one microsecond apart at the entered
-    /// speed.
+    /// Returns the angle error per microsecond between the sampling of both channels. The error is in electrical
+    /// degrees, at the entered speed.
     pub fn degrees_per_microsecond(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }

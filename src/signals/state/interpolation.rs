@@ -1,5 +1,5 @@
-//! The angle within a period, calculated with the octant table of a drive and exactly, and the difference. SICK
-//! 8010701, interpolation; section 3 of the project's sine/cosine reference.
+//! Comparison of the octant table of a drive with the exact angle within a period. See SICK 8010701, interpolation, and
+//! section 3 of the project's sine/cosine reference.
 
 use std::sync::LazyLock;
 
@@ -8,25 +8,25 @@ use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// Numbers of intervals of the displayed tables.
+/// Table sizes that are displayed, in intervals.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableError {
     pub intervals: usize,
     pub largest_deg: f64,
-    /// Reciprocal of the fraction of a period that bounds the error.
+    /// Length of a period divided by the largest error.
     pub parts: f64,
-    /// Resolution in bits per period that corresponds to the error.
+    /// Resolution in bits per period at which a step equals the largest error.
     pub bits: f64,
 }
 
-/// Phase of one pair of voltages, calculated exactly and by table lookup.
+/// Phase of one pair of voltages, calculated exactly and with an octant table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InterpolatedPhase {
     pub exact: Phase,
     pub table: Phase,
-    /// Difference between table phase and exact phase in electrical degrees, within ±180.
+    /// Table phase minus exact phase in electrical degrees, within ±180.
     pub difference_deg: f64,
 }
 
@@ -35,7 +35,7 @@ pub fn table_errors() -> &'static [TableError] {
     &ERRORS
 }
 
-/// Evaluates a table with the given number of intervals at points that include the largest error.
+/// Determines the largest error of a table with the given number of intervals.
 fn table_error(intervals: usize) -> TableError {
     const PLACES: usize = 64;
     let table = OctantTable::new(intervals);
@@ -49,10 +49,11 @@ fn table_error(intervals: usize) -> TableError {
     TableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
 
-/// Interpolates an entered pair of offset-free voltages with a table of the given number of intervals.
+/// Calculates the phase of typed voltages exactly and with a table of the given number of intervals. The voltages must
+/// not contain an offset.
 ///
 /// # Errors
-/// Returns an error if an entry is not a number, or if both are zero.
+/// Returns an error if an entry is not a number or both voltages are zero.
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<InterpolatedPhase, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));

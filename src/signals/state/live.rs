@@ -1,5 +1,5 @@
-//! A live source, which is the virtual encoder or an adapter: its settings, its newest samples, and their measurement,
-//! which is repeated a few times per second. Samples come from `worker::stream`; drawing never waits for them.
+//! A live source, which is the virtual encoder or an adapter, with its settings and newest samples. The samples are
+//! measured a few times per second. They come from `worker::stream`, and drawing never waits for them.
 
 use std::sync::Arc;
 
@@ -24,24 +24,24 @@ use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 pub enum SourceAction {
     Start,
     StartAdapter,
-    /// Sets the entered link to an adapter. A running adapter keeps its link.
+    /// Sets the link of the adapter. The change has no effect on a running adapter.
     SetLink(String),
-    /// Sets the requested sample rate of an adapter. A running adapter keeps its rate.
+    /// Sets the sample rate of the adapter. The change has no effect on a running adapter.
     SetSampleRate(u32),
-    /// Supplies an encoder of the given family from the adapter, or switches no supply on if `None`. A running adapter
-    /// keeps its supply.
+    /// Sets the encoder family that the adapter supplies, or `None` for no supply. The change has no effect on a
+    /// running adapter.
     SetSupply(Option<Family>),
-    /// Stops the source and keeps the last measurement.
+    /// Stops the source. The last measurement remains on display.
     Stop,
-    /// Freezes the display while the source continues, or resumes it.
+    /// Freezes the display or resumes it. The source continues to run.
     Hold(bool),
-    /// Sets a value of the virtual encoder. A value out of range is refused with a message.
+    /// Sets a value of the virtual encoder. A value out of range is refused.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
-    /// Sets whether a resistor connects the wires of each pair.
+    /// Sets whether each pair of wires is terminated by a resistor.
     SetTerminated(bool),
     SetReferences(ReferenceLevel),
-    /// Measures the newest samples of the given length in milliseconds, 10 to 10 000.
+    /// Sets how many of the newest samples are measured, as a duration of 10 to 10 000 milliseconds.
     SetWindow(u32),
     Reset,
 }
@@ -54,21 +54,20 @@ pub enum SourceKind {
 }
 
 pub struct Source {
-    /// The last valid settings of the virtual encoder.
     settings: Settings,
     problem: Option<Text>,
-    /// The adapter link, as typed.
+    /// Link to the adapter, as typed.
     link: String,
     sample_hz: u32,
-    /// Family of the encoder supplied by the adapter. Never stored in the settings, since another encoder may be
-    /// connected at the next start.
+    /// Family of the encoder that the adapter supplies. It is never stored in the settings, since another encoder may
+    /// be connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
-    /// The kind of source started last.
+    /// Kind of the source that was started last.
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
-    /// Number of lost samples, excluding those that a running stream counts itself.
+    /// Number of lost samples, without those that a running stream counts.
     lost: u64,
     live: Option<Live>,
 }
@@ -78,13 +77,13 @@ struct Live {
     recent: RecentSamples,
     held: bool,
     measuring: bool,
-    /// Time of the last sample in the latest measurement.
+    /// Time of the newest sample in the latest measurement.
     measured: Option<SampleTime>,
 }
 
-/// Range of window lengths that can be measured, in milliseconds.
+/// Range of durations that can be measured, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
-/// Link to the virtual adapter. Its shaft turns slowly enough for a signal period to be visible.
+/// Link to the virtual adapter. Its shaft turns slowly, which makes single signal periods visible.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
@@ -106,7 +105,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Creates the state with the link of the most recently used adapter.
+    /// Creates the state from the link of the adapter that was used last.
     pub(super) fn at(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
@@ -116,7 +115,7 @@ impl Source {
         &self.settings
     }
 
-    /// Returns the reason why the last setting was refused, if it was refused.
+    /// Returns the reason why the last setting was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -125,17 +124,17 @@ impl Source {
         &self.link
     }
 
-    /// Returns the sample rate requested from an adapter, in samples per second.
+    /// Returns the requested sample rate of the adapter in samples per second.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }
 
-    /// Returns the family of the encoder supplied by the adapter, or `None` for an external supply.
+    /// Returns the family of the encoder that the adapter supplies, or `None` if it supplies none.
     pub fn supply(&self) -> Option<Family> {
         self.supply
     }
 
-    /// Returns the reason why the adapter stopped sampling or could not start.
+    /// Returns the reason why the adapter could not start or has stopped.
     pub fn adapter_problem(&self) -> Option<&Text> {
         self.adapter_problem.as_ref()
     }
@@ -144,12 +143,12 @@ impl Source {
         self.kind
     }
 
-    /// Returns the running adapter and its sampling, or `None` until the adapter has been identified.
+    /// Returns the identity and sampling of the running adapter, or `None` until they are known.
     pub fn streaming(&self) -> Option<&Streaming> {
         self.live.as_ref().and_then(|live| live.feed.streaming())
     }
 
-    /// Returns whether the running source is part of this process.
+    /// Returns whether the running source is virtual.
     pub fn is_virtual(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }
@@ -167,7 +166,7 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
-    /// Returns the measured length in milliseconds if the maximum number of samples makes it shorter than the setting.
+    /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is shorter.
     pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
@@ -177,8 +176,8 @@ impl Source {
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Returns the number of samples lost since the last start because they were lost in transit, not read in time, or
-    /// not displayable.
+    /// Returns the number of samples lost since the last start. A sample is lost if it did not arrive, was not read in
+    /// time, or could not be displayed.
     pub fn lost(&self) -> u64 {
         self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
     }
@@ -236,7 +235,7 @@ impl Source {
         self.adapter_problem = Some(why);
     }
 
-    /// Releases the adapter if an encoder search needs its connection.
+    /// Stops the adapter if it uses the connection of the given link, because an encoder search needs it.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds =
             |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
@@ -246,7 +245,7 @@ impl Source {
         }
     }
 
-    /// Starts the adapter and returns whether it is being opened. An invalid link is reported beside its entry.
+    /// Starts the adapter and returns whether it has started. An invalid link is reported beside its entry.
     fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,
@@ -255,7 +254,7 @@ impl Source {
                 return false;
             }
         };
-        // A running source releases its connection first.
+        // A running source must release its connection first.
         self.stop(services);
         match link.start(self.sample_hz, self.supply.map(Family::supply), earlier, services) {
             Ok(feed) => {
@@ -303,7 +302,7 @@ impl Signals {
                     self.set_periods(settings.periods as u32, true, services);
                 }
             }
-            // The studio knows the other users of its connection.
+            // The studio starts the adapter, because it knows the other users of the connection.
             SourceAction::StartAdapter => {}
             SourceAction::SetLink(link) => {
                 self.source.link = link;
@@ -318,7 +317,7 @@ impl Signals {
             SourceAction::Hold(held) => {
                 if let Some(live) = &mut self.source.live {
                     live.held = held;
-                    // Samples that arrive while frozen are not shown: the next ones do not continue the previous ones.
+                    // Samples that arrived while the display was frozen are missing, so the trace has a gap.
                     self.scope.interrupt();
                 }
             }
@@ -341,7 +340,7 @@ impl Signals {
         }
     }
 
-    /// Starts sampling with the linked adapter after the previous user of its connection has ended.
+    /// Starts the adapter after the previous user of its connection has ended.
     pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
             self.forget_reading();
@@ -349,8 +348,8 @@ impl Signals {
         }
     }
 
-    /// Changes the virtual encoder's settings. If the periods per revolution are set, they also apply to the displayed
-    /// capture.
+    /// Changes the settings of the virtual encoder. With `with_periods`, its periods per revolution also apply to the
+    /// displayed capture.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
         if self.source.change(settings) && with_periods && own {
@@ -358,12 +357,12 @@ impl Signals {
         }
     }
 
-    /// Takes the received samples and starts a measurement if one is due.
+    /// Takes the received samples, and starts a measurement if one is due.
     pub(crate) fn pump(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
         let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };
-        // Checked first: samples from before the end are taken.
+        // This is checked first, since the last samples before the end must still be taken.
         let ended = live.feed.is_ended();
         for batch in live.feed.take() {
             if !live.held {
@@ -405,13 +404,14 @@ impl Signals {
         }
         let judge = measurement.judge;
         self.show_live(measurement, services);
-        // The settings were changed meanwhile.
+        // The settings have changed during the measurement.
         if judge != self.judge() {
             self.reevaluate(services);
         }
     }
 
-    /// Handles a failed measurement of the newest samples, so that it is not retried four times per second.
+    /// Handles a failed measurement of the newest samples. The source is stopped, because every further measurement
+    /// would fail too.
     pub(super) fn handle_measurement_failure(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {

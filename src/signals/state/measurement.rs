@@ -1,5 +1,4 @@
-//! A capture with all results computed from it once, in a task: analysis, diagnosis, spectra and the picture of the
-//! Lissajous figure.
+//! A capture with all its results: analysis, diagnosis, spectra and Lissajous images. A task computes them once.
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -32,7 +31,7 @@ pub enum TableSource {
 }
 
 impl Origin {
-    /// Returns the short name without folders.
+    /// Returns the name for display. A path is shortened to the file name.
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => TEXTS.text("signals.virtual"),
@@ -44,7 +43,7 @@ impl Origin {
 }
 
 impl TableSource {
-    /// Returns the file name without folders.
+    /// Returns the file name without its folders.
     pub fn name(&self) -> Text {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
@@ -68,24 +67,24 @@ pub struct Measurement {
 #[derive(Clone, Debug)]
 pub struct MeasurementResult {
     pub origin: Origin,
-    /// Number of table rows omitted because they contain no value.
+    /// Number of table rows that were left out because they contain no value.
     pub rows_left_out: u64,
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
     pub judge: DiagnosisSettings,
-    /// Mean levels of REFSIN and REFCOS in volts, or `None` if they were not recorded.
+    /// Mean voltages of REFSIN and REFCOS, or `None` if they were not recorded.
     pub levels_v: Option<(f64, f64)>,
-    /// Amplitudes over frequency, or the reason why they cannot be determined.
+    /// Spectra of both channels, or the reason why they cannot be determined.
     pub spectra: Result<Spectra, SpectrumError>,
-    /// DNL and INL, or the reason why they cannot be determined; `None` without a reference angle, an ellipse or the
-    /// number of periods.
+    /// DNL and INL, or the reason why they cannot be determined. The value is `None` without a reference angle, an
+    /// ellipse or the number of periods.
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
-    /// Lead of the absolute position over the analogue position, or the reason why it cannot be determined; `None`
-    /// without an absolute position.
+    /// Lead of the absolute position over the analogue position, or the reason why it cannot be determined. The value
+    /// is `None` without an absolute position.
     pub absolute_offset: Option<Result<AbsoluteOffset, OffsetError>>,
-    /// Image of all samples with sine plotted over cosine, or `None` if the values are too large for an image.
+    /// Lissajous image of all samples, or `None` if the values are too large.
     pub raw: Option<SampleDensity>,
-    /// Image of all samples after the ellipse correction, or `None` without an ellipse.
+    /// Lissajous image of all samples after the ellipse correction, or `None` without an ellipse.
     pub corrected: Option<SampleDensity>,
 }
 
@@ -96,16 +95,16 @@ pub struct DiagnosisSettings {
     pub periods: Option<u32>,
 }
 
-/// Cells per side of an image with many samples. With few samples, larger cells keep each sample visible.
+/// Cells per side of an image with many samples.
 const CELLS: usize = 240;
 const CELLS_OF_FEW: usize = 120;
-/// Number of samples up to which an image uses larger cells.
+/// Number of samples up to which the cells are larger, since single samples would be invisible in small ones.
 const FEW: usize = 2_000;
-/// Minimum voltage from the centre of the image to its edge, so that all rings fit.
+/// Minimum voltage from the centre of an image to its edge. It is large enough for all rings.
 const LEAST_HALF_V: f64 = 0.75;
 
 impl Measurement {
-    /// Measures a capture, which takes about 100 ms for a million samples.
+    /// Measures a capture. This takes about 100 ms for a million samples.
     pub fn of(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
         let samples = samples(&capture);
         let analysis = Analysis::of(samples);
@@ -151,7 +150,7 @@ impl Deref for Measurement {
 }
 
 impl MeasurementResult {
-    /// Returns the reason why the capture could not be analysed, or `None` if it was analysed.
+    /// Returns the reason why the capture could not be analysed, if any.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
@@ -176,13 +175,13 @@ fn compare_with_reference(
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// Returns an image of all samples centred on zero, corrected if a correction is given.
+/// Returns a Lissajous image centred on zero, after the correction if one is given.
 fn density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
     /// Number of samples corrected at a time.
     const PORTION: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;
     let most = sine_v.iter().chain(cosine_v).fold(0.0, |most: f64, volts| most.max(volts.abs()));
-    // In steps, so that a live picture does not change its scale continuously.
+    // The scale changes in steps. A live image would otherwise change its size continuously.
     let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(LEAST_HALF_V);
     let side = if sine_v.len() > FEW { CELLS } else { CELLS_OF_FEW };
     let mut density = SampleDensity::new(PlotSquare::centred(half_v), side)?;

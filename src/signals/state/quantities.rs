@@ -1,5 +1,5 @@
-//! Measured quantities of a signal, each with its unit, limit and verdict. Limits as in `signal::quality`; SICK 8010701
-//! for amplitudes and bandwidth.
+//! Measured quantities of a signal, each with its unit, limit and verdict. The limits are those of `analysis::quality`.
+//! See SICK 8010701 for amplitudes and bandwidth.
 
 use super::MeasurementResult;
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
@@ -10,18 +10,17 @@ use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 pub struct Quantity {
     pub word: &'static str,
     pub value: f64,
-    /// Number of significant decimals.
+    /// Number of decimals to display.
     pub decimals: usize,
     pub unit: Unit,
     pub also: Option<(f64, usize, Unit)>,
     pub bound: Option<QuantityLimit>,
-    /// Whether the value is within its limit, or `None` without a limit.
+    /// Result of the comparison with the limit, or `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// A number without a unit.
     One,
     Volts,
     Millivolts,
@@ -35,18 +34,18 @@ pub enum Unit {
     Milliseconds,
 }
 
-/// A limit in the unit of its quantity.
+/// Limit of a quantity, in the unit of the quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuantityLimit {
     Between(f64, f64),
-    /// Within plus or minus the given value.
+    /// Greatest permitted absolute value.
     Within(f64),
     AtMost(f64),
     AtLeast(f64),
 }
 
 impl Unit {
-    /// Returns the unit symbol, or an empty string if there is no unit.
+    /// Returns the symbol of the unit, or an empty string for a plain number.
     pub fn unit_symbol(self) -> &'static str {
         match self {
             Unit::One => "",
@@ -64,9 +63,9 @@ impl Unit {
 }
 
 impl QuantityLimit {
-    /// Returns whether a value is within the limit, including the limit itself.
+    /// Returns whether a value is within the limit. A value equal to the limit is within it.
     pub fn holds(self, value: f64) -> bool {
-        /// Tolerance that keeps rounding from moving a value on the limit beyond it.
+        /// Tolerance for rounding errors of a value that equals the limit.
         const SLACK: f64 = 1e-9;
         match self {
             QuantityLimit::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
@@ -87,7 +86,7 @@ impl Quantity {
         self
     }
 
-    /// Judges the quantity by a limit that may be exceeded with only a warning, because the position is still correct.
+    /// Judges the quantity by a limit. Exceeding it is only a warning, because the position is still correct.
     fn bounded(mut self, bound: QuantityLimit) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -100,8 +99,8 @@ impl Quantity {
     }
 }
 
-/// Returns the quantities judged by the limits of a family. The number of `periods` per revolution converts the
-/// frequency into a speed. Without an ellipse, the list is empty.
+/// Returns the quantities of a signal, judged by the limits of an encoder family. The speed is included if the number
+/// of `periods` per revolution is known. The list is empty if no ellipse was found.
 pub fn quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = ellipse_quantities(analysis, family);
@@ -162,8 +161,8 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     ]
 }
 
-/// Returns the position error within a period, before and after the correction. Mechanical arcseconds are included if
-/// the number of `periods` per revolution is known.
+/// Returns the position error within a period, before and after the correction. If the number of `periods` per
+/// revolution is known, each value is also given in mechanical arcseconds.
 pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
     /// Mechanical arcseconds per electrical degree at one period per revolution.
     const ARC_SECONDS: f64 = 3600.0;

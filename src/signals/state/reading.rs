@@ -1,4 +1,4 @@
-//! Reading of a capture in a task: progress, cancellation, and the built-in captures.
+//! Reading of a capture in a task, with progress and cancellation, and the example captures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use super::{DiagnosisSettings, Measurement, Origin, Read, Scope, Table, TableSou
 use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, TableHints};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
-/// A capture that ships with the program.
+/// Example capture that ships with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExampleCapture {
     Healthy,
-    /// A capture with offsets, unequal amplitudes and a phase error.
+    /// Capture with offsets, unequal amplitudes and a phase error.
     WithErrors,
 }
 
@@ -45,12 +45,12 @@ impl ExampleCapture {
 pub struct Reading {
     pub(super) number: u32,
     pub place: TableSource,
-    /// The previous table, which is restored if the reading is cancelled.
+    /// Previous table, which is restored if the reading is cancelled.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
 }
 
-/// Reading progress shared between the task and the window.
+/// Progress of a reading, shared between the task and the window.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     done: AtomicU64,
@@ -64,7 +64,7 @@ impl Reading {
         (Reading { number, place, settled, progress: progress.clone() }, progress)
     }
 
-    /// Returns the fraction read, 0 to 1, or `None` if the total is unknown.
+    /// Returns the fraction that has been read, 0 to 1, or `None` if the total is unknown.
     pub fn share(&self) -> Option<f64> {
         let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
@@ -85,7 +85,7 @@ impl Drop for Reading {
     }
 }
 
-/// Reads and measures a capture. The duration depends on the file size.
+/// Reads and measures a capture. This may take long for a large file.
 pub(super) fn read(place: TableSource, hints: TableHints, judge: DiagnosisSettings, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {

@@ -1,5 +1,5 @@
-//! The newest samples of a running source, without gaps and without copying: received batches, shared with the
-//! measurement.
+//! The newest samples of a running source, without gaps. The received batches are shared with the measurement and not
+//! copied.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -10,7 +10,6 @@ use crate::analysis::capture::Capture;
 use crate::analysis::wiring::Wires;
 use crate::worker::stream::Batch;
 
-/// Newest samples received without gaps.
 #[derive(Default)]
 pub(super) struct RecentSamples {
     chunks: VecDeque<Arc<ChannelSamples>>,
@@ -19,10 +18,10 @@ pub(super) struct RecentSamples {
     period_ns: i64,
 }
 
-/// Newest samples that span a given number of milliseconds.
+/// Newest samples of a given duration.
 pub(super) struct Window {
     chunks: Vec<Arc<ChannelSamples>>,
-    /// Number of samples in the first chunk that are too old.
+    /// Number of samples to skip in the first chunk, because they are too old.
     skip: usize,
     period_ns: i64,
 }
@@ -53,7 +52,7 @@ impl RecentSamples {
         self.newest
     }
 
-    /// Returns whether enough samples have arrived since the last measurement.
+    /// Returns whether the newest sample is at least a quarter of a second later than the last measured one.
     pub(super) fn is_due(&self, measured: Option<SampleTime>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,
@@ -62,7 +61,8 @@ impl RecentSamples {
         }
     }
 
-    /// Returns the newest samples of the given length, at most [`MOST`], or `None` while there are too few.
+    /// Returns the newest samples of the given duration, at most [`MOST`]. Returns `None` until enough samples have
+    /// arrived.
     pub(super) fn window(&self, milliseconds: u32) -> Option<Window> {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
@@ -78,13 +78,13 @@ impl RecentSamples {
 }
 
 impl Window {
-    /// Copies the samples into a capture whose times begin at zero.
+    /// Copies the samples to a capture whose times begin at zero.
     pub(super) fn capture(&self) -> Capture {
         let column = |of: fn(&ChannelSamples) -> &[f64]| -> Vec<f64> {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
         };
         let (sine_v, cosine_v) = (column(|own| &own.sine_v), column(|own| &own.cosine_v));
-        // Only the virtual encoder has single wires, and always.
+        // The virtual encoder always provides the single wires. An adapter never does.
         let wires = Wires {
             sin_v: column(|own| own.wire(|wires| &wires.sin_v)),
             refsin_v: column(|own| own.wire(|wires| &wires.refsin_v)),

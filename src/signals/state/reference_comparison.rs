@@ -1,6 +1,6 @@
-//! Comparison of a capture with a second measurement of the same shaft: DNL and INL against a reference encoder, and
-//! the lead of an absolute position. SICK 8010701, definitions of errors and forming the absolute position; sections 4
-//! and 6 of the project's sine/cosine reference.
+//! Comparison of a capture with a second measurement of the same shaft. A reference encoder gives DNL and INL, and an
+//! absolute position gives its lead. See SICK 8010701, definitions of errors and forming the absolute position, and
+//! sections 4 and 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
 use crate::analysis::arctan::{Phase, exact};
@@ -16,31 +16,32 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearities {
     pub raw: Part,
-    /// Values with offsets, gain ratio and phase error corrected.
+    /// Values after the correction of offsets, gain ratio and phase error.
     pub corrected: Part,
-    /// Number of reference revolutions covered by the samples. The INL is valid for a whole revolution if at least 1.
+    /// Number of revolutions covered by the samples. If it is at least 1, the INL is valid for a whole revolution.
     pub revolutions: f64,
 }
 
-/// DNL and INL of either the raw or the corrected signals.
+/// DNL and INL of the raw or the corrected signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// DNL as ± mechanical degrees.
+    /// DNL in mechanical degrees, as a ± value.
     pub differential_deg: f64,
-    /// INL as ± mechanical degrees.
+    /// INL in mechanical degrees, as a ± value.
     pub integral_deg: f64,
-    /// Reference angle and total deviation in mechanical degrees at the minimum and maximum of each section.
+    /// Curve of the total deviation: reference angle and deviation in mechanical degrees. Each section of the curve has
+    /// its minimum and its maximum.
     pub deviation: Vec<(f64, f64)>,
-    /// Reference angle and mean deviation over a period, in mechanical degrees.
+    /// Curve of the deviation averaged over a period: reference angle and deviation in mechanical degrees.
     pub mean: Vec<(f64, f64)>,
 }
 
 /// Offset of an absolute position relative to the analogue position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsoluteOffset {
-    /// Average lead of the absolute position in 1/32 period.
+    /// Mean lead of the absolute position in 1/32 of a period.
     pub offset_steps: f64,
-    /// Largest distance of a sample from the average lead, in 1/32 period.
+    /// Largest difference of a sample from the mean lead, in 1/32 of a period.
     pub farthest_steps: f64,
     pub samples: usize,
 }
@@ -60,10 +61,10 @@ impl OffsetError {
     }
 }
 
-/// Number of sections of a drawn curve.
+/// Number of sections into which a curve is divided for drawing.
 const STRETCHES: usize = 512;
 
-/// Returns DNL and INL of a capture, or `None` without a reference angle.
+/// Returns DNL and INL of a capture, or `None` if it has no reference angle.
 pub(super) fn nonlinearities(
     capture: &Capture,
     analysis: &Analysis,
@@ -95,9 +96,8 @@ impl Part {
     }
 }
 
-/// Returns DNL and INL as quantities with ± values.
+/// Returns DNL and INL for display, as ± values.
 pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
-    /// Arcseconds per degree.
     const ARC_SECONDS: f64 = 3600.0;
     let plus_minus = |word, degrees: f64| {
         Quantity::new(word, degrees, 5, Unit::Degrees).with_secondary_value(degrees * ARC_SECONDS, 2, Unit::ArcSeconds)
@@ -111,8 +111,8 @@ pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity>
     ]
 }
 
-/// Returns the lead of a capture's absolute position, or `None` without an absolute position. Samples excluded from the
-/// ellipse are ignored.
+/// Returns the lead of the absolute position in a capture, or `None` if it has no absolute position. Samples that the
+/// ellipse fit excludes are ignored.
 pub(super) fn absolute_offset(
     capture: &Capture,
     analysis: Option<&Analysis>,

@@ -1,5 +1,5 @@
-//! Signals over time as recorder lines: differences, the length of the amplitude vector, and the four wires if
-//! recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
+//! Signals over time as series of the recorder: sine, cosine, the length of their vector, and the four wires if
+//! recorded. See SICK 8010701 for SIN, REFSIN, COS and REFCOS.
 
 use super::feed::ChannelSamples;
 use crate::analysis::SampleTime;
@@ -13,7 +13,7 @@ use crate::worker::stream::Batch;
 #[derive(Debug)]
 pub struct Scope {
     pub recorder: Recorder,
-    /// Reason why nothing can be drawn, if any.
+    /// Reason why the capture cannot be drawn over time, if any.
     pub refused: Option<TimeAxisError>,
     group: GroupId,
 }
@@ -22,23 +22,24 @@ pub struct Scope {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
     GoBack,
-    /// The times exceed the range of nanoseconds, 292 years from zero. Milliseconds may have been read as seconds.
+    /// The times are beyond 292 years, the range of nanoseconds. The cause may be milliseconds that were read as
+    /// seconds.
     TooFar,
 }
 
-/// Time in seconds beyond which nanoseconds overflow.
+/// Greatest time in seconds that fits the range of nanoseconds.
 const FARTHEST_S: f64 = 9.2e9;
 
-/// Maximum number of samples kept from a running source: five seconds at 100 kHz.
+/// Maximum number of samples kept of a running source: five seconds at 100 kHz.
 const KEPT: usize = 500_000;
-/// Initially displayed time span in nanoseconds.
+/// Time span in nanoseconds that is displayed first.
 const SPAN: i64 = 10_000_000;
-/// Number of samples transferred at a time.
+/// Number of samples added to the recorder at a time.
 const PORTION: usize = 1 << 16;
 
-/// Names and headings of the differential columns, in volts.
+/// Text IDs and export headings of the differential signals, in volts.
 const DIFFERENCES: [(&str, &str); 3] = [("scope.sine", "sine"), ("scope.cosine", "cosine"), ("scope.vector", "vector")];
-/// Names and headings of the wire columns, in volts.
+/// Text IDs and export headings of the wires, in volts.
 const WIRES: [(&str, &str); 4] =
     [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
 
@@ -101,12 +102,12 @@ impl Scope {
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
 
-    /// Marks a gap between the previous samples and those that follow.
+    /// Separates the following samples from the previous ones by a gap.
     pub(super) fn interrupt(&mut self) {
         self.recorder.break_before_next(self.group);
     }
 
-    /// Adds received samples and returns how many of them could not be stored.
+    /// Adds received samples. Returns the number of samples that could not be stored.
     pub(super) fn add(&mut self, batch: &Batch<ChannelSamples>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();

@@ -1,4 +1,4 @@
-//! Spectra of both channels, reduced for drawing: the highest line of each frequency range, so that no peak is lost.
+//! Spectra of both channels, reduced for drawing. Each frequency range keeps its highest line, and so no peak is lost.
 
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
@@ -8,33 +8,33 @@ pub struct Spectra {
     pub sine: ChannelSpectrum,
     pub cosine: ChannelSpectrum,
     pub spacing_hz: f64,
-    /// Number of samples used. If there are more than one transform takes, only the last samples are used.
+    /// Number of samples in the transform. Of a long capture, only the last samples are used.
     pub samples: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSpectrum {
-    /// Frequency in hertz and peak amplitude in volts, in order of frequency.
+    /// Frequency in hertz and peak amplitude in volts, sorted by frequency.
     pub lines: Vec<(f64, f64)>,
-    /// Highest peaks, in descending order.
+    /// Highest peaks, sorted by descending amplitude.
     pub peaks: Vec<SpectralLine>,
 }
 
-/// Maximum number of samples per transform.
+/// Maximum number of samples in a transform.
 const MOST: usize = 1 << 20;
 const LINES: usize = 1_000;
 const PEAKS: usize = 6;
-/// Fraction of the highest peak below which a peak is not labelled.
+/// Smallest amplitude of a labelled peak, as a fraction of the highest peak.
 const LEAST_PEAK: f64 = 1e-4;
-/// Multiple of the median of all lines below which a peak is considered noise. In a million lines of noise, the highest
-/// line reaches 4.5.
+/// Smallest amplitude of a labelled peak, as a multiple of the median of all lines. Lower peaks may be noise: in a
+/// million lines of noise, the highest reaches 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
     /// Calculates the spectra of a capture.
     ///
     /// # Errors
-    /// Returns a [`SpectrumError`] if there are no times, the times are uneven, or there are too few samples.
+    /// Returns an error if the times are missing or uneven, or if there are too few samples.
     pub(super) fn of(samples: Samples<'_>) -> Result<Self, SpectrumError> {
         let Samples { time_s, sine_v, cosine_v } = samples;
         let count = sine_v.len().min(cosine_v.len()).min(time_s.len());
@@ -73,9 +73,9 @@ fn median(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Converts a peak amplitude in volts to its rms level in decibels relative to one volt.
+/// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
 pub fn decibel_volts(peak_v: f64) -> f64 {
-    /// Lowest level in dB that a double can distinguish from zero next to one volt.
+    /// Lowest level in decibels. A double cannot distinguish a lower one from zero next to one volt.
     const LEAST: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
 }

@@ -1,6 +1,6 @@
-//! Combination of absolute and analogue position, from entries or from an encoder at rest, and the mean lead of one
-//! over the other in many readings. SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine
-//! reference.
+//! Combination of the absolute and the analogue position, from entries or from an encoder at rest. Several readings
+//! give the mean lead of the absolute position. See SICK 8010701, forming the absolute position, and section 4 of the
+//! project's sine/cosine reference.
 
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
@@ -12,50 +12,50 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SynchroniseAction {
     Edit(Box<Form>),
-    /// Uses the offset measured from the readings.
+    /// Enters the offset measured from the readings.
     UseOffset,
-    /// Uses the offset found in a capture, in 1/32 period, excluding the half step.
+    /// Enters the offset found in a capture, in 1/32 of a period and without the half step.
     UseCaptured(f64),
-    /// Discards the readings from which the offset is measured.
+    /// Discards the readings that measure the offset.
     Forget,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Absolute position in steps, decimal or hexadecimal with `0x` or `h`.
+    /// Absolute position in steps, as typed. It is decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
     pub phase_input: PhaseInput,
-    /// Phase of the analogue position in periods or degrees.
+    /// Phase of the analogue position in periods or degrees, as typed.
     pub phase: String,
     pub sine_v: String,
     pub cosine_v: String,
     pub periods: String,
     pub turns: String,
-    /// Lead of the absolute position in 1/32 period when both positions are correct.
+    /// Lead of the absolute position that is expected, in 1/32 of a period, as typed.
     pub offset: String,
     /// Whether the absolute position refers to the middle of its step.
     pub half_step: bool,
-    /// Quadrature counter value in quarters of a period; empty without a counter.
+    /// Value of the quadrature counter in quarters of a period, as typed, or empty without a counter.
     pub quarters: String,
-    /// Timing uncertainty of a check without latch, in milliseconds.
+    /// Timing uncertainty in milliseconds of a check without a latch, as typed.
     pub jitter_ms: String,
 }
 
-/// Format in which the analogue position is entered.
+/// Form in which the analogue position is typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseInput {
     /// Fraction of a period, 0 to 1.
     Periods,
     /// Electrical degrees, 0 to 360.
     Degrees,
-    /// Sine and cosine in volts, with their mean removed.
+    /// Sine and cosine in volts, without their mean level.
     Volts,
 }
 
 #[derive(Debug, Default)]
 pub struct SynchroniseState {
     pub form: Form,
-    /// Reason why the last reading of an encoder failed, if it failed.
+    /// Reason why the last reading of an encoder failed, if any.
     pub problem: Option<Text>,
     readings: Vec<(u64, Phase)>,
     origin: Option<SineCosineOrigin>,
@@ -66,10 +66,10 @@ pub struct Synchronisation {
     pub absolute: u64,
     pub phase: Phase,
     pub period: u64,
-    /// Step of the absolute position within the period, 0 to 31.
+    /// Step of the absolute position within its period, 0 to 31.
     pub step: u64,
-    /// Lead of the absolute over the analogue position within the period, in 1/32 period. Offset and half step affect
-    /// only the result.
+    /// Lead of the absolute over the analogue position within the period, in 1/32 of a period. It does not take the
+    /// entered offset and half step into account.
     pub difference_steps: f64,
     /// Fine position, or the reason why it cannot be determined.
     pub result: Result<SynchronisedPosition, AmbiguousPeriodError>,
@@ -80,7 +80,7 @@ const LEAST_READINGS: usize = 2;
 const MOST_TURNS: u32 = 65_536;
 
 impl Default for Form {
-    /// Creates entries with the values from the second row of the reference's table.
+    /// Creates the entries of the example in the second row of the reference's table.
     fn default() -> Self {
         let typed = |text: &str| text.to_owned();
         Form {
@@ -100,10 +100,10 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Combines the absolute and analogue positions.
+    /// Combines the entered absolute and analogue positions.
     ///
     /// # Errors
-    /// Returns the reason for the first invalid entry.
+    /// Returns the reason why the first invalid entry was refused.
     pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
@@ -121,10 +121,10 @@ impl Form {
         })
     }
 
-    /// Returns the fine position from the quadrature counter, or `None` without a counter.
+    /// Returns the fine position in periods from the quadrature counter, or `None` without a counter.
     ///
     /// # Errors
-    /// Returns the reason for the first invalid entry.
+    /// Returns the reason why the first invalid entry was refused.
     pub fn quadrature(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
@@ -136,11 +136,11 @@ impl Form {
         Ok(Some(period as f64 + phase.periods()))
     }
 
-    /// Returns the speed in revolutions per minute below which a check without latch is reliable, because the shaft
-    /// moves less than half a period within the timing uncertainty.
+    /// Returns the highest speed in revolutions per minute for a reliable check without a latch. Up to this speed, the
+    /// shaft moves at most half a period within the timing uncertainty.
     ///
     /// # Errors
-    /// Returns the reason for the first invalid entry.
+    /// Returns the reason why the first invalid entry was refused.
     pub fn unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
@@ -175,7 +175,7 @@ impl Form {
 }
 
 impl Synchronisation {
-    /// Returns the fine position in shaft degrees within a revolution, if known.
+    /// Returns the fine position as a shaft angle in degrees, within a revolution.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
@@ -206,7 +206,7 @@ impl SynchroniseState {
             }
             SynchroniseAction::UseOffset => {
                 if let Some(offset) = self.measured() {
-                    // The entry accepts a decimal point in both languages.
+                    // The entry accepts a decimal point in every language.
                     self.form.offset = format!("{offset:.2}");
                 }
             }
@@ -215,7 +215,7 @@ impl SynchroniseState {
         }
     }
 
-    /// Takes the readings collected since the previous call from an encoder at rest.
+    /// Takes the next reading of an encoder at rest, if there is one.
     pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.take(reading, source.origin()),
@@ -228,7 +228,7 @@ impl SynchroniseState {
         self.problem = None;
         let range = origin.range;
         if self.origin.as_ref() != Some(&origin) {
-            // Those were another encoder's.
+            // The previous readings are from another encoder.
             self.readings.clear();
             self.origin = Some(origin);
         }
@@ -258,8 +258,7 @@ impl SynchroniseState {
         self.readings.len()
     }
 
-    /// Returns the offset measured from the readings in 1/32 period, in the form in which it is entered, including a
-    /// selected half step.
+    /// Returns the offset measured from the readings, in the form of the entry, or `None` if it cannot be measured.
     pub fn measured(&self) -> Option<f64> {
         if self.readings.len() < LEAST_READINGS {
             return None;
@@ -267,7 +266,7 @@ impl SynchroniseState {
         measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
     }
 
-    /// Returns an offset in the form in which it is entered, including a selected half step.
+    /// Returns an offset in the form of the entry, which includes the half step if selected.
     pub fn with_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }

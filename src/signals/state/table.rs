@@ -1,4 +1,4 @@
-//! The table of a capture: its first lines, its detected format, and corrections by the user.
+//! The table of a capture: its first lines, its detected format, and the corrections of the user.
 
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
@@ -6,12 +6,12 @@ use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_he
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     pub place: TableSource,
-    /// First lines of the table; long lines are truncated.
+    /// First lines of the table. Long lines are truncated.
     pub head: Vec<String>,
     pub hints: TableHints,
     /// Format of the table, or `None` if it cannot be detected.
     pub layout: Option<Layout>,
-    /// Columns of REFSIN and REFCOS while only one of them is selected.
+    /// Column numbers of REFSIN and REFCOS while only one of them is selected.
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
@@ -28,7 +28,7 @@ pub enum Column {
 }
 
 const LINES: usize = 6;
-/// Maximum number of characters shown per line.
+/// Maximum number of characters displayed per line.
 const WIDTH: usize = 160;
 /// Maximum number of columns offered for selection.
 const MOST_COLUMNS: usize = 64;
@@ -55,7 +55,7 @@ impl Table {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// Returns the column number used for the given quantity, counted from 1.
+    /// Returns the number of the column for a quantity, counted from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -84,8 +84,8 @@ impl Table {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Selects another column. Returns `false` if the table cannot be reread yet because the second reference column is
-    /// missing.
+    /// Selects a column. Returns `false` if the table cannot be read with it, for example while the other reference
+    /// column is missing.
     pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::PLAIN);
         match (column, number) {

@@ -1,11 +1,10 @@
-//! Tasks of the Signals tab. Each returns a result, even if it could not be started or was aborted, so nothing waits
-//! forever.
+//! Tasks of the Signals tab. Every task delivers a result, even if it could not be started or was aborted.
 
 use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{ActionMailbox, TaskRunner};
 
-/// Guard that sends a message if the task ends without returning.
+/// Guard that reports a failure if the task ends without a result.
 struct CompletionGuard {
     mailbox: ActionMailbox,
     failed: Option<Done>,
@@ -29,7 +28,7 @@ fn done_action(done: Done) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
-/// Runs a task on a thread and returns `failed` if the task produces no result.
+/// Runs a task on a thread. If the task ends without a result, `failed` is delivered instead.
 pub(super) fn run(tasks: &TaskRunner, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
     let promise = CompletionGuard { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
@@ -39,7 +38,7 @@ pub(super) fn run(tasks: &TaskRunner, name: &str, failed: Done, task: impl FnOnc
     });
 }
 
-/// Drops a large value on a separate thread, since releasing its memory takes a while.
+/// Drops a large value on another thread, since releasing its memory takes a while.
 pub(super) fn let_go(tasks: &TaskRunner, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);

@@ -1,4 +1,4 @@
-//! The adapter as a source: link, sample rate and errors.
+//! The settings of the adapter: link, sample rate, supply and errors.
 
 use egui::Ui;
 
@@ -11,12 +11,11 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Selectable sample rates in samples per second; the adapter uses the nearest rate it supports.
+/// Sample rates to choose from, in samples per second. The adapter uses the nearest rate that it supports.
 const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
-/// Width of the link entry in points.
 const LINK: f32 = 280.0;
 
-/// Draws the card. Returns `true` when the card can be closed.
+/// Draws the settings of the adapter. Returns `true` if they can be closed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);
@@ -66,7 +65,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     if started {
         ask(SourceAction::StartAdapter);
     } else if closed {
-        // The user has read the problem.
+        // Setting the link again clears the error, which the user has read.
         ask(SourceAction::SetLink(source.link().to_owned()));
     }
     started || closed

@@ -63,7 +63,6 @@ fn basis(basis: ErrorBasis) -> Text {
     }
 }
 
-/// Returns the position error of the compared capture, if any.
 fn other(compared: Option<&MeasurementResult>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
@@ -121,7 +120,7 @@ fn bars_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&
     });
 }
 
-/// Returns the raw and corrected traces of the capture and, if given, of the compared capture.
+/// Returns the raw and corrected traces of the capture, and of the compared capture if given.
 fn series(
     error: &PositionError,
     compared: Option<&PositionError>,

@@ -12,13 +12,12 @@ use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
 const ENTRY: f32 = 80.0;
-/// Number of table rows and of curve points.
 const ROWS: u32 = 10;
 const POINTS: u32 = 100;
 const HEIGHT: f32 = 220.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
-    // The drawing beside the entries shows their present result.
+    // The result is drawn beside the entries, and so it is calculated first.
     let circuit = form.circuit();
     split(
         ui,
@@ -99,7 +98,7 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
 
 fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
     card(ui, theme, TEXTS.text("input.table"), |ui| {
-        // Values are only read.
+        // The rows are low, because they contain no controls.
         ui.spacing_mut().interact_size.y = theme.space.groups;
         egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
             let grid = egui::Grid::new("input.table").spacing([theme.space.between, theme.space.inside]);

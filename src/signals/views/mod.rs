@@ -1,4 +1,4 @@
-//! The Signals tab: one page per aspect of sine and cosine. It requires no encoder and no session.
+//! The Signals tab: one page for each view of sine and cosine. It requires neither an encoder nor a session.
 
 mod adapter;
 mod error;
@@ -24,7 +24,7 @@ use crate::ui::{Theme, icons, page};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     Scope,
-    /// Lissajous figure, and measured values with their limits.
+    /// Lissajous figure and measured values with their limits.
     #[default]
     Quality,
     Error,
@@ -42,7 +42,7 @@ impl TabPage for Page {
     ];
 }
 
-/// Text of an entry that has not taken effect yet, with the reason if it is invalid.
+/// Typed text that has not taken effect yet, with the reason if it is invalid.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Default)]
@@ -128,7 +128,7 @@ fn page_ui(
     });
 }
 
-/// Returns a message in the window's language, from this folder's catalogue or the common one.
+/// Returns a message in the window's language, from the Signals catalogue or the common one.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

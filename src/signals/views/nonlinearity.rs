@@ -1,4 +1,4 @@
-//! DNL and INL over the revolution, compared with a reference encoder: curves and ± values.
+//! DNL and INL over a revolution, measured against a reference encoder, as curves and ± values.
 
 use egui::Ui;
 
@@ -10,7 +10,6 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
-/// Draws the card, including the values of a compared capture, if given.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,

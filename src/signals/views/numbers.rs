@@ -7,13 +7,15 @@ use crate::signals::state::{Quantity, QuantityLimit, Unit};
 use crate::signals::views::say;
 use crate::ui::{Theme, controls};
 
-/// Minimum width for showing a value in its second unit; in narrower windows, the second unit is in the tooltip.
+/// Minimum width in points for showing a value in its second unit. In a narrower window, the second unit is in the
+/// tooltip.
 const WIDE: f32 = 390.0;
-/// Minimum width for a column with limits; in narrower windows, limits are tooltips of the verdict icons.
+/// Minimum width in points for the column of limits. In a narrower window, each limit is in the tooltip of its verdict
+/// icon.
 const LEAST: f32 = 350.0;
 const LIMITS: f32 = 110.0;
 
-/// Draws the rows. If a second list is given, its values and the differences are drawn as well.
+/// Draws the rows. If a second list is given, its values and the differences are also drawn.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -87,7 +89,7 @@ pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) 
     append_unit(theme.number(rounded(value, decimals), decimals), unit)
 }
 
-/// Rounds to the displayed decimals; a value displayed as zero has no sign.
+/// Returns zero for a value that is displayed as zero, which avoids a minus sign.
 fn rounded(value: f64, decimals: usize) -> f64 {
     let scale = 10_f64.powi(decimals as i32);
     if (value * scale).abs() < 0.5 { 0.0 } else { value }

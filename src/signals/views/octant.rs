@@ -1,5 +1,5 @@
-//! The angle calculated with the octant table of a drive and exactly: the errors of tables of several sizes, and one
-//! pair of voltages by both methods.
+//! Comparison of the octant table of a drive with the exact angle: the errors of several table sizes, and both results
+//! for one pair of voltages.
 
 use egui::Ui;
 

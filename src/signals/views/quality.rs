@@ -51,7 +51,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
     let analysed = measurement.analysis.as_ref().ok();
     let corrected = view.corrected && analysed.is_some();
     let aside = |ui: &mut Ui| {
-        // From right to left.
+        // The buttons are laid out from right to left.
         for (own, id) in [(true, "quality.corrected"), (false, "quality.raw")] {
             let word = say(theme, id);
             let button = egui::Button::selectable(corrected == own, word.as_str()).frame_when_inactive(true);
@@ -96,7 +96,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
     });
 }
 
-/// The samples of a capture as a texture, cached until the samples or the colour change.
+/// Lissajous image as a texture, which is kept until the samples or the colour change.
 #[derive(Default)]
 pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
@@ -138,7 +138,7 @@ fn quality_figure(
     LissajousFigure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
-/// Draws the reason why a capture cannot be measured, along with its findings.
+/// Draws the reason why a capture could not be analysed, and its findings.
 pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
@@ -185,7 +185,7 @@ fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measu
     });
 }
 
-/// Draws the changes since another capture. The note that nothing has become worse appears only if everything could be
+/// Draws the changes since the compared capture. The note that nothing is worse appears only if everything could be
 /// compared.
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChanges) {
     let under = |ui: &mut Ui, id| {
@@ -235,7 +235,7 @@ fn values_ui(
     });
 }
 
-/// Draws the entry for the signal periods per revolution, which can be typed or selected.
+/// Draws the entry for the signal periods per revolution.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,4 +1,4 @@
-//! The signals over time and their spectrum.
+//! The signals over time, and their spectrum.
 
 use egui::{Ui, vec2};
 
@@ -13,7 +13,7 @@ use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, plot};
 
-/// Minimum height of the trace and fixed height of the spectrum, in points.
+/// Minimum height of the trace in points.
 const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
@@ -68,7 +68,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
     let volts = view.volts;
     let mut wanted = volts;
     let aside = |ui: &mut Ui| {
-        // From right to left.
+        // The buttons are laid out from right to left.
         for (own, id) in [(true, "spectrum.volts"), (false, "spectrum.decibels")] {
             let word = say(theme, id);
             let button = egui::Button::selectable(volts == own, word.as_str()).frame_when_inactive(true);

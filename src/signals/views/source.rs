@@ -1,4 +1,4 @@
-//! The source of the samples, shown above every page that uses them: reading, progress and errors.
+//! The source of the samples, with its progress and errors. It is shown at the top of every page that uses the samples.
 
 use egui::{RichText, Ui};
 
@@ -20,7 +20,7 @@ pub(super) struct SourceUiState {
     adapter: bool,
 }
 
-/// Draws the source controls. Returns `true` if a capture can be shown below them.
+/// Draws the source of the samples. Returns `true` if there is a capture to show below it.
 pub(super) fn source_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -53,7 +53,8 @@ pub(super) fn source_ui(
     shown
 }
 
-/// Draws the virtual encoder's settings if they are open. Each page draws them next to what they affect.
+/// Draws the settings of the virtual encoder while they are open. Each page places them next to the result that they
+/// affect.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -67,7 +68,7 @@ pub(super) fn settings_ui(
     }
 }
 
-/// Returns the source that is or will be displayed, or `None` if a table is displayed.
+/// Returns the kind of the running or displayed source, or `None` for a table.
 fn live(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());
@@ -95,7 +96,7 @@ fn reading_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<A
     ui.add_space(theme.space.between);
 }
 
-/// Draws the reason why a capture could not be read. Other pages show the reason as well.
+/// Draws the reason why a capture could not be read.
 pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
@@ -111,7 +112,6 @@ pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Draws the displayed capture and its actions on one line.
 fn present_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
@@ -153,7 +153,7 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         (true, SourceKind::Adapter, Some(streaming)) => {
             Some(Origin::Adapter { name: streaming.hello.name.clone(), is_virtual: source.is_virtual() })
         }
-        // The identity is not known yet.
+        // The identity of the adapter is not known yet.
         (true, SourceKind::Adapter, None) => None,
         (false, ..) => shown.cloned(),
     };
@@ -229,7 +229,7 @@ fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     }
 }
 
-/// Draws the button that keeps the capture for comparison, and the kept capture.
+/// Draws the button that keeps the displayed capture for comparison.
 fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = say(theme, "compare.keep");
     let same =
@@ -283,7 +283,7 @@ fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions:
     name(menu.response, true, &word);
 }
 
-/// Draws an empty state with buttons that load a capture or start a source.
+/// Draws the empty page, with buttons to load a capture or start a source.
 fn nothing_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;

@@ -1,4 +1,4 @@
-//! Combination of absolute and analogue position, from entries or from the encoder.
+//! The page that combines the absolute and the analogue position, from entries or from an encoder.
 
 use egui::Ui;
 
@@ -14,9 +14,8 @@ use crate::ui::widgets::{StepRing, series, step_ring};
 use crate::ui::{Theme, controls, icons};
 
 const ENTRY: f32 = 112.0;
-/// Side length of the ring in points.
 const RING: f32 = 200.0;
-/// Fraction of the width taken by the left column, and minimum width for two columns.
+/// Fraction of the width for the left column, and minimum width in points for two columns.
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 pub(super) fn page_ui(
@@ -28,9 +27,9 @@ pub(super) fn page_ui(
 ) {
     let state = signals.synchronise();
     let mut form = state.form.clone();
-    // The drawing beside the entries shows their present result.
+    // The result is drawn beside the entries, and so it is calculated first.
     let synchronisation = form.synchronisation();
-    // Two rows, so that also in one column the result is next to its inputs.
+    // The page has two rows. In a single column, each result then follows its inputs.
     split(
         ui,
         theme,
@@ -192,7 +191,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
 fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
     row(ui, theme, &say(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
-    // In their colours in the ring.
+    // The numbers have the colours of the ring.
     row(
         ui,
         theme,

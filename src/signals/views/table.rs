@@ -1,4 +1,4 @@
-//! Detected format of a capture's table, next to its first lines; each property can be corrected.
+//! The first lines of a capture's table and the detected format, which the user can correct.
 
 use egui::{ScrollArea, Ui};
 
@@ -70,7 +70,6 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     }
 }
 
-/// Draws the first lines of the file unchanged.
 fn lines_ui(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
     theme.sunken_frame().show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! Settings of the virtual encoder: its motion and its faults.
+//! The settings of the virtual encoder: its motion and its faults.
 
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
@@ -10,12 +10,12 @@ use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, show_error_below, two_columns};
 use crate::ui::{Theme, icons};
 
-/// Slider of a setting, with its end values (values beyond them can be typed) and number of decimals.
+/// Slider for a setting, with its range and number of decimals. Values beyond the range can be typed.
 struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
     decimals: usize,
-    /// Whether the slider scale is logarithmic, giving small values as much room as large ones.
+    /// Whether the slider has a logarithmic scale, which gives small values more room.
     logarithmic: bool,
 }
 
@@ -48,7 +48,7 @@ const DISTURBANCES: [SliderSpec; 8] = [
     slider_spec(Quantity::Modulation, 0.0, 20.0, 1),
     wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
-/// Selectable window lengths in milliseconds.
+/// Durations of the measured samples to choose from, in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {
@@ -58,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "virtual.reset")).clicked();
     };
     card_with(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
-        // There are many, and their effect must be visible beside them.
+        // The rows are low, since all of them must fit beside the curves that they affect.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();
@@ -87,7 +87,6 @@ fn sliders_ui(
     list: &[SliderSpec],
     ask: &mut impl FnMut(SourceAction),
 ) {
-    /// Width of the number field beside a slider.
     const NUMBER: f32 = 96.0;
     let label = label_width(ui);
     let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);

@@ -78,7 +78,7 @@ fn change_code(number: &str, new: &str) -> Result<Change> {
                 .and_then(AccessCodeNumber::new)
                 .ok_or_else(|| out_of_range("access code", number, 0, 3))
         })?;
-    // The message does not repeat the text, which may be a code.
+    // The message does not repeat the text, because the text may be an access code.
     let new =
         parse_code(new).ok_or_else(|| Failure::Usage("the new code must be two hexadecimal digits".to_owned()))?;
     Ok(Change::ChangeCode { number, new })
@@ -96,8 +96,8 @@ fn size(text: &str) -> Result<FieldSize> {
     })
 }
 
-/// Parses a field status such as `32 code=2 ce=1 we=1`, or a status byte such as `0xE9`. By default, a field is
-/// writable and requires its access code.
+/// Parses a field status, such as `32 code=2 ce=1 we=1`, or a status byte, such as `0xE9`. By default, a field is
+/// writable, and its access code is required.
 fn parse_field_status(words: &[&str]) -> Result<DataFieldStatus> {
     let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");
@@ -164,7 +164,7 @@ fn check_device(common: &CommonArgs, output: &Output, restart: bool) -> Result {
         CheckFinding::Line(quality) => Some(quality),
         _ => None,
     });
-    // A line without repetitions is not a step: scripts have its figures in `line_quality`.
+    // A good line is not listed as a step. Scripts find its figures in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
     check::show_check(output, &words::check(&shown), quality)

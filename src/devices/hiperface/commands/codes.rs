@@ -1,5 +1,5 @@
-//! Access codes on the command line: `--code` of every command and of the window, preceded by the environment. Messages
-//! never repeat what may be a code.
+//! Access codes from the environment and from the option `--code`, which every command and the window accept. Messages
+//! never repeat text that may be an access code.
 
 use std::str::FromStr;
 
@@ -14,11 +14,10 @@ use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
 pub(super) struct CodeOption {
     /// Access code N, if it is not 55h; repeatable. Also read from ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
-    // Taken as text: an error message about a wrong argument repeats it, and this may be a code.
+    // Parsed later: clap repeats an invalid argument in its error message, and the argument may be an access code.
     pub(super) codes: Vec<String>,
 }
 
-/// Access code with its number.
 #[derive(Clone, Copy)]
 struct Code {
     number: AccessCodeNumber,
@@ -28,7 +27,7 @@ struct Code {
 impl FromStr for Code {
     type Err = String;
 
-    /// Parses an access code with its number. The error message never repeats the input, since it may be a code.
+    /// Parses an access code with its number. The error message does not repeat the text, which may be a code.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;
@@ -37,7 +36,7 @@ impl FromStr for Code {
     }
 }
 
-/// Parses an access code: one or two hex digits, with or without `0x` or a final `h`.
+/// Parses an access code of one or two hexadecimal digits. A prefix `0x` or a suffix `h` is allowed.
 pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
     match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
         [byte] => Some(AccessCode::new(*byte)),

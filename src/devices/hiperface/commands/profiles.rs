@@ -1,4 +1,4 @@
-//! Profile commands for HIPERFACE encoders: `save`, `restore`, and reading for a comparison.
+//! Profile commands for HIPERFACE encoders: `save`, `restore` and the reading for a comparison.
 
 use std::collections::BTreeMap;
 
@@ -97,7 +97,7 @@ fn report_locked_fields(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// Returns the decisions given on the command line about data fields whose bytes have no known meaning.
+/// Returns the command-line decisions on data fields whose bytes have no known meaning.
 fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
@@ -113,8 +113,8 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports data fields with bytes of unknown meaning, and fails if there is no decision for one of them. A dry run
-/// leaves such a field unchanged.
+/// Reports the data fields with bytes of unknown meaning. Fails if the command line gives no decision for one of them.
+/// A dry run leaves such a field unchanged instead.
 fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownField| words::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;

@@ -1,5 +1,5 @@
-//! Running jobs on a HIPERFACE encoder, with the access codes of the command line and the status codes that the encoder
-//! announces.
+//! Runs jobs on a HIPERFACE encoder with the access codes from the command line, and prints the status codes that the
+//! encoder announces.
 
 use super::HiperfaceCommands;
 use crate::app::Given;
@@ -17,7 +17,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl Runs for Hiperface {
-    /// Character format of the line, shown by `identify`.
+    /// Character format of the serial line. `identify` prints it.
     type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
     const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;
@@ -33,7 +33,7 @@ impl Runs for Hiperface {
         session.station().format
     }
 
-    /// Prints every status code that the encoder announced, one per line.
+    /// Prints each announced status code on its own line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal_text()));

@@ -1,5 +1,4 @@
-//! Positions as CSV, with commas as separators and decimal points in any language, so that scripts can read them.
-//! Prints nothing itself.
+//! Positions as CSV for scripts. The separators are commas and the decimal sign is a point in every language.
 
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
@@ -10,7 +9,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Returns the table for an encoder, or that of a rotary encoder if the geometry is unknown.
+    /// Returns the table for an encoder. If the geometry is unknown, the table is that of a rotary encoder.
     pub(super) fn of(geometry: Option<Geometry>) -> Self {
         Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
@@ -22,8 +21,8 @@ impl Table {
         }
     }
 
-    /// Returns a row in which unknown values are empty and status codes are two hexadecimal digits each, separated by
-    /// spaces.
+    /// Returns a row of the table. Unknown values are empty. Each status code has two hexadecimal digits, and spaces
+    /// separate the codes.
     pub(super) fn row(&self, reading: &PositionReading) -> String {
         let place = reading.position;
         let number = |number: Option<u64>| number.map_or_else(String::new, |number| number.to_string());

@@ -1,4 +1,5 @@
-//! `write`, and the parts shared by all writing commands: plan output, consent and execution.
+//! The command `write`, and the parts that all writing commands share: printing the plan, asking for consent and
+//! executing it.
 
 use serde_json::{Value as Json, json};
 
@@ -77,7 +78,7 @@ fn parse_change(item: Item, value: &str) -> Result<Change> {
     }
 }
 
-/// Parses a settings byte, which must not contain reserved values.
+/// Parses a settings byte. Reserved values are refused.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
@@ -102,7 +103,7 @@ fn number(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Asks for consent if required, and executes the plan. An empty plan sends nothing.
+/// Executes the plan, after asking for consent if required. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -119,7 +120,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Describes the plan, with old and new value of each operation, and the cost.
+/// Describes the plan: its cost, and the old and new value of each operation.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = change_lines(plan);
@@ -163,8 +164,8 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
-/// Returns the old and new values of an operation: status and settings as bytes accepted by `status:N` and `settings`,
-/// others as text.
+/// Returns the old and new value of an operation as text. A field status and line settings are bytes, in the form that
+/// `status:N` and `settings` accept.
 fn change_texts(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {

@@ -15,8 +15,8 @@ use crate::devices::hiperface::protocol::{
     AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
 
-/// Number of persistent writes at which an encoder has reached its limit. According to the manual, the counter, which
-/// is in the same EEPROM, can be incremented about a million times.
+/// Number of persistent writes that an encoder endures. According to the manual, its counter, which is in the same
+/// EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
 #[derive(Debug)]
@@ -24,17 +24,17 @@ pub enum HiperfaceJob {
     /// Reads everything that is displayed after connecting.
     Survey,
     Identify,
-    /// The whole error queue.
+    /// Reads the complete status queue.
     Status,
-    /// Reads the position once and interprets it with the geometry, if already known.
+    /// Reads the position once. If the geometry is known, it is used to interpret the position.
     Position(Option<Geometry>),
     /// Reads the position of the shaft at rest, and sine and cosine if the encoder provides them.
     Rest,
     Read(Item),
     Save(SaveOptions),
-    /// Executes the start-up sequence, after a restart if requested, and gives a verdict for each item.
+    /// Executes the start-up sequence and gives a verdict for each item.
     Check {
-        /// Send 53h first.
+        /// Whether to restart the encoder with 53h first.
         restart: bool,
     },
     /// Sends command 53h and waits for the restart.
@@ -58,7 +58,7 @@ pub enum Change {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
-    /// Writes bytes of data fields; a range's count must equal its number of bytes.
+    /// Writes bytes of data fields. The count of a range must equal its number of bytes.
     Store(Vec<(FieldRange, Vec<u8>)>),
     CreateField {
         number: u8,
@@ -85,16 +85,16 @@ pub enum Change {
     },
     SetPosition {
         wanted: u32,
-        /// Whether to set exactly this value, even if that breaks the phase relation to the sine, rather than the
-        /// nearest value that preserves it.
+        /// Whether to set exactly this value, even if it breaks the phase relation to the sine signal. Otherwise, the
+        /// nearest value that preserves the phase is set.
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,
-        /// Whether the user states that the encoder is a kit, in case its type does not show this.
+        /// Whether the user states that the encoder is a kit. This is needed if its type does not show it.
         kit: bool,
     },
-    /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, wherever
-    /// the shaft is now.
+    /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, even if
+    /// the shaft has been turned since.
     ShiftPosition {
         steps: i64,
     },
@@ -108,9 +108,9 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes; bytes not yet written remain edits.
+    /// Edited bytes. Those not yet written remain edits.
     Bytes,
-    /// A single operation, which is either done or not done.
+    /// A single operation, which is done either completely or not at all.
     Single,
 }
 
@@ -133,23 +133,23 @@ pub struct Prepared {
     pub cycles_seen: Option<u64>,
     /// Number of items that already have the right value.
     pub unchanged: u64,
-    /// Items left unchanged because the profile or the encoder lacks them or they cannot be read.
+    /// Items left unchanged because they cannot be read, or because the profile or the encoder lacks them.
     pub missing: Vec<FieldRange>,
-    /// Differing values of the mounting that are left unchanged.
+    /// Mounting values that differ but are left unchanged.
     pub mounting_left: Vec<FieldRange>,
-    /// Written values that belong to the mounting of another device and must be set up again.
+    /// Mounting values of another device that are written and must be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields that the undone write created and that are left in place because they have changed since or are not
-    /// the last fields.
+    /// Data fields that the undone write created and that remain in place. They have changed since, or are not the last
+    /// fields.
     pub created_left: Vec<u8>,
     pub other_type: Option<OtherType>,
-    /// Requested position, if the plan sets a different position to preserve the phase.
+    /// Requested position, if the plan sets another one to preserve the phase.
     pub wanted_position: Option<u32>,
 }
 
-/// Types of a profile and of the encoder to which it is written, if they differ.
+/// Type of a profile, and the different type of the encoder to which it is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
     pub profile: u8,
@@ -157,7 +157,7 @@ pub struct OtherType {
 }
 
 impl Prepared {
-    /// Returns the values that must be set up again afterwards. Any mounting value of another encoder, and any byte of
+    /// Returns the values that must be set up again after the write. Mounting values of another encoder, and bytes of
     /// unknown meaning, may be an offset between encoder and motor.
     pub fn redo(&self) -> Vec<RequiredSetup> {
         let values = self.mounting_written.iter().copied().map(RequiredSetup::Value);
@@ -193,8 +193,8 @@ pub struct SavedProfile {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost, since 50h removes them from the encoder and its reply was lost
-    /// or damaged.
+    /// Number of status codes that may have been lost. 50h removes a code from the encoder even if its reply is lost or
+    /// damaged.
     CodesUnheard(u32),
     /// An encoder that replied during a search.
     Found(FoundEncoder),
@@ -246,7 +246,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder is present but currently has no position to report.
+    /// Returns whether the encoder refused to report a position for a temporary reason.
     pub fn means_no_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.means_no_position())
     }

@@ -60,8 +60,8 @@ impl Hiperface {
         self.identified = Some(device_key(identity, context.is_virtual));
     }
 
-    /// Stores status codes before they are displayed. An unknown encoder is identified first, since the codes are
-    /// stored in its logbook.
+    /// Stores status codes before they are displayed. Codes belong to the logbook of an encoder, so an unknown encoder
+    /// is identified first.
     fn store_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
@@ -76,7 +76,7 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// Stores the status codes of samples, in which a persistent code occurs repeatedly.
+    /// Stores the status codes of samples. A persistent code occurs in many samples but is not stored each time.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_read_codes();
         if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
@@ -86,8 +86,8 @@ impl Hiperface {
 }
 
 impl Session<Hiperface> {
-    /// Creates a session on an open connection. `is_virtual` denotes a virtual encoder in this process, whose writes
-    /// are counted separately.
+    /// Creates a session on an open connection. If `is_virtual` is set, the encoder is simulated in this process, and
+    /// its writes are counted separately.
     pub fn new(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -138,7 +138,7 @@ impl Device for Hiperface {
         let sample = read_sample(&mut self.master(context), geometry);
         self.record_sampled_codes(context);
         let sample = sample?;
-        // It contains the codes collected.
+        // The result already contains these codes.
         self.station.codes_met.truncate(met_before);
         Ok(sample)
     }
@@ -148,7 +148,7 @@ impl Device for Hiperface {
         let reading = read_watched_value(&mut self.master(context), *what);
         self.record_sampled_codes(context);
         let reading = reading?;
-        // It contains the codes collected.
+        // The result already contains these codes.
         self.station.codes_met.truncate(met_before);
         let refused = reading.is_refused();
         let sample = Sample::Watched(reading);
@@ -164,13 +164,12 @@ impl Device for Hiperface {
         self.wire.check()
     }
 
-    /// Reports new line errors.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
         if let Some(unheard) = self.unseen_codes_remark() {
             return Some(unheard);
         }
         let line = &self.station.line;
-        // A failure reports it anyway.
+        // Errors on a failing line are reported with the failure.
         if line.has_errors() || line.quality.troubles() == self.told_troubles {
             return None;
         }

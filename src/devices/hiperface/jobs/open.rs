@@ -18,8 +18,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Returns whether a drive may be a second master on the line. A drive reads the encoder at power-up and then uses only
-/// sine and cosine, so a silent line does not rule out a drive.
+/// Returns whether a drive may be a second master on the line. A drive reads the encoder only at power-up and then uses
+/// sine and cosine, so there may be one even if the line is silent.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, LinkScheme::Serial | LinkScheme::Tcp)
 }
@@ -27,7 +27,7 @@ pub fn may_have_other_master(url: &LinkUrl) -> bool {
 /// Opens a link to a HIPERFACE encoder.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent in that case.
+/// See [`OpenError`]. Nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
     let (station, config) = read(url)?;
     let types = encoder_types(&store)?;
@@ -40,7 +40,8 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == LinkScheme::Sim))
 }
 
-/// Parses the line settings and the configuration of the virtual encoder, which only matters for a link to one.
+/// Parses the line settings and the configuration of the virtual encoder. The latter is used only by a link to a
+/// virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip) {
         return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));

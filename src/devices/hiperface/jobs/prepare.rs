@@ -1,4 +1,4 @@
-//! Preparation of a plan from a change. Only reads.
+//! Preparation of a plan from a change. Nothing is written.
 
 use std::collections::BTreeSet;
 
@@ -88,7 +88,7 @@ pub(super) fn prepare(
         Change::SetAddress(to) => {
             let memory = read_memory(&mut master)?;
             let from = master.station().address;
-            // Broadcast: one encoder is connected, which may have this address itself.
+            // With broadcast, a single encoder is connected, which may itself have this address.
             if from != to.byte() && from != BROADCAST {
                 ensure_address_free(&mut master, to)?;
             }
@@ -124,7 +124,7 @@ fn restore(
 ) -> Result<HiperfacePlan, JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
-    // Known before the fields are read.
+    // This check comes first because it does not need the fields.
     check_allowed(profile, &serial_number, encoder_type, &options)?;
     let memory = read_memory(master)?;
     let progress = &mut |done, total| tell(Progress { done, total, step: JobStep::Field(done) });

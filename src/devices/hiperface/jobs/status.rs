@@ -1,4 +1,4 @@
-//! Logging of status codes before they are displayed: 50h removes them from the encoder, so a code that was read and
+//! Logging of status codes before they are displayed. 50h removes a code from the encoder, so a code that was read but
 //! not stored would be lost.
 
 use std::time::Duration;
@@ -9,7 +9,7 @@ use crate::devices::hiperface::protocol::{KIND, StatusCode};
 use crate::store::{DeviceKey, Logbook, Store};
 use crate::units::Moment;
 
-/// Time within which a status code that live values report repeatedly is stored only once.
+/// Time within which a code that live values report repeatedly is stored only once.
 const AGAIN: Duration = Duration::from_secs(60);
 
 /// Status codes recorded recently while polling the position.
@@ -17,7 +17,7 @@ const AGAIN: Duration = Duration::from_secs(60);
 pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
 impl RecentStatusCodes {
-    /// Returns whether any of these codes was not recorded within the last minute, and marks all of them as recorded.
+    /// Returns whether any of these codes was not recorded in the last minute. All of them then count as recorded.
     pub(super) fn record_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
         let mut is_new = false;
@@ -31,7 +31,7 @@ impl RecentStatusCodes {
     }
 }
 
-/// Records status codes in the log and the logbook; the log entry is made even if the logbook cannot be used.
+/// Records status codes in the log and the logbook. The log entry is made even if the logbook cannot be used.
 pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);

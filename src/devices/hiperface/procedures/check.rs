@@ -17,15 +17,15 @@ pub enum CheckStep {
     Restart,
     /// Status codes, read with 50h until the queue is empty.
     Status,
-    /// 52h and 56h.
+    /// Type label (52h) and serial number (56h).
     Identity,
-    /// 42h.
+    /// Position (42h).
     Position,
     /// Analogue channels (44h) for which the extended label contains a limit.
     Limits,
     /// Status and content (4Ch and 4Ah) of every data field.
     DataFields,
-    /// Repetitions and damaged or late replies, during this check and earlier in the session.
+    /// Repeated requests and damaged or late replies, during this check and earlier in the session.
     Line,
 }
 
@@ -46,7 +46,7 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// Data field whose access code, with the number given in its status, is unknown.
+    /// Data field with an unknown access code. The status contains the number of the code.
     FieldLocked {
         number: u8,
         status: DataFieldStatus,
@@ -63,7 +63,7 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check; if `restart` is set, it begins with 53h to match the state after power-on. The check ends early only
+/// Runs the check. If `restart` is set, the check begins with 53h to match the state after power-on. It ends early only
 /// if the encoder no longer replies.
 ///
 /// # Errors
@@ -114,7 +114,8 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// Checks the limits on the extended label whose channels reply.
+/// Compares the analogue channels with their limits on the extended label. A channel that the encoder refuses is
+/// omitted.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
@@ -162,7 +163,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Checks the line. If a request had to be repeated, the line works but its wiring needs attention.
+/// Returns the verdict on the line. A line that needed repetitions works, but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.has_errors() { Verdict::Attention } else { Verdict::Good };

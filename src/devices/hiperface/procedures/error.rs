@@ -1,4 +1,4 @@
-//! Errors of an encoder, with the facts that a message requires.
+//! Errors of a job with an encoder, with the facts that a message needs.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{AccessCodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -15,7 +15,7 @@ pub enum Error {
         address: u8,
         command: Command,
         tries: u32,
-        /// Whether the sent bytes were received as an echo of the adapter, which shows that the line itself works.
+        /// Whether the adapter returned the sent bytes as an echo. An echo shows that the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
@@ -40,12 +40,11 @@ pub enum Error {
         /// Consecutive position readings.
         readings: Vec<u32>,
     },
-    /// Command 63h is only for encoders without a bearing.
+    /// Command 63h is only for encoders without a bearing, and this encoder has one.
     #[error("{encoder} is not a kit encoder")]
     NotAKit { encoder: String },
     #[error("address {address:02X}h belongs to another encoder")]
     AddressTaken { address: u8 },
-    /// The requested position exceeds the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange { wanted: u64, last: u64 },
     #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
@@ -53,26 +52,21 @@ pub enum Error {
         field: u8,
         address: usize,
         count: usize,
-        /// Number of existing bytes.
+        /// Size of the field in bytes.
         size: usize,
     },
-    /// A field cannot be read because its access code is unknown.
     #[error("the access code {number} is not known")]
     CodeUnknown { field: u8, number: AccessCodeNumber },
     #[error("{item} has changed since the plan was made")]
     Changed { item: PlanItem },
-    /// A value read back differs from the written value.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: PlanItem, expected: String, got: ReadBackValue },
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
-    /// The position already had the written value, so reading it back proves nothing.
     #[error("the position already had this value, so reading it back does not show whether it was written")]
     PositionUnchanged,
-    /// No data field requires this access code, so it cannot be tested.
     #[error("no data field requires access code {number}, so it cannot be tested")]
     CodeGuardsNothing { number: AccessCodeNumber },
-    /// The settings byte contains a character format that the specification reserves.
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
         /// Settings as read from the encoder, or as requested.
@@ -90,7 +84,7 @@ impl Error {
 pub enum ReadBackValue {
     #[error("{0}")]
     Value(String),
-    /// A data field does not behave according to the written status.
+    /// The data field behaves differently from the status that was written.
     #[error("another status")]
     AnotherStatus,
 }
@@ -99,11 +93,10 @@ pub enum ReadBackValue {
 pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// The reply to a request with an access code is unreadable; its bytes are not shown, since they may be the echo of
-    /// the request.
+    /// The reply to a request with an access code is unreadable. Its bytes are not shown, because they may be the echo
+    /// of the request.
     #[error("unreadable frame")]
     Unreadable,
-    /// More bytes were received than a reply contains.
     #[error("extra bytes after the reply")]
     Trailing,
     #[error("the reply came too late")]
@@ -112,7 +105,6 @@ pub enum Damage {
     Echo,
     #[error("the encoder reports: {0}")]
     AtEncoder(StatusCode),
-    /// Two consecutive readings of the same value differ.
     #[error("two readings differ")]
     Inconsistent,
 }
@@ -130,7 +122,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached, so that further attempts are pointless.
+    /// Returns whether the device can no longer be reached. Further attempts are then pointless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -139,7 +131,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder is present but currently has no position to report.
+    /// Returns whether the encoder refused to report a position for a temporary reason.
     pub fn means_no_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

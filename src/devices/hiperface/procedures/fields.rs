@@ -1,4 +1,4 @@
-//! Reading of data fields (4Ch, 4Ah). Long transfers are halved if the line damages them.
+//! Reading of data fields (4Ch, 4Ah). If the line damages a long transfer, it is split in half.
 
 use super::error::Damage;
 use super::identify::read_type_label;
@@ -9,7 +9,7 @@ use crate::devices::hiperface::protocol::{
     AccessCode, Command, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode,
 };
 
-/// Minimum number of bytes per transfer; a shorter frame would consist mostly of its header.
+/// Minimum number of bytes per transfer. A shorter frame would consist mostly of its header.
 const LEAST_TRANSFER: usize = 4;
 
 /// Reads the status byte of a field.
@@ -37,7 +37,7 @@ pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Err
     }
 }
 
-/// Reads all fields except the extended label; `progress` receives the number of fields read and the total.
+/// Reads all fields except the extended label. `progress` receives the number of fields read and the total.
 ///
 /// # Errors
 /// See [`read_field`].
@@ -62,10 +62,10 @@ pub struct UnreadableField {
     pub why: Error,
 }
 
-/// Reads a field, or returns the reason why it cannot be read while the encoder still replies to other requests.
+/// Reads a field. If only this field cannot be read, the inner error contains the reason.
 ///
 /// # Errors
-/// The encoder no longer replies, or cancellation.
+/// The encoder no longer replies, or the user cancelled.
 pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
     let status = read_field_status(master, number);
     let status = match tolerate_read_error(master, status)? {
@@ -76,10 +76,10 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(tolerate_read_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Converts an error into the reason for an unreadable value, as long as the encoder replies to another request.
+/// Returns an error as the inner error, if the encoder still replies to another request.
 ///
 /// # Errors
-/// The encoder no longer replies, or cancellation.
+/// The encoder no longer replies, or the user cancelled.
 pub(super) fn tolerate_read_error<T>(
     master: &mut Master<'_>,
     result: Result<T, Error>,
@@ -98,8 +98,9 @@ pub(super) fn tolerate_read_error<T>(
 
 /// Reads `count` bytes of a field from `address` on, in transfers of at most 128 bytes.
 ///
-/// A failed transfer is retried with half the size, up to five consecutive failures. If the line has damaged any data
-/// before, each transfer must yield the same bytes twice, because an XOR misses some pairs of flipped bits.
+/// A failed transfer is retried with half the size, until five consecutive transfers have failed. If the line has
+/// damaged any data before, each transfer must return the same bytes twice, because an XOR misses some pairs of flipped
+/// bits.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -114,7 +115,7 @@ pub fn read_range(
         return read_byte(master, field, address, code);
     }
     let mut bytes = Vec::with_capacity(count);
-    // The first reading, which must be confirmed by a second one.
+    // A second reading must confirm the first one.
     let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;
@@ -163,8 +164,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte together with a neighbouring byte. The reply to a transfer of one byte can equal its request,
-/// including the access code, so the echo of an adapter could be mistaken for the reply.
+/// Reads one byte together with a neighbouring byte. A transfer of a single byte is avoided because its reply can equal
+/// the request, including the access code. The echo of an adapter could then be mistaken for the reply.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

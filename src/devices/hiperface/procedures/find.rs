@@ -1,9 +1,9 @@
 //! Search for encoders with unknown settings.
 //!
-//! The search listens for a second before sending its first byte: foreign traffic indicates a running machine, and
-//! nothing is sent then. It probes with 52h, never with 50h, which would remove codes from the queue of an encoder.
-//! Broadcast comes last, and only if the user states that a single encoder is connected, because several would reply at
-//! once.
+//! The search listens for a second before it sends its first byte. If it receives anything, a machine may be running,
+//! and nothing is sent. It probes with 52h, because 50h would remove codes from the queue of an encoder. It uses
+//! broadcast last, and only if the user states that a single encoder is connected, because several encoders would reply
+//! at once.
 
 use std::fmt;
 use std::time::Duration;
@@ -18,10 +18,9 @@ pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
-    /// Whether the user states that exactly one encoder is connected, so that broadcast may be used if no address
-    /// replies.
+    /// Whether the user states that exactly one encoder is connected. If no address replies, broadcast is then tried.
     pub one_encoder: bool,
-    /// Maximum wait for the user to switch the encoder supply off and on, in order to use the default window.
+    /// Maximum wait for the user to switch the encoder off and on. The search then finds it in its default window.
     pub power_cycle: Option<Duration>,
 }
 
@@ -56,7 +55,7 @@ pub enum SearchProgress<'a> {
         total: u64,
         attempt: &'a Attempt,
     },
-    /// An encoder that replied, reported once per encoder.
+    /// An encoder has replied. Each encoder is reported once.
     Found(&'a FoundEncoder),
 }
 
@@ -68,15 +67,15 @@ pub enum SearchFindings {
         bytes: usize,
     },
     Searched {
-        /// Encoders that replied, in this order; may be empty.
+        /// Encoders in the order in which they replied. There may be none.
         found: Vec<FoundEncoder>,
-        /// Whether all combinations were tried; false if the user cancelled the search earlier.
+        /// Whether all combinations were tried. It is false if the user cancelled the search.
         complete: bool,
     },
 }
 
-/// Searches all baud rates, parities and addresses, or only all addresses if the link has no baud rate of its own. The
-/// port settings are restored afterwards; cancellation ends the search with the encoders found so far.
+/// Searches all baud rates, parities and addresses. If the link cannot set the baud rate, only the addresses are
+/// searched. The port settings are restored afterwards. Cancellation ends the search with the encoders found so far.
 ///
 /// # Errors
 /// Errors of the connection.
@@ -106,9 +105,9 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Runs the search, and returns the number of foreign bytes if they prevented it.
+    /// Runs the search, or returns the number of bytes received from another device if there were any.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
-        // Through a device server all formats would be the same, and the encoder would be found in each.
+        // A device server has a fixed format, so the encoder would be found once for each format tried.
         let formats = if master.can_set_format() { formats() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
@@ -179,7 +178,7 @@ fn catch_default_window(
     Ok(None)
 }
 
-/// Sends one request without repetition, except once more after a damaged reply, which proves that a device is present.
+/// Sends one request. It is repeated only once after a damaged reply, which proves that a device is present.
 fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {

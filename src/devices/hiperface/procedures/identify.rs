@@ -19,9 +19,9 @@ pub struct Identity {
     pub name: String,
     /// Periods and turns given by the user, by the extended label, or by the table of types.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder has no bearing and its code tracks are aligned with 63h, if known.
+    /// Whether the encoder has no bearing, and its code tracks are aligned with 63h. `None` means unknown.
     pub kit: Option<bool>,
-    /// Content of data field FFh, if the encoder has it.
+    /// Content of data field FFh, if the encoder has this field.
     pub extended_label: Option<Vec<u8>>,
 }
 
@@ -31,7 +31,7 @@ impl Identity {
     }
 }
 
-/// Returns the identity recorded in a profile, which excludes the free memory.
+/// Returns the identity recorded in a profile. It lacks the free memory.
 pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
@@ -62,7 +62,8 @@ pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity
 /// Reads type label, serial number, memory and, for type code FFh, the extended label.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal, except of 56h and 4Eh, which some types do not support.
+/// Errors of the exchange, or a refusal. A refusal of 56h or 4Eh is not an error, because some types do not support
+/// them.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
@@ -89,10 +90,6 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
     Ok(Identity { address, label, serial, memory, name, geometry, kit, extended_label })
 }
 
-/// Reads the type label.
-///
-/// # Errors
-/// Errors of the exchange, or a refusal.
 pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
     match master.request_confirmed(&Request::ReadTypeLabel)? {
         Reply::TypeLabel(label) => Ok(label),
@@ -113,15 +110,11 @@ pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error>
     })
 }
 
-/// Reads the stored interface settings.
-///
-/// # Errors
-/// Errors of the exchange, or a refusal.
 pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Reads the address of the encoder that replies at the session's address, which may be broadcast.
+/// Reads the address of the encoder that replies to a request at the session's address. The latter may be broadcast.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -139,7 +132,7 @@ pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     read_range(master, EXTENDED_LABEL_FIELD, 0, status.size().bytes(), code)
 }
 
-/// Reads the complete status queue, keeping the codes in the encoder's order.
+/// Reads the complete status queue, in the encoder's order.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -148,7 +141,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_codes())
 }
 
-/// Converts the refusal of an unsupported command to `None`, and passes on any other result.
+/// Converts the refusal of an unsupported command to `None`. Any other error remains an error.
 fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

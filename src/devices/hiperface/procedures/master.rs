@@ -1,7 +1,7 @@
-//! Host side of the line: repeated requests, reading back, and collecting announced status codes. Single exchanges are
-//! implemented in [`exchange`].
+//! Host side of the line. It repeats requests, reads changes back, and collects announced status codes. Single
+//! exchanges are implemented in [`exchange`].
 //!
-//! A read is repeated at most five times within at most eight seconds; a write is never repeated without checking its
+//! A read is repeated at most five times within at most eight seconds. A write is never repeated without checking its
 //! effect.
 
 mod codes;
@@ -24,7 +24,7 @@ pub struct Master<'a> {
 
 pub(super) struct Timed {
     pub(super) reply: Reply,
-    /// Time of the falling edge of the start bit of the reply's address.
+    /// Time of the falling edge of the reply's first start bit.
     pub(super) at: Moment,
     pub(super) sender: u8,
 }
@@ -44,7 +44,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work`, which returns the encoder to a safe state, while ignoring cancellation.
+    /// Runs `work` and ignores cancellation meanwhile. This is for steps that return the encoder to a safe state.
     pub fn run_uncancellable<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.ignore_cancellation(true);
         let result = work(self);
@@ -78,7 +78,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether baud rate and parity can be set on this side; otherwise they are set at the far end of the link.
+    /// Returns whether baud rate and parity can be set on this side. Otherwise they are set at the far end of the link.
     pub fn can_set_format(&self) -> bool {
         self.line.ctx.wire.can_set_format()
     }
@@ -91,7 +91,7 @@ impl<'a> Master<'a> {
         self.request_timed(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, which reads values to be stored, and requires every reply to be received twice.
+    /// Runs `work` and requires every reply to be received twice. This is for values that will be stored.
     pub fn run_double_checked<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -131,8 +131,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request that changes the encoder, and returns how often it may have been executed. If it is unclear
-    /// whether the request was executed, `is_done` reads back, and the request is repeated only if it was not.
+    /// Sends a request that changes the encoder, and returns how often it may have been executed. If the result of an
+    /// attempt is unclear, `is_done` reads it back. The request is then repeated only if it was not executed.
     ///
     /// # Errors
     /// The encoder refused, `is_done` could not determine the result ([`Error::Unclear`]), or the request was not
@@ -151,7 +151,7 @@ impl<'a> Master<'a> {
             };
             let failure = self.prepare_retry(request, tries, trouble);
             let unclear = |cause| Error::Unclear { command: request.command(), cause: Box::new(cause) };
-            // From here on the result must be determined, even after cancellation.
+            // From here on the result must be determined, even after a cancellation.
             match self.run_uncancellable(&mut is_done) {
                 Ok(true) => return Ok(tries),
                 Ok(false) => failure?,
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads the status codes that a reply announces, and distinguishes a refusal from a reply.
+    /// Reads the status codes that a reply announces, and returns a refusal as an error.
     pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
         self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
@@ -222,9 +222,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Completes a request that changes the encoder, like [`settle`](Self::settle), but leaves announced status codes
-    /// to the next exchange, which announces them again. This prevents a cancellation between a change and its
-    /// counting, and is necessary after 55h and 67h, when the encoder no longer replies with the old settings.
+    /// Completes a request that changes the encoder. Unlike [`settle`](Self::settle), it leaves announced status codes
+    /// to the next exchange, which announces them again. A cancellation can therefore not occur between a change and
+    /// its counting. After 55h and 67h it is also necessary, because the encoder no longer replies with the old
+    /// settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.clear_error();

@@ -1,4 +1,4 @@
-//! Position, analogue values and counter, also as samples, and the standstill check.
+//! Position, analogue values and counter, read once or as samples, and the standstill check.
 
 use std::time::Duration;
 
@@ -11,8 +11,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionReading {
-    /// Time at which the encoder sampled the position, marked by the falling edge of the start bit of the reply's
-    /// address.
+    /// Time at which the encoder sampled the position. It is the falling edge of the reply's first start bit.
     pub at: Moment,
     pub raw: u32,
     /// Position, or `None` if periods and turns are unknown.
@@ -22,7 +21,7 @@ pub struct PositionReading {
     pub codes: Vec<StatusCode>,
 }
 
-/// Reads the position (42h) and, if the reply announces them, all status codes.
+/// Reads the position (42h), and all status codes if the reply announces any.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal because the encoder has no position.
@@ -47,29 +46,29 @@ pub enum Sample {
         at: Moment,
         codes: Vec<StatusCode>,
     },
-    /// Value watched in addition to the position.
+    /// Value polled in addition to the position.
     Watched(WatchedReading),
 }
 
-/// Value that can be watched while the position is polled. All other values of an encoder change only when written.
+/// Value that can be polled in addition to the position. All other values of an encoder change only when written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Watch {
-    /// Analogue channel (44h). 48h is the temperature in °C; others depend on the data sheet, and 00h and 01h are
-    /// usually the sine and cosine signals in counts of 10 bits for 5 V.
+    /// Analogue channel (44h). 48h is the temperature in °C. 00h and 01h are usually the sine and cosine signals in
+    /// counts of 10 bits for 5 V. The data sheet defines all other channels.
     Analogue(u8),
     /// The counter (46h), 0…FFFFFFh.
     Counter,
 }
 
 impl Watch {
-    /// Temperature in °C, available from every encoder that provides this channel.
+    /// Temperature in °C. Not every encoder has this channel.
     pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// Time at which the encoder sampled an analogue value, marked by the falling edge of the start bit of the reply's
-    /// address. For a counter or a refusal, the time of parsing the reply.
+    /// Time at which the encoder sampled an analogue value. It is the falling edge of the reply's first start bit. For
+    /// a counter or a refusal, it is the time at which the reply was parsed.
     pub at: Moment,
     pub watch: Watch,
     pub value: Result<i64, Error>,
@@ -77,7 +76,7 @@ pub struct WatchedReading {
 }
 
 impl WatchedReading {
-    /// Returns whether the encoder does not support the command or channel. Any other refusal is temporary.
+    /// Returns whether the encoder does not support the command or the channel. Any other refusal is temporary.
     pub fn is_refused(&self) -> bool {
         match &self.value {
             Err(Error::Rejected { codes, .. }) => {
@@ -88,7 +87,7 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once; a refusal counts as a valid result.
+/// Reads a watched value once. A refusal is a valid result.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -107,7 +106,7 @@ pub fn read_watched_value(master: &mut Master<'_>, what: Watch) -> Result<Watche
     Ok(WatchedReading { at, watch: what, value, codes })
 }
 
-/// Reads the position once, like [`read_position`], except that a temporary lack of a position is a valid result.
+/// Reads the position like [`read_position`]. A temporary lack of a position is a valid result.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal for another reason.
@@ -130,7 +129,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     }
 }
 
-/// Reads an analogue channel (44h), usually as signed 10 bits for 5 V, otherwise as stated in the data sheet.
+/// Reads an analogue channel (44h). It usually has 10 bits for 5 V, with a sign. Otherwise, see the data sheet.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal because the channel does not exist.
@@ -138,7 +137,7 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
     request_analogue(master, channel).map(|(_, value)| value)
 }
 
-/// Returns the value of an analogue channel and the time at which the encoder sampled it.
+/// Reads an analogue channel, and returns its value with the time at which the encoder sampled it.
 fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
     let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
@@ -147,7 +146,7 @@ fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16
     }
 }
 
-/// Returns the limit of an analogue channel, if the extended label contains one.
+/// Reads the limit of an analogue channel from the extended label, if there is one.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -176,8 +175,8 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     }
 }
 
-/// Reads the position three times, a tenth of a second apart, and returns the last reading if the shaft is at rest,
-/// that is, if the readings differ by at most one step.
+/// Reads the position three times, a tenth of a second apart, and returns the last reading. The shaft is at rest if the
+/// readings differ by at most one step.
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
@@ -197,13 +196,12 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Returns the number of distinct positions, or that of the full position word if the geometry is unknown.
+/// Returns the number of distinct positions. If the geometry is unknown, this is the number of all 32-bit words.
 pub(super) fn position_range(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }
 
-/// Returns the number of steps between two positions in the shorter direction, since a shaft at rest may jitter across
-/// zero.
+/// Returns the number of steps between two positions in the shorter direction. A shaft at rest may jitter across zero.
 pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))

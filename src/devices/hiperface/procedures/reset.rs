@@ -1,5 +1,5 @@
-//! Restarting an encoder (53h) and changing the interface temporarily (67h), with the waiting times of the manual's
-//! figure 38.
+//! Restarting an encoder (53h) and changing its interface temporarily (67h). The waiting times are from figure 38 of
+//! the manual.
 
 use std::time::Duration;
 
@@ -8,17 +8,18 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Wait after the restart until early in the window from 100 to 900 ms in which the encoder listens with factory
-/// settings.
+/// Wait after the restart before the first request. It ends early in the window from 100 to 900 ms, in which the
+/// encoder listens with factory settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// Reserve added to the manual's times for the stored settings, since clocks differ.
+/// Reserve added to the manual's times for the stored settings, because clocks differ.
 const RESERVE: Duration = Duration::from_millis(100);
 
-/// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue, which
-/// may contain up to four codes from the initialisation.
+/// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue. The
+/// initialisation may have added up to four codes to the queue.
 ///
-/// If factory settings are stored, requests are sent within the default window; otherwise nothing is sent until the
-/// encoder has applied its settings, because a request within the window would keep it at factory settings.
+/// If the stored settings are the factory settings, requests are sent within the default window. Otherwise nothing is
+/// sent until the encoder has applied the stored settings. A request within the window would keep it at factory
+/// settings.
 ///
 /// # Errors
 /// Errors of the exchange, or no reply at the stored settings.
@@ -28,7 +29,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     master.send_broadcast(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.has_long_timeout();
     let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + RESERVE };
-    // The encoder restarts even if the user cancels now; afterwards the session must know its settings.
+    // The encoder restarts even if the user cancels now. The session must then know its settings.
     master.run_uncancellable(|master| {
         master.wait(wait)?;
         master.set_format(format)?;
@@ -41,14 +42,14 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 /// settings.
 ///
 /// # Errors
-/// A refusal, or no reply at the new settings; both sides then have the old ones, as far as the encoder can be reached.
+/// A refusal, or no reply at the new settings. Both sides then have the old settings, if the encoder still replies.
 pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
     let format = settings.format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);
     let request = Request::ConfigureLineTemporarily { settings };
     let outcome = match master.attempt(&request)? {
         Ok(answered) => master.acknowledge(&request, answered),
-        // The reply was lost: a request shows whether the encoder has changed.
+        // The reply was lost. The next request shows whether the encoder has the new settings.
         Err(_) => Ok(()),
     };
     outcome?;

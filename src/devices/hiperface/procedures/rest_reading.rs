@@ -1,5 +1,5 @@
-//! Reading of the shaft at rest through both channels of an encoder: the absolute position, and sine and cosine if
-//! analogue channels provide them. Offers the highest accuracy, for commutation and synchronising.
+//! Reading of the shaft at rest, for commutation and synchronising. It has the highest accuracy, because it uses both
+//! channels of an encoder: the absolute position, and sine and cosine if there are analogue channels for them.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
@@ -21,28 +21,26 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Analogue channels of sine and cosine, for encoder types that provide these.
+    /// Analogue channels of sine and cosine. Only some encoder types have them.
     pub const CHANNELS: (u8, u8) = (0x00, 0x01);
     /// Volts per analogue count, with ten bits for 5 V.
     const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
-    /// Reference level of sine and cosine (2.5 V), in counts.
+    /// Reference level of sine and cosine in counts, which corresponds to 2.5 V.
     const MEAN: f64 = 511.5;
 
-    /// Converts mean counts of ten bits for 5 V to signals.
     fn from_counts(sine: f64, cosine: f64) -> Self {
         let volts = |counts: f64| (counts - Self::MEAN) * Self::VOLTS_PER_COUNT;
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// Returns the resolution of one count as a fraction of a period, at the amplitude of these signals.
+    /// Returns the fraction of a period that one count resolves at the amplitude of these signals.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
         Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU
     }
 }
 
-/// Reads the shaft at rest: first the position, then sine and cosine as means of four readings, then the position
-/// again.
+/// Reads the position, then sine and cosine, then the position again. Sine and cosine are means of four readings.
 ///
 /// # Errors
 /// [`Error::Moving`], errors of the exchange, or no position.
@@ -63,7 +61,7 @@ fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {
         for (channel, sum) in [(Signals::CHANNELS.0, &mut sine), (Signals::CHANNELS.1, &mut cosine)] {
             match read_analogue(master, channel) {
                 Ok(value) => *sum += f64::from(value),
-                // Many types have no such channels.
+                // Many types do not have these channels.
                 Err(Error::Rejected { .. }) => return Ok(None),
                 Err(error) => return Err(error),
             }

@@ -1,4 +1,4 @@
-//! Reading everything that can be restored, and the identity of the encoder.
+//! Reading the identity of an encoder and all values that can be restored.
 
 use super::{Error, Identity, Master, Reading, Sample, Survey, read_survey};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
@@ -11,11 +11,11 @@ pub struct SaveOptions {
     pub complete: bool,
 }
 
-/// Reads the complete encoder, and everything except the position twice, since data stored for years must not depend on
-/// a single XOR.
+/// Reads the complete encoder. Every value except the position is read twice, because data stored for years must not
+/// depend on a single XOR.
 ///
 /// # Errors
-/// Errors of the exchange; with [`complete`](SaveOptions::complete) also a field that cannot be read.
+/// Errors of the exchange. If [`complete`](SaveOptions::complete) is set, also a field that cannot be read.
 pub fn save(
     master: &mut Master<'_>,
     types: &EncoderTypes,

@@ -1,4 +1,4 @@
-//! The state of a line and its encoder that is kept between jobs.
+//! The state of a line and its encoder between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 parameters! {
-    /// Line and encoder parameters of a link. The default is the factory setting.
+    /// Line and encoder parameters of a link. The defaults are the factory settings.
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => BaudValues;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
@@ -24,15 +24,14 @@ parameters! {
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// Whether the encoder's time-out is 44 bits rather than 11 bits.
         pub long_timeout: bool = true, "timeout" => Checked(AllowedValues::TimeoutBits, read_timeout);
-        /// Additional time allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
-        /// link.
+        /// Time allowed for a reply beyond the worst case of the protocol. `None` means the default of the link.
         pub margin: Option<Duration> = None, "margin" => OptionalValue(MARGIN), "connect.margin" like "50";
         pub periods: Option<u32> = None, "periods" => OptionalValue(Checked(AllowedValues::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
         pub turns: Option<u32> = None, "turns" => OptionalValue(Checked(AllowedValues::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }
 
-/// The four access codes, each 55h unless given by the user.
+/// The four access codes. Each is 55h unless the user has given another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes([AccessCode; 4]);
 
@@ -54,7 +53,7 @@ impl Codes {
     }
 }
 
-/// Access codes, with their numbers, with which each session begins. If a number occurs twice, its last code counts.
+/// Numbered access codes with which each session begins. If a number occurs twice, its last code counts.
 #[derive(Clone, Debug, Default)]
 pub struct AccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
@@ -83,16 +82,15 @@ pub struct Station {
     pub codes: Codes,
     /// Periods and turns given by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Announced status codes in the order of reading, removed once they are displayed.
+    /// Status codes in the order of reading. They are removed once they are displayed.
     pub codes_met: Vec<StatusCode>,
-    /// Status codes for the logbook. There is no other copy, since 50h removes them from the encoder.
+    /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
-    /// Number of missing or damaged replies to 50h, each of which may have contained a status code.
+    /// Number of missing or damaged replies to 50h. Each of them may have contained a status code.
     pub(super) codes_unheard: u32,
-    /// Whether values to be stored are being read, each of which must be read twice even on a line that appears to be
-    /// good.
+    /// Whether every value must be read twice because it will be stored. This applies even to a line without errors.
     pub(super) thorough: bool,
-    /// Maximum number of bytes read at once, halved if the line damages long replies, and doubled otherwise.
+    /// Maximum number of bytes per transfer. It is halved if the line damages long replies, and doubled otherwise.
     pub(super) chunk: usize,
 }
 
@@ -113,11 +111,11 @@ impl Station {
         }
     }
 
-    /// Creates the station from the parameters of its link; the defaults are the factory settings and `margin`.
+    /// Creates a station from the parameters of its link. Missing parameters have the factory settings, and `margin`.
     /// Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value is invalid; the error lists the allowed values.
+    /// A value is invalid. The error lists the allowed values.
     pub fn from_query(query: &UrlQuery, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -128,12 +126,11 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the timing of the line with its current settings.
     pub fn timing(&self) -> Timing {
         Timing::new(self.format, self.long_timeout)
     }
 
-    /// Returns whether values must be read twice, because an XOR misses some pairs of flipped bits.
+    /// Returns whether values must be read twice. This is needed because an XOR misses some pairs of flipped bits.
     pub(super) fn needs_double_read(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
@@ -144,13 +141,13 @@ impl Station {
         self.codes_met.extend(codes);
     }
 
-    /// Takes the codes to be written to the logbook, which must happen before any of them is displayed.
+    /// Takes the codes for the logbook. They must be stored before any of them is displayed.
     pub fn take_read_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Takes the number of status codes that may have been lost in missing or damaged replies to 50h since the last
-    /// call.
+    /// Takes the number of missing or damaged replies to 50h since the last call. Each of them may have contained a
+    /// status code.
     pub fn take_unheard_code_count(&mut self) -> u32 {
         std::mem::take(&mut self.codes_unheard)
     }
@@ -199,14 +196,14 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// Maximum number of periods, with 32 steps per period in a 32-bit word.
+/// Maximum number of periods. A 32-bit word has room for 32 steps in each of them.
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
     number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
 }
 
-/// Returns the geometry given by `periods=` and `turns=`, with one turn if only the periods are given.
+/// Returns the geometry given by `periods=` and `turns=`. The default is one turn.
 fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {

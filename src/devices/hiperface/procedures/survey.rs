@@ -1,4 +1,4 @@
-//! Reading everything that the pages of an encoder display in one job.
+//! Reading all values that the pages of an encoder display, in one job.
 
 use super::fields::tolerate_read_error;
 use super::{
@@ -11,29 +11,29 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    /// Status queue in the encoder's order, with the codes announced meanwhile.
+    /// Codes of the status queue in the encoder's order, and those announced during the survey.
     pub codes: Vec<StatusCode>,
-    /// All data fields. A field has no bytes if its access code is unknown or another reason is in `unreadable`.
+    /// All data fields. A field has no bytes if its access code is unknown or if it is listed in `unreadable`.
     pub fields: Vec<FieldImage>,
     /// Data fields that could not be read for a reason other than their access code.
     pub unreadable: Vec<UnreadableField>,
-    /// Quality of the line up to the end of the survey.
+    /// Quality of the line at the end of the survey.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// Position, or `None` if the encoder refused it for a reason other than temporarily having none.
+    /// Position. It is `None` if the encoder refused to report it for a reason that is not temporary.
     pub position: Option<Sample>,
 }
 
 /// Reads the status queue first, then everything else. A feature that an encoder type does not support is not an error.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal of something that every type supports.
+/// Errors of the exchange, or a refusal of a command that every type supports.
 pub fn survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
-    // They stay among the collected codes until the survey is complete: if it fails, they are reported regardless.
+    // The codes stay in the station until the survey is complete, so they are reported even if it fails.
     master.collect_codes()?;
     let mut survey = read_survey(master, types, progress, Reading::AsFarAsPossible)?;
     survey.codes = master.station().take_codes();
@@ -49,7 +49,7 @@ pub fn survey(
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     AsFarAsPossible,
-    /// An unreadable field aborts the reading, since data stored for years must be complete.
+    /// An unreadable field ends the reading with an error, because a saved profile must be complete.
     Whole,
 }
 
@@ -67,7 +67,7 @@ pub(super) fn read_survey(
         Reading::Whole => read_all_fields(master, count, progress)?,
         Reading::AsFarAsPossible => read_readable_fields(master, count, &mut unreadable, progress)?,
     };
-    // Neither is needed for a restore: an encoder that refuses them is read regardless.
+    // A restore needs neither value, so a refusal does not end the reading.
     let position = read_sample(master, identity.geometry);
     let position = tolerate_read_error(master, position)?.ok();
     let counter = read_counter(master);
@@ -76,7 +76,7 @@ pub(super) fn read_survey(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// Reads all fields as far as possible; an unreadable field is reported with its status, if known.
+/// Reads all fields that can be read. The others are reported with their status, if it is known.
 fn read_readable_fields(
     master: &mut Master<'_>,
     count: u8,

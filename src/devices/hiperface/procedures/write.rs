@@ -1,4 +1,5 @@
-//! Execution of a plan: reads its base again, carries out each operation, and finally reads all of them back.
+//! Execution of a plan: reads the values on which it is based again, carries out each operation, and reads all changes
+//! back.
 
 pub use crate::profile::Written;
 
@@ -26,7 +27,7 @@ pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
-    /// Fields that should be write-protected but are not, because the encoder could no longer be reached.
+    /// Fields that are still writable although they should be write-protected, because the encoder no longer replied.
     pub unlocked: Vec<u8>,
 }
 
@@ -37,7 +38,7 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// Creates the writer for an encoder with the identity on which the plan is based.
+    /// Creates a writer for an encoder with the identity on which the plan is based.
     pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
         EncoderWrite { master, identity, left: EndState::default() }
     }
@@ -50,8 +51,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that this is the encoder for which the plan was made. The check includes the memory, since two new
-    /// encoders have the same identity.
+    /// Checks that this is the encoder for which the plan was made. It also compares the memory, because two new
+    /// encoders can have the same identity.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -71,7 +72,7 @@ impl Write for EncoderWrite<'_, '_> {
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
         let sent = perform(&mut self.master, op, confirmed, position_range(self.identity.geometry));
-        // A change that was not sent, or was refused, was not carried out; any other may have been.
+        // A change that was refused or not sent has no effect. Any other change may have been carried out.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
             Err(cause) => u64::from(may_have_been_executed(cause)),
@@ -87,7 +88,7 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Protects fields again that were made writable, as far as the encoder can be reached.
+    /// Restores the write protection of fields that were made writable, if the encoder still replies.
     fn lead_back(
         &mut self,
         confirmed: &Confirmed<'_>,
@@ -150,7 +151,7 @@ fn restore_lock(
     let now = match read_field_status(master, *field) {
         Ok(now) if now.is_writable() => now,
         Ok(_) => return Ok(()),
-        // It had not been created yet.
+        // The field had not been created yet.
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
         Err(error) => return Err(error),
     };
@@ -209,7 +210,8 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         Op::IncrementCounter { from } => {
             let next = next_count(*from);
             match master.send_verified(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
-                // Some types report the overflow this way (manual, "Zähler erhöhen"): it was carried out.
+                // Some types report the overflow this way although the counter was incremented (manual, "Zähler
+                // erhöhen").
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
                     master.station().add_codes(codes);
                     Ok(1)
@@ -220,7 +222,6 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
     }
 }
 
-/// Returns the counter value after an increment, with 24 bits.
 fn next_count(counter: u32) -> u32 {
     counter.wrapping_add(1) & 0x00FF_FFFF
 }
@@ -233,7 +234,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
-        // An encoder that does not reply at the new address must be at the old one, or it is lost.
+        // An encoder that does not reply at the new address must reply at the old one, or it cannot be reached.
         if moved { Ok(true) } else { read_type_label(master).map(|_| false) }
     })?;
     if before != BROADCAST {
@@ -250,7 +251,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
     }
 }
 
-/// Returns whether an access code opens a field that it protects. The code cannot be tested if there is no such field.
+/// Returns whether an access code opens a field that it protects. Without such a field, the code cannot be tested.
 fn can_open_field(
     master: &mut Master<'_>,
     base: &Base,
@@ -268,7 +269,7 @@ fn can_open_field(
     }
 }
 
-/// Reads back everything that the plan has changed: the final value of every field and byte.
+/// Reads back the final value of every field and byte that the plan has changed.
 fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
@@ -323,7 +324,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
                 }
                 verified += 1;
             }
-            // A code cannot be read: only the encoder's acknowledgement confirms it.
+            // A code cannot be read back. Only the reply of the encoder confirms it.
             Op::ChangeCode { .. } => {}
         }
     }
@@ -337,7 +338,7 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
 /// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
 ///
 /// # Errors
-/// [`Error::AddressTaken`] if anything is received; errors of the connection, or cancellation.
+/// [`Error::AddressTaken`] if anything is received, errors of the connection, or cancellation.
 pub fn ensure_address_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
@@ -355,7 +356,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// Reads all fields protected by an access code, which reveal whether the code was changed.
+/// Reads all fields that require this access code. They show whether the code was changed.
 ///
 /// # Errors
 /// Errors of the exchange.

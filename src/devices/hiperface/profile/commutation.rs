@@ -1,6 +1,6 @@
 //! The commutation offset in the format in which this program stores it in a data field. The manual leaves the format
-//! open (SICK 8010701, commutation; section 5 of the project's sine/cosine reference): sixteen bytes fill a block of
-//! the EEPROM and are recognised in a backup as a value of the mounting.
+//! open. The sixteen bytes fill a block of the EEPROM, and are recognised in a backup as a mounting value. See SICK
+//! 8010701, commutation, and section 5 of the project's sine/cosine reference.
 
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
@@ -18,7 +18,7 @@ use crate::analysis::commutation::ElectricalAngle;
 /// | 14…15 | CRC of bytes 0…13: polynomial 1021h, initial value FFFFh, big-endian |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecord {
-    /// Electrical offset, such that electrical angle = pole pairs × shaft − offset.
+    /// Electrical offset: electrical angle = pole pairs × shaft angle − offset.
     pub offset: ElectricalAngle,
     /// Number of pole pairs of the motor.
     pub pole_pairs: u8,
@@ -28,12 +28,12 @@ pub struct CommutationRecord {
     pub confirmed: bool,
 }
 
-/// Error for bytes that begin like a commutation record but are not a valid one.
+/// Error for bytes that begin like a commutation record but are not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecordError;
 
 impl CommutationRecord {
-    /// Length in bytes.
+    /// Length of a record in bytes.
     pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
 
     /// Returns the record as bytes.

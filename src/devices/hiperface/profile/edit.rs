@@ -1,10 +1,10 @@
-//! Planning of single changes. Each is checked against the rules of the encoder before anything is sent.
+//! Planning of single changes, each of which is checked against the rules of the encoder before anything is sent.
 
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, ScalarValue};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Plans to write exactly these bytes. Adjacent or overlapping edits become one operation, the last edit of a byte
-/// takes precedence, and operations without a change are omitted. `fields` contains each edited field once.
+/// Plans to write bytes to data fields. Adjacent or overlapping edits become one operation, in which the last edit of a
+/// byte counts. Operations without a change are omitted. `fields` contains each edited field once.
 ///
 /// # Errors
 /// A field is missing, protected or unreadable, or the bytes do not fit into the field or into their range.
@@ -25,7 +25,8 @@ pub fn plan_store(
     Ok(plan(field_count, fields, ops))
 }
 
-/// Returns the operations for one field by ascending address. Fields and transfers are both limited to 128 bytes.
+/// Returns the operations for one field in ascending order of addresses. No operation is too long, because fields and
+/// transfers are both limited to 128 bytes.
 fn stores<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,

@@ -6,13 +6,13 @@ pub enum EntryError {
     /// The data field occurs twice.
     #[error("field {0} appears twice")]
     Twice(u8),
-    /// The status byte denotes a missing field.
+    /// The status byte does not describe an existing field.
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
-    /// A field that could not be read has content.
+    /// A field marked as locked has content.
     #[error("the bytes of a locked field must not be specified")]
     Locked,
-    /// A readable field has no content.
+    /// A field that is not marked as locked has no content.
     #[error("the bytes are missing; a field without bytes must have locked: true")]
     NotLocked,
     /// The number of bytes differs from the size of the field.
@@ -23,7 +23,7 @@ pub enum EntryError {
         /// Size of the field in bytes.
         expected: usize,
     },
-    /// The item marked as a mounting value is not part of a data field.
+    /// A mounting mark names an item outside the data fields.
     #[error("{0:?} is not of the form field:N@ADDR+COUNT")]
     Marked(String),
 }

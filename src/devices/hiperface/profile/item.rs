@@ -12,9 +12,9 @@ pub enum Item {
     Field(FieldRange),
     /// Status byte of a data field.
     Status(u8),
-    /// Analogue channel.
+    /// Analogue channel with this number.
     Analogue(u8),
-    /// Counter.
+    /// The 24-bit counter.
     Counter,
     /// Address of the encoder.
     Address,
@@ -25,7 +25,7 @@ pub enum Item {
 /// A data field or a part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldRange {
-    /// Field number; FFh is the extended label.
+    /// Field number. FFh is the extended label.
     pub field: u8,
     /// Index of the first byte.
     pub start: usize,
@@ -45,15 +45,15 @@ pub enum PlanItem {
     /// Number of data fields.
     #[error("number of data fields")]
     FieldCount,
-    /// Position.
+    /// Position of the shaft.
     #[error("position")]
     Position,
-    /// Access code.
+    /// Access code with this number.
     #[error("code {0}")]
     Code(AccessCodeNumber),
 }
 
-/// The string does not name an item.
+/// Error for a text that does not name an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is not an item; items are field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings"

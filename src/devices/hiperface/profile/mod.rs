@@ -1,4 +1,4 @@
-//! HIPERFACE profiles: the saved content of an encoder, the differences between two, and the effect of restoring.
+//! HIPERFACE profiles: the saved content of an encoder, the differences between two profiles, and restoring.
 
 #![warn(missing_docs)]
 

@@ -24,7 +24,7 @@ pub struct Base {
 pub enum ScalarValue {
     /// Position in steps, with the shaft at rest.
     Position(u32),
-    /// Counter.
+    /// Value of the counter.
     Counter(u32),
     /// Address.
     Address(u8),
@@ -35,7 +35,7 @@ pub enum ScalarValue {
 /// A single persistent write.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Creates a field (no previous status), changes it, or deletes it (new status with E = 0), using command 4Dh.
+    /// Creates, changes or deletes a field with command 4Dh. A new status with E = 0 deletes the field.
     Define {
         /// Field number.
         field: u8,
@@ -44,15 +44,15 @@ pub enum Op {
         /// New status.
         to: DataFieldStatus,
     },
-    /// 4Bh: writes bytes.
+    /// Writes bytes of a field with command 4Bh.
     Store {
         /// Field number.
         field: u8,
         /// Index of the first byte.
         address: u8,
-        /// Status of the field at the time of the write, which includes the number of the access code.
+        /// Status of the field at the time of the write. It contains the number of the access code.
         status: DataFieldStatus,
-        /// Previous bytes, or `None` if they are unknown or the field has yet to be created.
+        /// Previous bytes. They are `None` if they are unknown or the field does not exist yet.
         old: Option<Vec<u8>>,
         /// New bytes, 1…128.
         new: Vec<u8>,
@@ -75,26 +75,26 @@ pub enum Op {
         /// Whether to align the code tracks as well.
         synchronise: bool,
     },
-    /// 55h: sets the address.
+    /// Sets the address with command 55h.
     SetAddress {
         /// Present address.
         from: u8,
         /// New address.
         to: DeviceAddress,
     },
-    /// 57h: configures the interface.
+    /// Stores interface settings with command 57h.
     Configure {
         /// Stored settings.
         from: LineSettings,
         /// New settings, which take effect after the next restart.
         to: LineSettings,
     },
-    /// 49h: clears the counter.
+    /// Clears the counter with command 49h.
     ClearCounter {
         /// Present count.
         from: u32,
     },
-    /// 47h: increments the counter.
+    /// Increments the counter with command 47h.
     IncrementCounter {
         /// Present count.
         from: u32,
@@ -108,7 +108,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, which `read` accepts if the item is readable.
+    /// Returns the item that is changed. If it is readable, `read` accepts its name.
     pub fn item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -123,7 +123,7 @@ impl Op {
         })
     }
 
-    /// Returns the number of changes as counted in a comparison: the number of bytes for a data field, otherwise one.
+    /// Returns the number of changes as in a comparison, in which each byte of a data field counts.
     pub fn weight(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -143,7 +143,7 @@ impl Op {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 
-    /// Returns the affected field.
+    /// Returns the number of the data field, or `None` if the operation concerns another item.
     pub fn field(&self) -> Option<u8> {
         match self {
             Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),

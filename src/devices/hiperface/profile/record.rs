@@ -12,15 +12,15 @@ use crate::profile::{Comparison, Profile, ProfileError};
 pub struct HiperfaceProfile {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Address and interface settings, which are recorded but neither compared nor restored.
+    /// Address and interface settings. They are recorded, but neither compared nor restored.
     pub interface: Interface,
-    /// Values that change by themselves; they are recorded but neither compared nor restored.
+    /// Values that change by themselves. They are recorded, but neither compared nor restored.
     pub recorded: Recorded,
-    /// Mounting values, which are never written to another encoder without asking.
+    /// Mounting values. They are written to another encoder only if the user agrees.
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// In a backup, the fields that the write created, with their content. Restoring the backup deletes these fields.
+    /// Fields that the write created, with their content. Only a backup has these, and restoring it deletes them.
     pub created: Vec<FieldImage>,
     /// Unknown profile entries by field number.
     pub unknown_in_fields: Vec<(u8, Unknown)>,
@@ -29,7 +29,7 @@ pub struct HiperfaceProfile {
 /// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number; empty if the encoder has none.
+    /// Serial number, or an empty string if the encoder has none.
     pub serial_number: String,
     /// Type code.
     pub encoder_type: u8,
@@ -65,13 +65,13 @@ pub struct Interface {
 pub struct Recorded {
     /// Position in steps.
     pub position: Option<u32>,
-    /// Counter.
+    /// Value of the counter.
     pub counter: Option<u32>,
     /// Unknown profile entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Mark on a part of a data field that holds a mounting value.
+/// Mark on a part of a data field that contains a mounting value.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.
@@ -91,7 +91,7 @@ impl HiperfaceProfile {
     /// Length of a commutation offset stored by this program, in bytes.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks all unmarked items that are recognised as mounting values.
+    /// Marks all items that are recognised as mounting values, unless they are already marked.
     pub fn mark_mounting_dependent_values(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };

@@ -1,5 +1,5 @@
-//! Planning of a restore: differences only, in as few writes as possible, without values that belong to the mounting of
-//! another encoder.
+//! Planning of a restore. Only differences are written, in as few writes as possible, and without values that belong to
+//! the mounting of another encoder.
 
 mod device;
 mod error;
@@ -31,18 +31,18 @@ pub struct RestoreOptions {
     pub allow_other_type: bool,
     /// Whether mounting values may be written to another encoder.
     pub with_mounting: bool,
-    /// Whether a field that has a different size and is not the last may be deleted and created again, together with
-    /// all fields after it.
+    /// Whether a field may be deleted and created again to change its size if it is not the last field. This also
+    /// affects all fields after it.
     pub recreate: bool,
-    /// Decisions on whether to copy or leave out data fields with bytes of unknown meaning that would be written to
-    /// another encoder. A field without a decision is left out.
+    /// Decisions on data fields that contain bytes of unknown meaning and would be written to another encoder. `true`
+    /// copies the field. A field without a decision is left out.
     pub copy: BTreeMap<u8, bool>,
 }
 
-/// Current memory state of an encoder.
+/// Present content of an encoder's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
-    /// Serial number; empty if the encoder has none.
+    /// Serial number, or an empty string if the encoder has none.
     pub serial_number: String,
     /// Type code.
     pub encoder_type: u8,
@@ -59,8 +59,7 @@ pub struct Restore {
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields created by the write that remain in place because they have changed since or are not the last
-    /// fields.
+    /// Data fields created by the write that remain in place. They have changed since, or are not the last fields.
     pub created_left: Vec<u8>,
 }
 
@@ -85,7 +84,7 @@ impl fmt::Display for RequiredSetup {
 /// Plans to restore a profile to an encoder.
 ///
 /// # Errors
-/// See [`PlanError`]; nothing has been written.
+/// See [`PlanError`]. Nothing has been written.
 pub fn plan_restore(
     profile: &HiperfaceProfile,
     device: &DeviceState,

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Broadcast address, to which every encoder on the line responds with its own address. Allowed only if one encoder is
-/// connected, unless the command has no reply.
+/// Broadcast address. Every encoder on the line replies to it with its own address. It is allowed only if a single
+/// encoder is connected or the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 
 /// Address byte of an encoder, 40h…5Fh: device number 0…31 plus 40h.
@@ -11,7 +11,7 @@ pub const BROADCAST: u8 = 0xFF;
 pub struct DeviceAddress(u8);
 
 impl DeviceAddress {
-    /// 40h, the factory setting.
+    /// Factory setting, 40h.
     pub const FACTORY: DeviceAddress = DeviceAddress(0x40);
 
     /// Lowest address, 40h.

@@ -38,11 +38,11 @@ pub struct CommandRow {
     pub name: &'static str,
     /// Whether access code 0 is required.
     pub code0: bool,
-    /// Maximum processing time, excluding the transfer and the protocol time-out, or zero if the command has no reply.
+    /// Maximum processing time, without the transfer and the protocol time-out. It is zero if the command has no reply.
     pub max_time: Duration,
-    /// Number of bytes between command and checksum of the request; the minimum for 4Bh.
+    /// Number of bytes between the command byte and the checksum of the request. For 4Bh, this is the minimum.
     pub request_payload: usize,
-    /// Whether the command changes persistent content of the encoder.
+    /// Whether the command changes data that the encoder keeps without power.
     pub persistent: bool,
 }
 
@@ -57,7 +57,7 @@ const fn row(
     CommandRow { command, name, code0, max_time: Duration::from_millis(max_ms), request_payload, persistent }
 }
 
-/// All commands, in the order and with the columns of the manual; times are the "maximale Antwortzeit".
+/// Command table of the manual, in its order. The times are the "maximale Antwortzeit".
 #[rustfmt::skip]
 pub const COMMANDS: [CommandRow; 20] = [
     //                                      name                                code0  ms  payload persistent
@@ -84,7 +84,7 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// Returns the command for this byte, ignoring the error bit.
+    /// Returns the command with this byte, or `None` if there is none. The error bit is ignored.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }
@@ -94,9 +94,9 @@ impl Command {
         self as u8
     }
 
-    /// Returns the row for the command in the manual's table.
+    /// Returns the row of the command in the manual's table.
     pub fn row(self) -> &'static CommandRow {
-        // The table lists every variant (tested); its first line is a fallback that is never used.
+        // A test checks that the table lists every variant, so the fallback is never used.
         let [first, ..] = &COMMANDS;
         COMMANDS.iter().find(|row| row.command == self).unwrap_or(first)
     }

@@ -38,7 +38,7 @@ impl fmt::Display for AccessCodeNumber {
     }
 }
 
-/// Access code, which is never disclosed in a log, a trace, an error or test output.
+/// Access code. It never appears in a log, a trace, an error or test output.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AccessCode(u8);
 
@@ -46,7 +46,7 @@ impl AccessCode {
     /// Factory value of all four access codes, 55h.
     pub const FACTORY: AccessCode = AccessCode(0x55);
 
-    /// Creates an access code; every byte is valid.
+    /// Creates an access code from a byte. Every byte is valid.
     pub const fn new(byte: u8) -> Self {
         AccessCode(byte)
     }
@@ -71,7 +71,7 @@ impl FieldSize {
     /// Size in bytes of a block, the unit of memory allocation.
     pub const BLOCK: usize = 16;
 
-    /// Creates a size from a number of bytes, or returns `None` unless the number is a multiple of 16 from 16 to 128.
+    /// Creates a size from a number of bytes, or returns `None` unless it is a multiple of 16 from 16 to 128.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -79,7 +79,7 @@ impl FieldSize {
         Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
     }
 
-    /// Creates a size from a number of blocks, 1…8.
+    /// Creates a size from a number of blocks, or returns `None` unless it is 1…8.
     pub const fn from_blocks(blocks: u8) -> Option<Self> {
         if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
     }
@@ -100,7 +100,7 @@ impl FieldSize {
     }
 }
 
-/// Data field status byte of commands 4Ch and 4Dh.
+/// Status byte of a data field, used in commands 4Ch and 4Dh.
 ///
 /// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
 /// |---|---|---|---|---|---|
@@ -113,7 +113,7 @@ impl DataFieldStatus {
     const WRITE_ENABLE: u8 = 0x40;
     const CODE_REQUIRED: u8 = 0x08;
 
-    /// Creates a status from its byte; every byte is valid.
+    /// Creates a status from its byte. Every byte is valid.
     pub const fn from_byte(byte: u8) -> Self {
         DataFieldStatus(byte)
     }
@@ -160,7 +160,7 @@ impl DataFieldStatus {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// Returns a copy of the status with another access code, which may be required or not.
+    /// Returns a copy of the status with another access code. `required` becomes bit CE.
     #[must_use]
     pub const fn with_code(self, code: AccessCodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
@@ -173,7 +173,7 @@ impl DataFieldStatus {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// Returns a copy of the status that deletes the field (E is 0).
+    /// Returns a copy of the status with bit E cleared. Command 4Dh deletes the field if it receives this status.
     #[must_use]
     pub const fn deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)

@@ -1,4 +1,4 @@
-//! Description of a captured frame as facts, for `decode` and the trace. Access codes are never included.
+//! Description of captured frames for `decode` and the trace. Access codes are never included.
 
 use super::{
     AccessCode, AccessCodeNumber, Answer, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings,
@@ -17,13 +17,13 @@ pub enum FrameDetail {
     },
     /// The frame is a request.
     Request(Arguments),
-    /// The frame is neither a request nor a reply that can be recognised without its request.
+    /// The frame is not a request, and it cannot be recognised as a reply without its request.
     NoRequest(RequestError),
     /// The encoder refused the request with this status code.
     Refused(StatusCode),
     /// A status code from the encoder's status queue.
     Code(StatusCode),
-    /// The frame is a reply; each status code in it is reported separately.
+    /// The frame is a reply. Its status codes are reported as separate items.
     Reply(Reply),
 }
 
@@ -71,8 +71,7 @@ pub enum Arguments {
     Settings(LineSettings),
 }
 
-/// Describes a captured frame, starting with its heading. `request` is the preceding request, if the frame may be the
-/// reply to it.
+/// Describes a captured frame, starting with its heading. If `request` is given, the frame may be the reply to it.
 ///
 /// # Errors
 /// The bytes are not a frame.
@@ -93,7 +92,7 @@ pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameDeta
     Ok(facts)
 }
 
-/// Interprets a frame as a reply without knowing its request, if the length distinguishes it from a request.
+/// Parses a frame as the reply to an unknown request, if its length rules out a request.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {

@@ -14,9 +14,9 @@ pub struct EncoderType {
     pub code: u8,
     /// Family name from the data sheet.
     pub name: String,
-    /// Periods and turns, or `None` if they must come from the extended label or the user.
+    /// Periods and turns. `None` means that the extended label or the user must provide them.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h after mounting.
+    /// Whether the encoder is a kit without a bearing. Its code tracks are aligned with 63h after mounting.
     pub kit: bool,
 }
 
@@ -49,7 +49,7 @@ pub enum TypeTableError {
     },
 }
 
-/// Number that describes an encoder type, named as in the file.
+/// Numeric entry of a row. It is displayed with its name in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeEntry {
     /// Periods per turn.
@@ -88,14 +88,14 @@ enum Shape {
 }
 
 impl EncoderTypes {
-    /// Table shipped with the program.
+    /// Text of the table that is shipped with the program.
     pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface/encoder_types.ron");
 
     /// Parses an encoder type table.
     ///
     /// # Errors
-    /// Returns line and column if the table is not valid RON or has unknown keys, and both limits if a number is out of
-    /// range.
+    /// [`TypeTableError::Syntax`] if the table is not valid RON or has unknown keys, and [`TypeTableError::Range`] if a
+    /// number is out of range.
     pub fn parse(text: &str) -> Result<Self, TypeTableError> {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
             line: error.span.start.line,
@@ -111,7 +111,7 @@ impl EncoderTypes {
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 
-    /// Returns this table combined with the rows of `other`, which take precedence.
+    /// Returns the rows of both tables. The rows of `other` take precedence.
     #[must_use]
     pub fn merged_with(self, other: EncoderTypes) -> Self {
         let mut rows = other.0;
@@ -126,7 +126,8 @@ impl EncoderTypes {
 }
 
 impl Row {
-    /// Upper limit of 2²⁷, since five of the 32 bits of the position word are within a period.
+    /// Upper limit of periods, and of periods times turns. The position word has 32 bits, of which five count the steps
+    /// within a period.
     const MOST: u32 = 1 << 27;
 
     fn check(self) -> Result<EncoderType, TypeTableError> {

@@ -6,13 +6,13 @@ use super::{Geometry, checksum};
 /// Extended label of an encoder with type code FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
-    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`), so a mismatch
-    /// causes a warning and never a refusal.
+    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`), so a mismatch only
+    /// causes a warning.
     pub checksum_fits: bool,
-    /// Byte 01h: bit 0 means linear, bit 1 bipolar counting. The byte is displayed raw, because another public source
-    /// inverts bit 1.
+    /// Flags in byte 01h. Bit 0 means linear, and bit 1 means bipolar counting. The byte is displayed as it is, because
+    /// another public source inverts bit 1.
     pub flags: u8,
-    /// Periods and turns, or period length and range; `None` if a number is zero or too large.
+    /// Geometry of the encoder, or `None` if one of its numbers is zero or too large.
     pub geometry: Option<Geometry>,
     /// Designation of 18 characters, padded with blanks.
     pub designation: String,
@@ -20,8 +20,8 @@ pub struct ExtendedLabel {
     pub parameters: Vec<LabelParameter>,
 }
 
-/// Limit value on the extended label. The encoder's data sheet defines the meaning of each number (`U`); the first word
-/// of a quantity that 44h can read is its analogue channel.
+/// Limit value on the extended label. The data sheet of the encoder defines the meaning of each number (`U`). If 44h
+/// can read a quantity, the first word of the quantity is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// Number of the limit: 0…14 in the first set, 15…29 in the second, 30…44 in the third.
@@ -33,25 +33,25 @@ pub struct LabelParameter {
 /// Part of the extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPart {
-    /// Checksum, 00h.
+    /// Checksum in byte 00h.
     Checksum,
-    /// Flags, 01h.
+    /// Flags in byte 01h.
     Flags,
     /// Periods per revolution, or period length in nanometres, in bytes 02h…05h.
     Resolution(u32),
     /// Number of revolutions, or coded range in periods, in bytes 06h…09h.
     Range(u32),
-    /// Designation, 0Ah…1Bh.
+    /// Designation in bytes 0Ah…1Bh.
     Designation,
     /// Selector word of a set: bits 0 to 14 mark valid limits, and bit 15 indicates another set.
     Selector(u16),
-    /// A limit, which is unused if its selector omits it.
+    /// Limit value. It is unused if its bit in the selector word is not set.
     Limit {
         /// Number of the limit.
         number: u8,
         /// Value in two's complement.
         value: i16,
-        /// Whether the selector bit of this entry is set.
+        /// Whether the bit in the selector word is set.
         valid: bool,
     },
 }
@@ -68,7 +68,7 @@ pub enum LabelError {
 }
 
 impl ExtendedLabel {
-    /// Length in bytes of the description in bytes 00h…1Bh, without limits.
+    /// Minimum length of a label in bytes: the description in bytes 00h…1Bh, without limits.
     pub const MIN_BYTES: usize = 0x1C;
     /// Bit 0 of the flags, set for a linear encoder.
     pub const LINEAR: u8 = 0x01;
@@ -96,9 +96,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns the limits of quantities that 44h can read, as analogue channel and maximum reading. Every two
-    /// consecutive parameters are assumed to form such a pair; since only the data sheet defines the actual pairs
-    /// (`U`), a pair is used only for a remark if its channel replies.
+    /// Returns pairs of an analogue channel and its maximum reading, for quantities that 44h can read. Only the data
+    /// sheet defines the pairs (`U`), so any two parameters with consecutive numbers are assumed to form one. Such a
+    /// pair is used only for a remark, and only if its channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();

@@ -39,10 +39,10 @@ impl<'a> Frame<'a> {
     /// Error bit in the command byte of a reply.
     pub const ERROR_BIT: u8 = 0x80;
 
-    /// Parses a frame that fills the slice; on the line, silence marks the end of a frame.
+    /// Parses a slice that contains exactly one frame. On the line, silence marks the end of a frame.
     ///
     /// # Errors
-    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the checksum does not match.
+    /// [`FrameError::Short`] for fewer than three bytes, [`FrameError::Checksum`] if the checksum does not match.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let [address, command, payload @ .., got] = bytes else {
             return Err(FrameError::Short { got: bytes.len() });

@@ -1,11 +1,11 @@
-//! Settings byte of the serial interface: read with 52h, set with 57h and 67h (manual, figure 42; the order of bits 7
-//! and 6 is derived from the order in the figure).
+//! Settings byte of the serial interface, which 52h reads and 57h and 67h set. See the manual, figure 42. The order of
+//! bits 7 and 6 is derived from the order in the figure.
 
 use std::fmt;
 
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Baud rates by three-bit code; 111 is reserved.
+/// Baud rates, indexed by their three-bit code. Code 111 is reserved.
 pub const BAUDS: [Baud; 7] = [baud(600), baud(1200), baud(2400), baud(4800), baud(9600), baud(19200), baud(38400)];
 
 const fn baud(bits_per_second: u32) -> Baud {
@@ -30,7 +30,7 @@ impl LineSettings {
     const STANDARD: u8 = 0x80;
     const LONG_TIMEOUT: u8 = 0x40;
 
-    /// Creates settings from the byte; reserved values are preserved.
+    /// Creates settings from the byte. Reserved values are preserved.
     pub const fn from_byte(byte: u8) -> Self {
         LineSettings(byte)
     }
@@ -51,13 +51,13 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// Returns a copy with a time-out of 44/baud or 11/baud.
+    /// Returns a copy with a time-out of 44/baud if `long` is set, or else 11/baud.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// Returns a copy for a bus with several encoders, or for a single encoder.
+    /// Returns a copy for a bus with several encoders if `bus` is set, or else for a single encoder.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
@@ -83,12 +83,12 @@ impl LineSettings {
         Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
     }
 
-    /// Returns whether the time-out is 44/baud (bit 6 is set) rather than 11/baud.
+    /// Returns whether the time-out is 44/baud rather than 11/baud (bit 6).
     pub const fn has_long_timeout(self) -> bool {
         self.0 & Self::LONG_TIMEOUT != 0
     }
 
-    /// Returns whether the encoder is configured for a bus (bit 7 is 0).
+    /// Returns whether the encoder is configured for a bus, that is, whether bit 7 is 0.
     pub const fn is_bus(self) -> bool {
         self.0 & Self::STANDARD == 0
     }

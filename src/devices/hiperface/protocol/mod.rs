@@ -1,7 +1,7 @@
 //! The HIPERFACE parameter channel: frames, commands, status codes, data fields, labels and timing.
 //!
-//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual"). Facts that the manual leaves open are
-//! marked `U` (unknown) and treated tolerantly; facts from other public sources are marked `P`.
+//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual"). `U` (unknown) marks facts that the
+//! manual leaves open and that are treated tolerantly. `P` marks facts from other public sources.
 //!
 //! ```text
 //! request : ADDR CMD [args…] CHK        reply : ADDR CMD [data…] CHK

@@ -5,14 +5,14 @@ use std::fmt;
 /// Number of position steps per signal period, always 32.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
-/// Geometry of an encoder, which relates steps to an angle or a distance.
+/// Geometry of an encoder, which converts steps to an angle or a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Geometry {
     /// A rotary encoder.
     Rotary {
         /// Signal periods per revolution, at least 1.
         periods: u32,
-        /// Number of revolutions that the encoder distinguishes, 1 for a singleturn encoder.
+        /// Number of revolutions that the encoder distinguishes. It is 1 for a singleturn encoder.
         turns: u32,
     },
     /// A linear encoder.
@@ -33,7 +33,7 @@ impl Geometry {
         }
     }
 
-    /// Returns the number of distinct positions, which are counted from 0, or `None` if unknown.
+    /// Returns the number of distinct positions, or `None` if it is unknown. Positions count from 0.
     pub fn range(self) -> Option<u64> {
         match self {
             Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
@@ -42,7 +42,7 @@ impl Geometry {
         }
     }
 
-    /// Interprets a position word.
+    /// Converts a position word to an angle or a distance.
     pub fn position(self, raw: u32) -> Position {
         let in_range = self.range().is_none_or(|range| u64::from(raw) < range);
         match self {
@@ -70,7 +70,7 @@ impl fmt::Display for Geometry {
     }
 }
 
-/// Position word with the geometry of its encoder.
+/// Position word, converted with the geometry of its encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Position word as received.
@@ -129,9 +129,10 @@ impl fmt::Display for Position {
     }
 }
 
-/// Returns the value in `range` nearest to `wanted` whose five lowest bits equal those of `now`, or the lower of two
-/// equally near values. Setting this value preserves the phase between absolute value and sine signal (manual,
-/// "Position setzen": the five lowest bits equal the five highest of the arctangent).
+/// Returns the value in `range` that is nearest to `wanted` and has the same five lowest bits as `now`. Of two equally
+/// near values, it returns the lower one. Setting this value preserves the phase between the absolute value and the
+/// sine signal, because the five lowest bits equal the five highest bits of the arctangent. See the manual, "Position
+/// setzen".
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);
     let wanted = u64::from(wanted);

@@ -1,8 +1,8 @@
-//! Replies of an encoder. A reply repeats address and command, followed by the requested data (manual,
-//! "Fehlerbehandlung").
+//! Replies of an encoder. A reply repeats the address and the command, followed by the requested data. See the manual,
+//! "Fehlerbehandlung".
 //!
-//! The manual does not print the layouts of the replies to 55h, 57h and 67h (`U`): both forms are accepted, with and
-//! without the repeated argument.
+//! The manual does not print the layouts of the replies to 55h, 57h and 67h (`U`). They are accepted with and without
+//! the repeated argument.
 
 use super::{
     Command, DataFieldStatus, DeviceAddress, Frame, FrameError, FreeMemory, LineSettings, Request, SerialLabel,
@@ -16,19 +16,19 @@ pub enum Reply {
     Done,
     /// Position in steps (1/32 period), in reply to 42h.
     Position(u32),
-    /// Signed analogue value, in reply to 44h: usually 10 bits for 5 V, or the quantity stated in the data sheet.
+    /// Signed analogue value, in reply to 44h. It usually has 10 bits for 5 V. For other channels, see the data sheet.
     Analogue(i16),
-    /// 46h: counter value, 0…FFFFFFh.
+    /// Counter value 0…FFFFFFh, in reply to 46h.
     Counter(u32),
-    /// 4Ah: the requested bytes.
+    /// Requested bytes, in reply to 4Ah.
     Data(Vec<u8>),
     /// Status byte of a data field, in reply to 4Ch.
     FieldStatus(DataFieldStatus),
-    /// 4Eh: free memory.
+    /// Free memory, in reply to 4Eh.
     FreeMemory(FreeMemory),
-    /// Status codes, in reply to 50h: usually one, but some encoders send up to four.
+    /// Status codes, in reply to 50h. There is usually one, but some encoders send up to four.
     Status(Vec<StatusCode>),
-    /// 52h: type label.
+    /// Type label, in reply to 52h.
     TypeLabel(TypeLabel),
     /// Serial number and firmware, in reply to 56h.
     Serial(SerialLabel),
@@ -39,7 +39,7 @@ pub enum Reply {
 pub enum Answer {
     /// The command was executed.
     Reply {
-        /// Whether codes are waiting in the status queue (error bit), which 50h reads.
+        /// Whether the error bit is set, which means that 50h can read more codes from the status queue.
         pending: bool,
         /// Reply data.
         reply: Reply,
@@ -93,13 +93,13 @@ pub enum ReplyError {
 pub struct ReplyLength {
     /// Minimum length.
     pub min: usize,
-    /// Maximum length, after which no more bytes follow.
+    /// Maximum length. No bytes follow after it.
     pub max: usize,
 }
 
 impl Request {
-    /// Returns the possible lengths of the reply, as far as the request and the bytes `received` so far determine them,
-    /// or `None` for a request without a reply.
+    /// Returns the possible lengths of the reply, or `None` for a request without a reply. The bytes `received` so far
+    /// decide between a reply and a refusal.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });
@@ -123,7 +123,7 @@ impl Request {
         }
     }
 
-    /// Parses the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
+    /// Parses the reply to this request. `address` is the address in the request, 40h…5Fh or broadcast.
     ///
     /// # Errors
     /// The frame is damaged, or its sender, command, length or arguments do not match the request. No value from such a
@@ -148,7 +148,7 @@ impl Request {
 
     fn check_sender(&self, address: u8, sender: u8) -> Result<(), ReplyError> {
         let moved = matches!(self, Request::SetAddress { new, .. } if new.byte() == sender);
-        // An encoder always answers with its own address: FFh is never a sender, not even after a broadcast.
+        // An encoder replies with its own address even to a broadcast, so FFh is never a sender.
         let device = DeviceAddress::new(sender).is_some();
         if device && (sender == address || moved || address == super::BROADCAST) {
             Ok(())

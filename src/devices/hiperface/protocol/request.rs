@@ -1,5 +1,5 @@
-//! Requests of the host: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from public
-//! implementations, `P`).
+//! Requests of the host, and their conversion to and from bytes. See the manual, "Die Befehle". The argument order of
+//! 43h, 46h and 56h is from public implementations (`P`).
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::bits::MaskedBytes;
 pub enum Request {
     /// Reads the absolute position (42h).
     ReadPosition,
-    /// Sets the position of the shaft (43h), which is allowed at standstill only.
+    /// Sets the position of the shaft (43h). The shaft must be at rest.
     SetPosition {
         /// New position in steps (1/32 period).
         position: u32,
@@ -30,20 +30,20 @@ pub enum Request {
     ReadCounter,
     /// Increments the counter (47h). This wears the EEPROM, which endures about a million writes.
     IncrementCounter,
-    /// 49h: clears the counter.
+    /// Clears the counter (49h).
     ClearCounter {
         /// Access code 0.
         code0: AccessCode,
     },
     /// Reads bytes of a data field (4Ah).
     ReadData {
-        /// Data field number; FFh is the extended label.
+        /// Data field number. FFh is the extended label.
         field: u8,
         /// Index of the first byte within the field.
         address: u8,
         /// Number of bytes, 1…128.
         count: u8,
-        /// Access code of the field, which the encoder ignores if CE is 0.
+        /// Access code of the field. The encoder ignores it if CE is 0.
         code: AccessCode,
     },
     /// Writes bytes of a data field (4Bh).
@@ -66,7 +66,7 @@ pub enum Request {
     DefineField {
         /// Data field number.
         field: u8,
-        /// New status; E = 0 deletes the field.
+        /// New status. The field is deleted if E is 0.
         status: DataFieldStatus,
         /// Access code of the field.
         code: AccessCode,
@@ -86,11 +86,11 @@ pub enum Request {
     ReadStatus,
     /// Reads the type label (52h).
     ReadTypeLabel,
-    /// Restarts the encoder (53h). There is no reply.
+    /// Restarts the encoder (53h). The encoder does not reply.
     Reset,
-    /// 55h: changes the address.
+    /// Changes the address (55h).
     SetAddress {
-        /// New address, effective immediately.
+        /// New address, which takes effect immediately.
         new: DeviceAddress,
         /// Access code 0.
         code0: AccessCode,
@@ -104,14 +104,14 @@ pub enum Request {
         /// Access code 0.
         code0: AccessCode,
     },
-    /// Sets the position and aligns the code tracks of a kit encoder (63h), which is allowed at standstill only.
+    /// Sets the position and aligns the code tracks of a kit encoder (63h). The shaft must be at rest.
     Synchronise {
         /// New position in steps (1/32 period).
         position: u32,
         /// Access code 0.
         code0: AccessCode,
     },
-    /// Changes interface settings immediately, until the next reset (67h).
+    /// Changes the interface settings until the next reset (67h). They take effect immediately.
     ConfigureLineTemporarily {
         /// New settings.
         settings: LineSettings,
@@ -138,7 +138,7 @@ pub enum RequestError {
 }
 
 impl RequestError {
-    /// Returns the status code that an encoder sends in reply.
+    /// Returns the status code with which an encoder replies to such a request.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
@@ -190,8 +190,8 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// Errors are found in the order in which an encoder checks (`U`): the command, the number of arguments, and the
-    /// ranges of the arguments.
+    /// The checks have the order of an encoder (`U`): first the command, then the number of arguments, then their
+    /// ranges.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)
@@ -207,7 +207,7 @@ impl Request {
             .and_then(Self::checked)
     }
 
-    /// Returns the arguments as transmitted, and the indices of the access codes in this data.
+    /// Returns the argument bytes and the indices of those that are access codes.
     fn payload(&self) -> (Vec<u8>, Vec<usize>) {
         match self {
             Request::ReadPosition
@@ -294,7 +294,7 @@ impl Request {
         }))
     }
 
-    /// Checks the ranges that depend only on the frame; the encoder checks all others.
+    /// Checks the ranges that the frame alone determines. The encoder checks all others.
     fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
@@ -310,7 +310,7 @@ impl Request {
     }
 }
 
-/// Bytes of a request, with information about which of them reveal an access code.
+/// Bytes of a request, of which those that reveal an access code are marked.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SecretFrame {
     bytes: Vec<u8>,
@@ -328,7 +328,7 @@ impl SecretFrame {
         !self.secret.is_empty()
     }
 
-    /// Returns the bytes with access codes and the affected checksum masked.
+    /// Returns the bytes for display. Access codes are masked, and so is the checksum that would reveal them.
     pub fn masked(&self) -> MaskedBytes {
         MaskedBytes::masked(&self.bytes, &self.secret)
     }

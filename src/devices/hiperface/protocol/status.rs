@@ -1,5 +1,5 @@
-//! Status codes, which an encoder reports in reply to 50h (`P`: SEK34/SEL34 and DME data sheets, B&R error 7013; the
-//! manual leaves the list to each data sheet).
+//! Status codes that an encoder reports in reply to 50h. The manual leaves the list to each data sheet. This list is
+//! from the data sheets of SEK34/SEL34 and DME and from B&R error 7013 (`P`).
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ pub enum StatusClass {
     Data,
     /// The position is unreliable.
     Position,
-    /// Monitoring of temperature, transmitter or signals.
+    /// Message from the monitoring of temperature, transmitter or signals.
     Monitoring,
     /// Code that is not in the list of known codes.
     Unknown,
@@ -58,7 +58,7 @@ const CODES: [(u8, StatusClass, &str); 27] = [
 ];
 
 impl StatusCode {
-    /// 00h: no error.
+    /// No error (00h).
     pub const OK: StatusCode = StatusCode(0x00);
     /// Counter overflow from FFFFFFh to 0 (08h).
     pub const COUNTER_OVERFLOW: StatusCode = StatusCode(0x08);
@@ -66,17 +66,17 @@ impl StatusCode {
     pub const PARITY: StatusCode = StatusCode(0x09);
     /// Wrong checksum of a frame (0Ah).
     pub const CHECKSUM: StatusCode = StatusCode(0x0A);
-    /// 0Bh: unknown command.
+    /// Unknown command (0Bh).
     pub const UNKNOWN_COMMAND: StatusCode = StatusCode(0x0B);
     /// Wrong length of a request (0Ch).
     pub const LENGTH: StatusCode = StatusCode(0x0C);
     /// Argument out of range (0Dh).
     pub const ARGUMENT: StatusCode = StatusCode(0x0D);
-    /// Write-protected data field, in which WE is 0 (0Eh).
+    /// Write-protected data field (0Eh).
     pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
     /// Wrong access code for the data field (0Fh).
     pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
-    /// Rejected change of a field's size (10h): only the last field can change its size, and only within the free
+    /// Rejected change of a field's size (10h). Only the last field can change its size, and only within the free
     /// memory.
     pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
     /// Access beyond the end of the data field (11h).
@@ -88,7 +88,7 @@ impl StatusCode {
     /// Excessive speed of the shaft (1Fh).
     pub const TOO_FAST: StatusCode = StatusCode(0x1F);
 
-    /// Creates a status code from its byte; every byte is valid.
+    /// Creates a status code from its byte. Every byte is valid.
     pub const fn new(byte: u8) -> Self {
         StatusCode(byte)
     }
@@ -108,14 +108,14 @@ impl StatusCode {
         self.entry().map_or("unknown status code", |(_, text)| text)
     }
 
-    /// Returns whether the code is a warning. Only 08h, 1Ch, 1Dh and 1Eh are warnings; all others except 00h are
+    /// Returns whether the code is a warning. Warnings are 08h, 1Ch, 1Dh and 1Eh. All other codes except 00h are
     /// errors.
     pub fn is_warning(self) -> bool {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// Returns whether the code makes a position read at the same time unreliable, as 01h…06h and 1Fh…23h do. Codes
-    /// 09h…12h concern a frame or a data field and never invalidate a position.
+    /// Returns whether a position read together with this code is unreliable. This is the case for 01h…06h and 1Fh…23h.
+    /// Codes 09h…12h concern a frame or a data field and never invalidate a position.
     pub fn invalidates_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{LineSettings, Request};
 use crate::units::CharacterFormat;
 
-/// Timing of a line with certain settings.
+/// Times of the protocol for the settings of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
     /// Duration of one 11-bit character.
@@ -17,12 +17,12 @@ pub struct Timing {
 impl Timing {
     /// Maximum time after power-on or reset during which the encoder does not receive.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// Time after power-on until which the encoder uses the factory settings before it applies the stored settings.
+    /// End of the default window, counted from power-on. Until then, the encoder uses the factory settings.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
     /// Maximum time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
 
-    /// Creates the timing for a character format and the long (44 bits) or short (11 bits) time-out.
+    /// Creates the timing for a character format. The time-out is 44 bits if `long_timeout` is set, or else 11 bits.
     pub fn new(format: CharacterFormat, long_timeout: bool) -> Self {
         let bits = if long_timeout { 44 } else { 11 };
         Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
@@ -33,9 +33,9 @@ impl Timing {
         Some(Self::new(settings.format()?, settings.has_long_timeout()))
     }
 
-    /// Returns the time from the first bit of a request to the latest possible last bit of its reply, which includes
-    /// transfer, time-out, processing and transfer. For a request without a reply, it includes transfer and time-out
-    /// only.
+    /// Returns the maximum time from the first bit of a request to the last bit of its reply. It is the sum of both
+    /// transfers, the time-out and the processing time. For a request without a reply, it is one transfer and the
+    /// time-out.
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);

@@ -7,11 +7,11 @@ use super::LineSettings;
 pub struct TypeLabel {
     /// Stored interface settings, which take effect after the next reset.
     pub settings: LineSettings,
-    /// Type code; FFh refers to the extended label in field FFh.
+    /// Type code. FFh means that field FFh contains an extended label.
     pub encoder_type: u8,
     /// Size of the EEPROM in units of 16 bytes.
     pub eeprom_units: u8,
-    /// Hardware and software options and HIPERFACE version. The layout is not public, so the byte is kept raw.
+    /// Byte with the hardware and software options and the HIPERFACE version. Its layout is not public.
     pub options: u8,
 }
 
@@ -25,8 +25,8 @@ impl TypeLabel {
     }
 }
 
-/// Serial number and firmware, as sent in reply to 56h: nine characters for the serial number, up to twenty for the
-/// firmware version, and eight for the date.
+/// Serial number and firmware, as sent in reply to 56h. The serial number has nine characters, the firmware version up
+/// to twenty, and the date eight.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLabel {
     /// Serial number as sent by the encoder, without leading and trailing blanks and NUL characters.
@@ -43,8 +43,9 @@ impl SerialLabel {
     /// Maximum payload length, with a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
-    /// Parses the payload: the first nine bytes, the last eight, and those in between. Returns `None` unless there are
-    /// [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable ASCII are shown as `\xNN`.
+    /// Parses the payload, in which the firmware version is between the first nine and the last eight bytes. Returns
+    /// `None` unless there are [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable
+    /// ASCII are written as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {
             return None;
@@ -55,7 +56,8 @@ impl SerialLabel {
     }
 }
 
-/// Decodes a fixed-width string: padding (blanks, NUL) is removed, and unprintable bytes are escaped.
+/// Decodes a string of fixed length. Blanks and NUL characters at both ends are removed, and unprintable bytes are
+/// escaped.
 pub(super) fn text(bytes: &[u8]) -> String {
     let start = bytes.iter().position(|b| !matches!(b, 0 | b' ')).unwrap_or(bytes.len());
     let end = bytes.iter().rposition(|b| !matches!(b, 0 | b' ')).map_or(start, |last| last + 1);

@@ -1,4 +1,4 @@
-//! The encoder on the serial line of a virtual adapter, if requested.
+//! The encoder on the serial line of a virtual adapter.
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, SerialDevice};
@@ -13,7 +13,8 @@ parameters! {
     }
 }
 
-/// Virtual encoder with factory settings on the adapter's serial line, if the adapter's settings request one.
+/// Virtual encoder with factory settings. The settings of a virtual adapter can request it on the adapter's serial
+/// line.
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

@@ -1,6 +1,6 @@
-//! The line between the UART of the host and the encoders: every character with its start and end, in time order. It
-//! adds the echo of the converter, noise, and the effects of simultaneous transmissions or different settings, but does
-//! not interpret bytes; half duplex and pull-ups: manual, "Parameterkanal".
+//! The line between the UART of the host and the encoders. It transports every character with its start and end, in
+//! time order. It adds the echo of the converter, noise, and the effects of simultaneous transmissions or different
+//! settings. It does not interpret bytes. For half duplex and pull-ups, see the manual, "Parameterkanal".
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::sim::SimulatedFaults;
 use crate::sim::line::{SerialCharacter, TransitQueue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// Line with one or several encoders, as seen from the host. Created from a [`Config`].
+/// Line with one or several encoders, as the host sees it. It is created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
@@ -39,7 +39,7 @@ struct CharacterInTransit {
     format: CharacterFormat,
 }
 
-/// Time from `start` to `end` during which a device drives the line.
+/// Period during which a device drives the line.
 #[derive(Clone, Copy, Debug)]
 struct LineOccupation {
     talker: Talker,
@@ -47,7 +47,7 @@ struct LineOccupation {
     end: Moment,
 }
 
-/// Next event; if several are simultaneous, the first in this list takes precedence.
+/// Next event on the line. Of simultaneous events, the first in this list takes precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -56,11 +56,11 @@ pub(crate) enum Event {
 }
 
 impl Bus {
-    /// Upper bound for the duration of a character. A transmission that ended earlier than this does not overlap any
+    /// Upper limit for the duration of a character. A transmission that ended earlier than this does not overlap any
     /// character still in transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
-    /// Creates the virtual line from `config`, with encoders that have been powered for a long time.
+    /// Creates the line described by `config`. Its encoders have been powered for a long time.
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
@@ -116,7 +116,7 @@ impl Bus {
         let collides = self.has_collision(&travelling);
         let SerialCharacter { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
-            // A driver that is on receives only its own bytes.
+            // An encoder that sends receives only its own bytes.
             if travelling.talker == Talker::Encoder(index) {
                 continue;
             }
@@ -166,8 +166,8 @@ impl Bus {
     }
 }
 
-/// Returns the byte that a receiver produces for an unreadable character. The byte is never an address, so it cannot
-/// begin a frame.
+/// Returns the byte that a receiver produces for an unreadable character. It is never an address, so it cannot begin a
+/// frame.
 fn garbage_byte(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }

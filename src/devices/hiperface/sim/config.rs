@@ -1,5 +1,5 @@
-//! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`. Nothing is
-//! opened here; [`Bus::new`](super::Bus::new) creates the virtual line.
+//! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`.
+//! [`Bus::new`](super::Bus::new) creates the virtual line from them.
 
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
@@ -32,11 +32,11 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values; the last value of a repeated key counts. Numbers are decimal or `0x…`,
-    /// and several encoders have consecutive addresses and serial numbers, starting with those of the first.
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value counts. Numbers are decimal or
+    /// `0x…`. Several encoders have consecutive addresses and serial numbers, starting with those of the first.
     ///
     /// # Errors
-    /// Names the key and the allowed values.
+    /// A key or a value is invalid. The error names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
         config.check_combination()?;
@@ -47,7 +47,7 @@ impl Config {
         DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
     }
 
-    /// Returns the serial number of an encoder. The final digits count up, so that no two encoders are confused.
+    /// Returns the serial number of an encoder. Its final digits count up with `index` to keep encoders apart.
     pub(super) fn serial_number_of(&self, index: u8) -> String {
         let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -63,12 +63,12 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Returns periods and turns of the given type if known, otherwise those of the model.
+    /// Returns periods and turns of the requested type, or those of the model if the type is unknown.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the encoder has no bearing, according to the given type if known, otherwise to the model.
+    /// Returns whether the requested type has no bearing. If the type is unknown, the model decides.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }

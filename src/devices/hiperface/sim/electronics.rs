@@ -31,7 +31,7 @@ impl Wear {
     }
 }
 
-/// Status codes waiting to be read with 50h, oldest first. The queue holds four codes; further codes are lost while it
+/// Status codes waiting to be read with 50h, oldest first. The queue holds four codes. Further codes are lost while it
 /// is full.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
@@ -73,7 +73,7 @@ pub(super) struct EncoderElectronics {
 }
 
 impl EncoderElectronics {
-    /// 24 bits.
+    /// Maximum of the 24-bit counter.
     const COUNTER_END: u32 = 0x00FF_FFFF;
     /// Analogue channel of the sine signal, as in the data sheets.
     const SINE: u8 = 0x00;
@@ -103,7 +103,7 @@ impl EncoderElectronics {
         electronics
     }
 
-    /// Restarts after power-on or reset: RAM content is lost, and monitoring starts again.
+    /// Restarts the electronics after power-on or reset. RAM content is lost, and monitoring starts again.
     pub(super) fn restart(&mut self) {
         self.queue = StatusQueue::default();
         self.watch_temperature(i16::MIN);
@@ -114,15 +114,15 @@ impl EncoderElectronics {
         self.watch_temperature(before);
     }
 
-    /// Returns whether the encoder supports the command; only kit encoders support 63h.
+    /// Returns whether the encoder supports the command. Only kit encoders support 63h.
     pub(super) fn has(&self, command: Command) -> bool {
         command != Command::Synchronise || self.kit
     }
 
-    /// Executes a request at time `at` and returns the data of its reply. 53h has neither effect nor data here.
+    /// Executes a request at time `at`, and returns the data of its reply. 53h has no effect and no data here.
     ///
     /// # Errors
-    /// The status code with which the encoder refuses the request; nothing has changed.
+    /// The status code with which the encoder refuses the request. Nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         let data = self.carry_out(at, request)?;
         let command = request.command();
@@ -211,10 +211,10 @@ impl EncoderElectronics {
         }
     }
 
-    /// Handles 4Bh during a power failure, in which only the first half of the bytes is written.
+    /// Writes only the first half of the bytes of 4Bh, as during a power failure.
     ///
     /// # Errors
-    /// As for a complete store.
+    /// The errors of a complete store.
     pub(super) fn store_partially(
         &mut self,
         field: u8,
@@ -249,7 +249,7 @@ impl EncoderElectronics {
         self.memory.check_code(AccessCodeNumber::ZERO, code0)
     }
 
-    /// Reports once that the temperature has just exceeded its limit.
+    /// Adds a code to the status queue if the temperature has just exceeded its limit.
     fn watch_temperature(&mut self, before: i16) {
         let limit = self.model.temperature_limit;
         if before <= limit && limit < self.temperature {
@@ -258,7 +258,7 @@ impl EncoderElectronics {
     }
 }
 
-/// Returns the memory as delivered by the motor manufacturer: field 0 contains the name plate, and the rest is free.
+/// Returns the memory as the motor manufacturer delivers it: field 0 contains the name plate, and the rest is free.
 fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {

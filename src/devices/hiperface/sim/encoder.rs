@@ -1,14 +1,14 @@
-//! A virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings (manual,
-//! "Dialog Timing", figure 38 "Einschaltverhalten", "Fehlerbehandlung"). The effects of commands are in
-//! [`electronics`](super::electronics); only the [`Bus`](super::Bus) knows other senders.
+//! A virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings. See the
+//! manual, "Dialog Timing", figure 38 "Einschaltverhalten", and "Fehlerbehandlung". The effects of commands are in
+//! [`electronics`](super::electronics). Only the [`Bus`](super::Bus) knows other senders.
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
 //!                                               └── plausible command: keeps the factory settings
 //! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
 //! ```
-//! Assumptions where the manual is silent (`U`): bytes received while the encoder works or sends are lost, to the end
-//! of that frame; its own reply ends a frame at once; a damaged broadcast is not answered.
+//! Assumptions where the manual is silent (`U`): if bytes are lost because the encoder works or sends, the rest of
+//! their frame is lost too. Its own reply ends a frame at once. A damaged broadcast is not answered.
 
 use std::time::Duration;
 
@@ -23,8 +23,8 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// Typical times as observed: 3.7 ms for the position, 20 ms plus 1.5 ms per byte for a store, and half of the
-    /// maximum time for all other commands.
+    /// Typical times as observed. The position takes 3.7 ms, a store 20 ms plus 1.5 ms per byte, and any other command
+    /// half of its maximum time.
     #[default]
     Typical,
     /// Always the maximum time from the manual's table.
@@ -36,7 +36,7 @@ impl Pace {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a frame; that of a refused frame equals that of the status reply.
+    /// Returns the processing time of a frame. If the frame is refused, this is the time of a status reply.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -52,7 +52,6 @@ impl Pace {
     }
 }
 
-/// Character received by an encoder.
 #[derive(Clone, Copy)]
 pub(super) struct ReceivedCharacter {
     pub(super) start: Moment,
@@ -62,7 +61,7 @@ pub(super) struct ReceivedCharacter {
     pub(super) intact: bool,
 }
 
-/// Reply that begins now.
+/// Reply that the encoder begins to send.
 #[derive(Clone)]
 pub(super) struct Transmission {
     pub(super) start: Moment,
@@ -70,8 +69,8 @@ pub(super) struct Transmission {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Virtual encoder on a [`Bus`](super::Bus), whose clock it uses. There is no `Debug` implementation, because frames
-/// may contain access codes.
+/// Virtual encoder on a [`Bus`](super::Bus), whose clock it uses. It has no `Debug` implementation, because frames may
+/// contain access codes.
 #[derive(Clone)]
 pub struct Encoder {
     electronics: EncoderElectronics,
@@ -80,10 +79,10 @@ pub struct Encoder {
     power: Power,
     /// Interface settings that were stored at the last start.
     user: LineSettings,
-    /// 67h.
+    /// Interface settings changed with 67h, until the next start.
     temporary: Option<LineSettings>,
     activity: Activity,
-    /// End of the last lost character, which invalidates the rest of its frame.
+    /// End of the last lost character. The rest of its frame is lost too.
     lost: Option<Moment>,
     frames_processed: u32,
     stores_begun: u32,
@@ -93,7 +92,7 @@ pub struct Encoder {
 #[derive(Clone, Debug)]
 enum Power {
     Off,
-    /// State after power-on, with the time of power-on and whether a plausible command arrived in the DEFAULT window.
+    /// The encoder was powered on at `since`. A plausible command in the DEFAULT window sets `keeps_default`.
     Starting {
         since: Moment,
         keeps_default: bool,
@@ -113,12 +112,12 @@ struct IncomingFrame {
     bytes: Vec<u8>,
     intact: bool,
     overlong: bool,
-    /// Time at which the silence has lasted long enough, unless another character begins earlier.
+    /// Time at which the frame ends, unless another character begins earlier.
     ends: Moment,
 }
 
 impl IncomingFrame {
-    /// Capacity in bytes, greater than the length of the longest request (4Bh with 128 bytes: 135).
+    /// Capacity in bytes. The longest request, 4Bh with 128 data bytes, has 135 bytes.
     const CAPACITY: usize = 140;
 
     fn ending_at(ends: Moment) -> Self {
@@ -159,7 +158,7 @@ impl Encoder {
         self.electronics.counter
     }
 
-    /// Sets the counter to the lowest 24 bits of `counter`, without wear.
+    /// Sets the counter to the lowest 24 bits of `counter`. This does not count as a write.
     pub fn set_counter(&mut self, counter: u32) {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
@@ -173,12 +172,12 @@ impl Encoder {
         self.electronics.shaft.set_rpm(now, rpm);
     }
 
-    /// Sets the temperature; above the limit, the encoder warns once (code 1Eh).
+    /// Sets the temperature. If it exceeds the limit, the encoder warns once with code 1Eh.
     pub fn set_temperature(&mut self, celsius: i16) {
         self.electronics.set_temperature(celsius);
     }
 
-    /// Adds a monitoring code to the status queue; the code is lost if four are already waiting.
+    /// Adds a monitoring code to the status queue. The code is lost if four are already waiting.
     pub fn report(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
@@ -213,7 +212,7 @@ impl Encoder {
         }
     }
 
-    /// Replaces the faults, keeping the counts of frames and stores.
+    /// Changes the simulated faults. The counts of frames and stores continue.
     pub(super) fn set_faults(&mut self, faults: SimulatedFaults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
@@ -224,7 +223,7 @@ impl Encoder {
         self.power_on(now);
     }
 
-    /// Restores the power of an encoder after a power failure.
+    /// Switches the encoder on if it has no power.
     pub(super) fn connect(&mut self, now: Moment) {
         if matches!(self.power, Power::Off) {
             self.power_on(now);
@@ -236,7 +235,7 @@ impl Encoder {
         self.activity = Activity::Listening(None);
     }
 
-    /// Power-on and 53h alike.
+    /// Starts the encoder, either after power-on or after 53h.
     fn power_on(&mut self, now: Moment) {
         self.power = Power::Starting { since: now, keeps_default: false };
         self.user = self.electronics.stored_settings;
@@ -254,7 +253,7 @@ impl Encoder {
         }
     }
 
-    /// Records the start of a received character, after all actions due earlier have been [executed](Self::act).
+    /// Records the start of a received character. All actions due earlier must already have been [executed](Self::act).
     pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
         let Some(timing) = Timing::from_settings(settings) else { return };
@@ -349,17 +348,17 @@ impl Encoder {
             Err(code) => (Command::ReadStatus, &[code.byte()][..]),
         };
         let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
-        // The settings were in use when the request was received, so they are not reserved ones.
+        // The settings were in use when the request was received, so they contain no reserved values.
         let talk = Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
         if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
-            // Used from the end of the reply on: until then nothing is received.
+            // The new settings apply from the end of the reply. Until then nothing is received.
             self.temporary = Some(settings);
         }
         Some(Transmission { start: at, settings, bytes })
     }
 
-    /// Returns whether power is lost during this store, so that only half of it is written.
+    /// Returns whether power was lost during this store. Only half of its bytes are then written.
     fn is_power_lost_during(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store_request(*field, *address, data.len(), *code).is_err() {
@@ -371,7 +370,7 @@ impl Encoder {
     }
 }
 
-/// Checks the parity, then the checksum, then the length, in the order of the reference.
+/// Checks parity, checksum and length, in the order of the reference.
 fn valid_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);

@@ -1,9 +1,9 @@
 //! EEPROM of an encoder: consecutive data fields and four access codes (manual, "Datenspeicherung und Verwaltung").
-//! Requests are refused with the status codes of the reference, checked in the order field (12h), range (11h), access
-//! code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
+//! Requests are refused with the status codes of the reference. The order of the checks is field (12h), range (11h),
+//! access code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
 //!
-//! Assumptions where the manual is silent (`U`): bytes that were never written are FFh; the bytes of a deleted field
-//! remain and reappear in a field created in their place; changing a field requires its present code.
+//! Assumptions where the manual is silent (`U`): bytes that were never written are FFh. The bytes of a deleted field
+//! remain and reappear in a field created in their place. Changing a field requires its present code.
 
 use std::ops::Range;
 
@@ -48,7 +48,7 @@ impl Memory {
         self
     }
 
-    /// Handles 4Eh.
+    /// Returns the free memory (4Eh).
     pub fn free(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used_bytes()) / FieldSize::BLOCK;
         // Both fit: a memory has at most 255 blocks, and a field at least one.
@@ -56,7 +56,7 @@ impl Memory {
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
     }
 
-    /// Handles 4Ch.
+    /// Returns the status of a field (4Ch).
     ///
     /// # Errors
     /// 12h if the field does not exist.
@@ -76,14 +76,14 @@ impl Memory {
     }
 
     pub fn code(&self, number: AccessCodeNumber) -> AccessCode {
-        // A number is 0…3; the factory value is used for the impossible case.
+        // A number is 0…3, so the fallback is never used.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    /// Handles 4Ah.
+    /// Reads bytes of a field (4Ah).
     ///
     /// # Errors
-    /// 12h, 11h, and 0Fh if the field requires its access code.
+    /// 12h, 11h, or 0Fh if the field requires another access code.
     pub fn read(&self, field: u8, address: u8, count: u8, code: AccessCode) -> Result<&[u8], StatusCode> {
         let status = self.status(field)?;
         let bytes = self.field_bytes(field).ok_or(StatusCode::NO_SUCH_FIELD)?;
@@ -93,10 +93,10 @@ impl Memory {
         Ok(wanted)
     }
 
-    /// Checks whether 4Bh with `count` bytes would be executed.
+    /// Checks whether `count` bytes could be written with 4Bh.
     ///
     /// # Errors
-    /// 12h, 11h, 0Fh if the field requires its access code, 0Eh if it is write-protected (FFh always is).
+    /// 12h, 11h, 0Fh if the field requires another access code, or 0Eh if it is write-protected. FFh always is.
     pub fn check_store_request(
         &self,
         field: u8,
@@ -112,10 +112,10 @@ impl Memory {
         if status.is_writable() { Ok(()) } else { Err(StatusCode::WRITE_PROTECTED) }
     }
 
-    /// Handles 4Bh.
+    /// Writes bytes of a field (4Bh).
     ///
     /// # Errors
-    /// Those of [`check_store_request`](Self::check_store_request); nothing is written.
+    /// See [`check_store_request`](Self::check_store_request). Nothing is written.
     pub fn store(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store_request(field, address, data.len(), code)?;
         let start = self.place(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
@@ -124,11 +124,11 @@ impl Memory {
         Ok(())
     }
 
-    /// Handles 4Dh: creates the next field, or changes or deletes an existing one.
+    /// Creates the next field, or changes or deletes an existing one (4Dh).
     ///
     /// # Errors
-    /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, 10h if the memory is too small,
-    /// or if a field other than the last is to change its size or be deleted.
+    /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, or 10h if the memory is too
+    /// small. 10h also rejects deleting a field other than the last, or changing its size.
     pub fn define(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
         match (next, status.exists()) {
@@ -138,7 +138,7 @@ impl Memory {
         }
     }
 
-    /// Handles 4Fh.
+    /// Changes an access code (4Fh).
     ///
     /// # Errors
     /// 0Fh if `old` is not the present value.
@@ -155,7 +155,6 @@ impl Memory {
         Ok(())
     }
 
-    /// Checks the access code of commands that require a particular one.
     pub(super) fn check_code(&self, number: AccessCodeNumber, code: AccessCode) -> Result<(), StatusCode> {
         if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
     }
@@ -190,8 +189,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the status of a field, if `code` is its access code (required even if CE is 0) and the field is not the
-    /// encoder's own.
+    /// Returns the status of a field if it is not the encoder's own and `code` is its access code. The code is required
+    /// even if CE is 0.
     fn check_field_access(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;

@@ -1,23 +1,23 @@
-//! The encoders that can be simulated, as data (types and geometry: SICK data sheets; field FFh: manual, "Inhalt des
-//! Datenfeldes FFh").
+//! The encoders that can be simulated, as data. Types and geometry are from SICK data sheets, field FFh is from the
+//! manual, "Inhalt des Datenfeldes FFh".
 
 use crate::devices::hiperface::protocol::Geometry;
 
-/// Encoder model with the factory settings of the encoder and, for data field 0, of the motor.
+/// Encoder model with its factory settings. Data field 0 has the factory settings of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Name used in `sim:?model=`.
     pub name: &'static str,
-    /// Type byte in the reply to 52h; FFh refers to the extended label.
+    /// Type code in the reply to 52h. FFh refers to the extended label.
     pub encoder_type: u8,
     pub geometry: Geometry,
-    /// Whether the encoder has no bearing and supports command 63h.
+    /// Whether the encoder has no bearing and therefore supports command 63h.
     pub kit: bool,
     pub serial_number: &'static str,
     pub firmware_version: &'static str,
-    /// `DD.MM.YY`.
+    /// Firmware date in the format `DD.MM.YY`.
     pub firmware_date: &'static str,
-    /// EEPROM size in units of 16 bytes, as reported by 52h. The encoder itself uses part of the EEPROM.
+    /// EEPROM size in units of 16 bytes, as reported by 52h. The encoder itself uses part of it.
     pub eeprom_units: u8,
     /// Number of 16-byte blocks available for data fields.
     pub user_blocks: u8,
@@ -26,13 +26,14 @@ pub struct Model {
     pub position: u32,
     /// Temperature in degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32), or empty if there is no such field.
+    /// Content of data field 0, in multiples of 16 bytes. The status of 32 bytes is C9h. Without content there is no
+    /// such field.
     pub name_plate: &'static [u8],
-    /// Content of field FFh, padded with 00h to 64 bytes, or empty if there is no extended label.
+    /// Content of field FFh, which is padded with 00h to 64 bytes. Without content there is no extended label.
     pub extended_label: &'static [u8],
 }
 
-/// All models; the first is the default.
+/// All models. The first is the default.
 #[rustfmt::skip]
 pub const MODELS: [Model; 3] = [
     Model { name: "skm36", encoder_type: 0x37, geometry: rotary(128, 4096), serial_number: "GB0450179", position: 0x000E_0531, ..COMMON },
@@ -61,16 +62,16 @@ const fn rotary(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
-/// Name plate of a servo motor in a drive manufacturer's format: designation, then big-endian words with speed in
-/// 1/min, rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, and serial number
-/// (32 bits).
+/// Name plate of a servo motor in a drive manufacturer's format. It consists of the designation, big-endian words and a
+/// serial number of 32 bits. The words are speed in 1/min, rated and peak current in 10 mA, pole pairs, voltage, and
+/// commutation offset in 1/65536 turn.
 const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
 
-/// Name plate of the motor into which the kit encoder is built, in the same layout.
+/// Name plate of the motor with the kit encoder, in the same format.
 const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\x30\x71\xC4\x00\x03\x0D\x40";
 
-/// Extended label with 16 periods, 4096 turns and valid limits 0 and 1 (channel 48h, 115 °C). The first byte is the XOR
-/// of all others.
+/// Extended label with 16 periods, 4096 turns and valid limits 0 and 1, which mean channel 48h and 115 °C. The first
+/// byte is the XOR of all others.
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {

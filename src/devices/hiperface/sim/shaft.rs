@@ -1,7 +1,7 @@
-//! The shaft (or scale) as measured by the encoder: position as an exact function of time, and the sine and cosine
-//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset;
-//! the analogue signals depend on the mechanical position only, so setting a position may break their phase, as in a
-//! real encoder.
+//! The shaft or scale that the encoder measures: its position as an exact function of time, and the sine and cosine
+//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset.
+//! The analogue signals depend on the mechanical position only. As in a real encoder, setting a position may therefore
+//! break their phase.
 
 use std::f64::consts::TAU;
 
@@ -20,7 +20,7 @@ pub(super) struct Shaft {
 }
 
 impl Shaft {
-    /// Speed above which no position is available (6000/min for the absolute value, according to data sheets).
+    /// Speed in 1/min above which no absolute position is available. The value is from data sheets.
     pub(super) const MAX_RPM: f64 = 6000.0;
     /// Number of values of the position word, which has 32 bits.
     const WORD: u64 = 1 << 32;
@@ -57,8 +57,8 @@ impl Shaft {
         self.offset = (u64::from(position) % range + range - self.integer_steps(at)) % range;
     }
 
-    /// Returns the sine signal in counts of 10 bits for 5 V, with a mean of 2.5 V and 1 Vpp. The signal crosses its
-    /// mean upwards at the start of a period.
+    /// Returns the sine signal in counts of 10 bits for 5 V. It has a mean of 2.5 V and 1 V from peak to peak, and
+    /// rises through the mean at the start of a period.
     pub(super) fn sine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).sin())
     }
@@ -84,7 +84,7 @@ impl Shaft {
 
     /// Returns the mechanical position in steps, from 0 to just below the range.
     fn place(&self, at: Moment) -> f64 {
-        // A linear scale has no turns; there `rpm` counts periods per minute.
+        // A linear scale has no turns, so `rpm` means periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
         let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
         let range = self.range() as f64;

@@ -1,4 +1,5 @@
-//! Actions of the user on an encoder: edits take effect at once, everything else is a job of the session or a task.
+//! Actions of the user on an encoder. Edits take effect at once. All other actions start a job of the session or a
+//! task.
 
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain as words;
 
-/// Interval between readings of a watched value. Watched values change slowly, and reading them delays the position.
+/// Interval at which watched values are read. They change slowly, and reading them delays the position.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -78,7 +79,7 @@ impl Encoder {
         self.identity.as_ref().map(|identity| identity.label.settings)
     }
 
-    /// Starts a job after which the encoder uses different settings.
+    /// Starts a job that changes the line settings of the encoder.
     fn submit_settings_job(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;
@@ -88,7 +89,7 @@ impl Encoder {
     pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.session.phase, self.field(field)) {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
-            // A profile is a text: the protection that it records does not protect it.
+            // A profile can always be edited. The write protection that it records applies to the encoder only.
             (Phase::Offline, _) | (_, None) => Ok(()),
             (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
         };

@@ -1,4 +1,4 @@
-//! The actions of the encoder that is shown.
+//! Actions on the displayed encoder.
 
 use std::path::PathBuf;
 
@@ -15,12 +15,12 @@ pub enum HiperfaceAction {
     /// Starts or stops reading a value while the position is polled.
     Watch(Watch, bool),
     ReadAnalogue(u8),
-    /// Reads position, sine and cosine with the shaft at rest.
+    /// Reads position, sine and cosine while the shaft is at rest.
     ReadRest,
     ReadCounter,
-    /// Runs the device check, after a restart if requested.
+    /// Runs the device check.
     Check {
-        /// Send 53h first.
+        /// Whether the encoder is restarted first with command 53h.
         restart: bool,
     },
     Reset,
@@ -32,15 +32,15 @@ pub enum HiperfaceAction {
     },
     Put {
         field: u8,
-        /// First byte.
+        /// Index of the first byte.
         address: usize,
         bytes: Vec<u8>,
     },
     Revert(FieldRange),
     Plan(Change),
-    /// Prepares the plan again with other options, if the change is a restore.
+    /// Prepares the plan of a restore again with other options. Any other plan is prepared again unchanged.
     PlanAgain(RestoreOptions),
-    /// Permits writing even though the encoder has reached its limit of write cycles.
+    /// Permits or forbids writing to an encoder that has reached its limit of write cycles.
     ForceWear(bool),
     Write(PlanId),
     CloseReview,

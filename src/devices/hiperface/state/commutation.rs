@@ -1,7 +1,7 @@
-//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder
-//! and motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine
-//! reference). It neither energises the motor nor writes: its results are edits of the memory, or a position to set,
-//! which both go through the review of a write.
+//! The commutation assistant. It determines the offset between encoder and motor from the position at which the motor
+//! rests while a static vector is energised. It supports both methods of the manual. The assistant neither energises
+//! the motor nor writes to the encoder: its result is an edit of the memory or a position to set, and both go through
+//! the review of a write. See SICK 8010701, commutation, and section 5 of the project's sine/cosine reference.
 
 mod act;
 mod form;
@@ -27,9 +27,9 @@ pub enum CommutationAction {
     Read(Slot),
     Use(Slot),
     Clear,
-    /// Method 1, which enters the offset in the memory as an edit.
+    /// Enters the offset in the memory as an edit. This is method 1 of the manual.
     Store,
-    /// Method 2, which shows the effect of setting the position.
+    /// Plans the setting of the position, which is then reviewed. This is method 2 of the manual.
     Set,
 }
 
@@ -39,39 +39,40 @@ pub struct Commutation {
     /// Reason why the last action was not carried out.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// Last position read; the shaft is still there, as far as known.
+    /// Slot of the last reading. The shaft is assumed to be still at this position.
     last: Option<Slot>,
     asked: Option<PendingReading>,
 }
 
-/// Reading in progress, with its purpose and the settings at its start, regardless of later selections and entries.
+/// Reading in progress. It keeps the form's source and phase from when it was requested, because the user may edit the
+/// form meanwhile.
 #[derive(Debug)]
 struct PendingReading {
     slot: Slot,
     source: Source,
-    /// As entered.
+    /// Phase as typed by the user.
     phase: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestReading {
-    /// Position in periods, within the whole range of the encoder.
+    /// Position in signal periods, within the whole range of the encoder.
     pub fine_periods: f64,
     pub kind: Kind,
-    /// Position word, if it was read from the encoder.
+    /// Position word of the encoder, or `None` for a typed position.
     pub raw: Option<u32>,
 }
 
-/// Source and quality of a position.
+/// Source and accuracy of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Fine {
         residual_periods: f64,
         verdict: Verdict,
-        /// Resolution in periods, or `None` if the phase was entered.
+        /// Resolution in signal periods, or `None` if the phase was typed.
         resolution_periods: Option<f64>,
     },
-    /// Absolute position only, taken at the middle of its step.
+    /// Absolute position without the analogue signals, taken at the middle of its step.
     Absolute,
     Typed,
 }
@@ -107,12 +108,12 @@ impl Commutation {
         self.problem = None;
     }
 
-    /// Discards the readings, because they refer to a different zero or are no longer required.
+    /// Discards the readings, for example because the zero position has changed.
     pub(super) fn forget_readings(&mut self) {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
 
-    /// Stores a reading taken at rest in the slot for which it was requested, if any.
+    /// Stores a reading in the slot that requested it, if any.
     pub(super) fn take(&mut self, rest: RestPosition, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.reading(rest, geometry) {
@@ -121,7 +122,7 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job, and returns whether it was the requested reading, whose error is then shown with the
+    /// Handles a failed job. Returns whether the job was the requested reading, whose error is then shown with the
     /// request.
     pub(super) fn failed(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
@@ -169,10 +170,10 @@ impl PendingReading {
     }
 }
 
-/// Combines absolute position and phase, which disagree if the residual exceeds 14/32.
+/// Combines the absolute position and the phase. Fails if the residual exceeds 14/32 of a period.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
-    // An unknown range does not wrap.
+    // An unknown range is treated as one that never wraps.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
     let synchronised = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;

@@ -1,5 +1,4 @@
-//! The connection form and its link. Nothing is opened here; allowed values come from the station and the virtual
-//! encoder.
+//! The connection form for HIPERFACE encoders, and the link that it builds. The form does not open the link.
 
 use super::search::SearchFinder;
 use crate::app::Text;
@@ -27,8 +26,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// Entries of the connection form. An empty entry selects the default; entries for other connection types are preserved
-/// but not included in the link.
+/// Entries of the connection form. An empty entry selects the default. Entries of other connection types are kept, but
+/// are not part of the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -38,15 +37,15 @@ pub struct LinkForm {
     pub file: String,
     pub baud: Baud,
     pub parity: Parity,
-    /// Address as `40`, `0x40` or `40h`, always hexadecimal, or `broadcast`.
+    /// Address in hexadecimal, such as `40`, `0x40` or `40h`, or the word `broadcast`.
     pub address: String,
     pub echo: Echo,
     /// Whether the encoder's time-out is 44 bits rather than 11 bits.
     pub long_timeout: bool,
     pub model: String,
-    /// Typed values of other parameters.
+    /// Values of the remaining parameters, as typed.
     pub typed: Typed,
-    /// Link parameters without a form entry, or with a value that their entry cannot show.
+    /// Link parameters that the form cannot show, with their values.
     pub rest: Vec<(String, String)>,
 }
 
@@ -87,7 +86,7 @@ impl FormModel for LinkForm {
             LinkScheme::Sim => form.kind = LinkKind::Virtual,
             LinkScheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             LinkScheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
-            // These do not lead to a HIPERFACE encoder.
+            // These links do not lead to a HIPERFACE encoder.
             LinkScheme::Bridge | LinkScheme::Modbus | LinkScheme::Enip => {}
             LinkScheme::Tcp => {
                 form.kind = LinkKind::Tcp;
@@ -120,7 +119,7 @@ impl LinkForm {
         MODELS.iter().map(|model| model.name)
     }
 
-    /// Returns the typed entries of the virtual encoder.
+    /// Returns the parameters of the virtual encoder that the form offers as text entries.
     pub fn virtual_device_entries() -> Vec<Entry> {
         chosen(&Config::entries(), &["rpm", "fault"])
     }
@@ -129,13 +128,13 @@ impl LinkForm {
         LinkParameters::entries()
     }
 
-    /// Returns the typed parameters of the link and, if applicable, of the virtual encoder.
+    /// Returns the parameters that the form offers as text entries.
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == LinkKind::Virtual { Self::virtual_device_entries() } else { Vec::new() };
         [own, Self::link_entries()].concat()
     }
 
-    /// Fills in the form entry for a parameter, or returns `false` if no entry can show it.
+    /// Fills in the form entry for a parameter. Returns `false` if no entry can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);

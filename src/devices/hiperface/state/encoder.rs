@@ -1,4 +1,4 @@
-//! An open encoder or a profile of one: known data, edits and running jobs.
+//! An open encoder, or a profile of one, with its edits and running jobs.
 
 use std::collections::BTreeMap;
 
@@ -21,29 +21,29 @@ pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
     pub staged: Staged,
-    /// Status queue as last read, plus the codes announced since, or `None` if never read.
+    /// Status codes that the encoder has reported, or `None` if they were never read.
     pub codes: Option<Vec<StatusCode>>,
-    /// Data fields that could not be read for a reason other than their access code, with that reason.
+    /// Reasons why data fields could not be read, by field number. Fields with an unknown access code are not included.
     pub unreadable: BTreeMap<u8, Text>,
     pub line_quality: LineQuality,
     pub check: Option<Vec<check::HiperfaceStepResult>>,
     pub counter: Option<u32>,
-    /// Old and new value of the last position set by this program.
+    /// Old and new value of the last position that this program has set.
     pub position_set: Option<(u32, u32)>,
-    /// Analogue values as last read, with their limits, or the reason why the encoder does not provide them.
+    /// Last analogue value of each channel and its limit, or the reason why the encoder does not provide it.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
     pub(super) rest: RestReadingRequest,
     pub(super) meaning: Meaning,
-    /// Access codes that the user entered or changed; the next session with this encoder begins with these codes.
+    /// Access codes that the user has entered or changed. The next session with this encoder starts with them.
     pub(super) access_codes: Vec<(AccessCodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
-    /// Access codes that must be passed to the session again once the encoder is identified.
+    /// Access codes that the session receives again after the encoder is identified.
     pub(super) codes_due: Vec<(AccessCodeNumber, AccessCode)>,
     /// Interface settings that the encoder will have after the running job.
     pub(super) settings_then: Option<LineSettings>,
-    /// Number of the access code entered last; reading the fields will show whether the code is correct.
+    /// Number of the access code that the user entered last. The next survey shows whether the code is correct.
     pub(super) tried_code: Option<AccessCodeNumber>,
 }
 
@@ -101,12 +101,12 @@ impl Encoder {
         self.staged.device().iter().find(|field| field.number == number)
     }
 
-    /// Returns the edited profile, if the session edits a profile.
+    /// Returns the profile with all edits, or `None` if the session has no profile.
     pub(crate) fn edited_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
-        // The edit may also be a commutation offset.
+        // The edited bytes may also contain a commutation offset.
         profile.mark_mounting_dependent_values();
         Some(profile)
     }
@@ -115,7 +115,8 @@ impl Encoder {
     pub(super) fn apply_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
-        // Without a serial number, it may be any of its type; an equal memory makes it count as the same.
+        // Without a serial number, it may be any encoder of this type. It counts as the same encoder if its memory is
+        // unchanged.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
         if self.is_different_device(&identity) || (self.identity.is_some() && unproven) {
             self.handle_device_replacement(&identity.serial.serial_number, services);
@@ -153,7 +154,7 @@ impl Encoder {
         }
     }
 
-    /// Returns the reason why the bytes of a field cannot be edited, or `None` if they can be.
+    /// Returns the reason why a field cannot be edited, or `None` if it can.
     pub fn reason_not_editable(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
@@ -163,7 +164,7 @@ impl Encoder {
         self.record.add(samples, dropped, geometry);
     }
 
-    /// Reports whether the user's access code opens the fields that it protects, without revealing the code.
+    /// Reports whether the access code entered last opens its fields. The message does not contain the code.
     fn report_code(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
@@ -181,7 +182,7 @@ impl Encoder {
         services.notify(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
-    /// Returns whether the encoder is a different one from the one read before.
+    /// Returns whether this is another encoder than before, judged by its type and serial number.
     pub(super) fn is_different_device(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))

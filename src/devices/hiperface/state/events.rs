@@ -1,4 +1,4 @@
-//! Events from the line: results of jobs, messages of the encoder, live samples, and loss of the connection.
+//! Events from the connection: job results, messages of the encoder, live samples and loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -68,14 +68,14 @@ impl Kind for Hiperface {
 }
 
 impl Encoder {
-    /// Reads the encoder. After connecting, the encoder is identified before access codes are used, since they belong
-    /// to a specific encoder.
+    /// Reads the encoder. If there are access codes to use, the encoder is identified first, because the codes belong
+    /// to one specific encoder.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
-    /// Passes the next access code of a reconnected encoder to the session, or reads the encoder if none is left.
+    /// Passes the next access code to the session. Reads the encoder if no access code is left.
     fn submit_access_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Adopts a new address or new access codes after a write, for the next session as well. The previous position is
-    /// stored only here, since the encoder does not report its offset.
+    /// Updates the session after a write with a new address, new access codes and the position offset. The offset is
+    /// stored only here, because the encoder does not report it.
     pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -102,7 +102,7 @@ impl Encoder {
                 }
                 Op::SetPosition { from, to, .. } => {
                     self.position_set = Some((*from, *to));
-                    // They were read with another zero.
+                    // The readings refer to the previous zero position.
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
@@ -117,7 +117,7 @@ impl Encoder {
         }
     }
 
-    /// Adopts the settings that the job has changed, so that the next session starts with these settings.
+    /// Adopts the line settings that the job has changed. The next session starts with them.
     fn adopt_line_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
@@ -227,13 +227,13 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
             HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
             HiperfaceOutput::Committed(committed) => self.committed(committed, services),
-            // A search has its own session.
+            // Searches run in a separate session.
             HiperfaceOutput::Found(_) => {}
         }
     }
 
-    /// Returns whether the link is open but the encoder does not reply, or only invalid bytes have been received since
-    /// it was opened.
+    /// Returns whether the error means that the encoder does not respond. Invalid bytes have this meaning only right
+    /// after connecting.
     fn means_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -256,7 +256,7 @@ impl SessionEvents for Encoder {
             self.cancel_rest_reading();
         }
         self.handle_interrupted_write(how, texts);
-        // It is reported as well.
+        // The caller also reports the early end.
         false
     }
 
@@ -273,14 +273,14 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. A missing feature counts as a result, an invalid reply does not.
+    /// Handles a failed job. The rejection of an analogue channel counts as a result of the reading.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.end_job(self.session.id, id, JobState::Failed(why.clone()));
         let stands_there = self.handle_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
-            // The encoder has no such channel: this is a result, and shown where it was requested.
+            // The encoder does not have this channel. This is a result, shown where the reading was requested.
             self.analogue.insert(channel, Err(why));
             self.session.answers();
             return;

@@ -41,7 +41,7 @@ use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// Returns the messages for a job that ended early, at least one sentence, each of which may be on a line of its own.
+/// Returns the messages for a job that ended early. There is at least one message.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -67,7 +67,7 @@ pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usiz
         let fields: Vec<String> = interrupted.end_state.unlocked.iter().map(ToString::to_string).collect();
         texts.push(TEXTS.text("write.left_unlocked").with("fields", fields.join(", ")));
     }
-    // An operation that may have been carried out counts as a write cycle.
+    // An operation with an unknown result counts as a write cycle.
     let id = match kind {
         _ if done.write_cycles == 0 => "write.untouched",
         ChangeKind::Restore => "write.backup",
@@ -78,7 +78,7 @@ pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usiz
     texts
 }
 
-/// Returns the reason why the connection failed, if the connection can no longer be used.
+/// Returns the reason why the connection was lost, or `None` if it can still be used.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
@@ -86,7 +86,8 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the message for a completed write. Values that cannot be read back were acknowledged by the encoder.
+/// Returns the message for a completed write. If no value was read back, it says that the encoder has acknowledged the
+/// write.
 pub fn written(written: &Written) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
@@ -160,7 +161,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// Returns the message for a value that must be set up again.
+/// Returns the name of a value that must be set up again.
 pub fn redo(redo: &RequiredSetup) -> Text {
     match redo {
         RequiredSetup::Commutation => TEXTS.text("redo.commutation"),
@@ -168,31 +169,29 @@ pub fn redo(redo: &RequiredSetup) -> Text {
     }
 }
 
-/// Returns the message for a data field with bytes of unknown meaning that would be written to another encoder.
+/// Returns the message for a data field that contains bytes of unknown meaning.
 pub fn unknown_field(field: &UnknownField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
 
-/// Returns the message for fields that a write created and that are not deleted by undoing it, or `None` if there are
-/// no such fields.
+/// Returns the message for created fields that remain after the write is undone, or `None` if there are none.
 pub fn created_left(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
 }
 
-/// Returns the message about status codes that may have been lost.
 pub fn codes_unheard(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
-/// Returns the message for a profile that belongs to another type of encoder.
+/// Returns the message for a profile of another encoder type.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
-/// Returns the code of an encoder type, with its name if the built-in table contains one.
+/// Returns the name and the code of an encoder type. Unknown types have only the code.
 fn type_name(code: u8) -> String {
     match EncoderTypes::built_in().find(code) {
         Some(own) => format!("{} ({code:02X}h)", own.name),

@@ -1,4 +1,4 @@
-//! Parsing of entries: codes, addresses, positions and channels. Errors state the valid values.
+//! Parsing of typed codes, addresses, positions and channels. The error messages name the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -7,52 +7,52 @@ use crate::devices::hiperface::protocol::{
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
 
-/// Parses an access code, which is one hexadecimal byte.
+/// Parses an access code of one hexadecimal byte.
 ///
 /// # Errors
-/// States why the entry is invalid, without repeating the entry.
+/// Returns an error if the entry is invalid. The message does not repeat the entry.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
 
-/// Parses a new access code, which is entered twice because it cannot be read back.
+/// Parses a new access code. The user types it twice, because it cannot be read back.
 ///
 /// # Errors
-/// Explains why the entries are invalid without repeating them.
+/// Returns an error if an entry is invalid or the entries differ. The message does not repeat the entries.
 pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     let code = access_code(text)?;
     if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
 }
 
-/// Parses an encoder address, 40h…5Fh in hexadecimal.
+/// Parses an encoder address in hexadecimal, 40h to 5Fh.
 ///
 /// # Errors
-/// States why the entry is invalid.
+/// Returns an error if the entry is invalid.
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
     byte(text)
         .and_then(DeviceAddress::new)
         .ok_or_else(|| with_addresses(TEXTS.text("entry.address")).with("entry", text))
 }
 
-/// Adds the lowest and highest encoder address in hexadecimal to a message.
+/// Adds the range of encoder addresses to a message.
 pub(super) fn with_addresses(text: Text) -> Text {
     let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
     text.with("first", first).with("last", last)
 }
 
-/// Parses an analogue channel in hexadecimal.
+/// Parses the number of an analogue channel in hexadecimal.
 ///
 /// # Errors
-/// States why the entry is invalid.
+/// Returns an error if the entry is invalid.
 pub fn channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
-/// Parses a position in steps, decimal or with `0x`, or in degrees within the first turn, followed by `°` or `deg`.
-/// Signs, exponents and words are not allowed.
+/// Parses a position. A number of steps is decimal, or hexadecimal with `0x`. An angle within the first turn is in
+/// degrees, followed by `°` or `deg`. Signs, exponents and words are invalid.
 ///
 /// # Errors
-/// States why the entry is invalid, with the range if known.
+/// Returns an error if the entry is invalid. The message contains the range, if known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
@@ -61,7 +61,7 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let steps = match (degrees, text.strip_prefix("0x")) {
         (Some(degrees), _) => {
             let degrees = degrees.trim().replace(',', ".");
-            // The parser would accept a sign, an exponent, and texts such as `inf`.
+            // The number parser would also accept a sign, an exponent and texts such as `inf`.
             if !degrees.bytes().all(|c| c.is_ascii_digit() || c == b'.') {
                 return Err(refused());
             }
@@ -82,10 +82,10 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
 }
 
-/// Returns the interface settings with another format, time-out and wiring; unknown bits are preserved.
+/// Returns line settings with the given format, time-out and wiring. Bits of unknown meaning are preserved.
 ///
 /// # Errors
-/// The encoder does not support the baud rate or parity.
+/// Returns an error if the encoder does not support the baud rate or parity.
 pub fn settings(
     from: LineSettings,
     format: CharacterFormat,
@@ -103,7 +103,7 @@ pub fn new_field(size: FieldSize, code: AccessCodeNumber, code_required: bool) -
 fn byte(text: &str) -> Option<u8> {
     let text = text.trim();
     let digits = text.strip_prefix("0x").or_else(|| text.strip_suffix(['h', 'H'])).unwrap_or(text);
-    // The parser would accept a sign.
+    // The number parser would also accept a sign.
     u8::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|c| c.is_ascii_hexdigit()))
 }
 

@@ -1,4 +1,4 @@
-//! HIPERFACE as a kind of device for the studio, before a device is open.
+//! HIPERFACE as a kind of device in the studio, before an encoder is opened.
 
 use super::{Encoder, LinkForm};
 use crate::app::services::Services;

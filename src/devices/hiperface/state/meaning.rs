@@ -1,4 +1,4 @@
-//! Meaning of frames in the trace: a reply is decoded together with the preceding request.
+//! Explanation of frames in the trace. A reply is explained together with the request before it.
 
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
@@ -6,14 +6,14 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Req
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder that explains frames in the order of transmission.
+/// Decoder that explains frames in the order of transmission. It remembers the last request.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
     request: Option<(u8, Request)>,
 }
 
 impl Meaning {
-    /// Returns an explanation of a frame, without access codes.
+    /// Explains a frame without revealing access codes.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.sent(&bytes),
@@ -44,7 +44,7 @@ impl Meaning {
             Ok(facts) => facts,
             Err(error) => return Explained::broken(words::damage_text(&Damage::Reply(error.into()))),
         };
-        // The heading contains the request's facts; of a reply only new facts are added.
+        // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
         let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(is_report).map(|_| TraceFault::Reported);
@@ -60,7 +60,7 @@ fn is_report(answer: &Answer) -> bool {
     }
 }
 
-/// Replaces the last byte of a frame with the checksum of all other bytes.
+/// Replaces the last byte of a frame with the checksum of the bytes before it.
 fn with_checksum(mut frame: Vec<u8>) -> Vec<u8> {
     if frame.pop().is_some() {
         frame.push(frame.iter().fold(0, |sum, byte| sum ^ byte));

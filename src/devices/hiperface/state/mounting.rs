@@ -1,4 +1,4 @@
-//! Parts of the memory that belong to the mounting: values valid for one encoder on one motor only.
+//! Values in the memory that are valid only for one encoder mounted on one motor.
 
 use super::encoder::Encoder;
 use crate::app::session::Source;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::procedures::profile_of;
 use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded};
 
 impl Encoder {
-    /// Returns the parts of a field that contain mounting values, with their meaning.
+    /// Returns the byte ranges of a field whose values depend on the mounting, each with its meaning.
     pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
         let own = |profile: &HiperfaceProfile| {
             let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);

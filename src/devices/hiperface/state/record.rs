@@ -48,7 +48,7 @@ impl Record {
         }
     }
 
-    /// Records the given values, and no others, in addition to the position.
+    /// Selects the values to record in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Watch]) {
         self.track.watch(watched);
     }
@@ -57,12 +57,12 @@ impl Record {
         self.track.watched()
     }
 
-    /// Returns the last position, unless the encoder currently has none.
+    /// Returns the last position, or `None` while the encoder refuses to report one.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder currently has no position to report.
+    /// Returns whether the encoder refuses to report a position at present.
     pub fn refused(&self) -> bool {
         self.refused
     }
@@ -86,7 +86,7 @@ fn meaning(geometry: Option<Geometry>) -> Meaning {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
             Meaning::for_steps_per_turn(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
-        // The whole word, which wraps at its end.
+        // Without a known range, the position wraps at the end of its 32-bit word.
         None => Meaning::for_steps(Some(1 << 32)),
     }
 }

@@ -1,4 +1,4 @@
-//! Drafts stored in users' files are read and written unchanged.
+//! Checks that stored drafts are read and written unchanged.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;

@@ -1,4 +1,4 @@
-//! Reading of the shaft at rest, for the commutation assistant or on request.
+//! Reading of the position while the shaft is at rest, for the commutation assistant or on request.
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::services::Services;
@@ -8,7 +8,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::RestPosition;
 use crate::devices::hiperface::protocol::Geometry;
 
-/// Reading with the shaft at rest, requested by the user rather than by the assistant.
+/// Reading at rest that the user has requested outside the commutation assistant.
 #[derive(Debug, Default)]
 pub(super) struct RestReadingRequest {
     is_under_way: bool,
@@ -16,7 +16,7 @@ pub(super) struct RestReadingRequest {
 }
 
 impl Encoder {
-    /// Returns periods and turns, if the encoder type defines them.
+    /// Returns the signal periods and turns of the encoder, if known.
     pub fn geometry(&self) -> Option<Geometry> {
         self.identity.as_ref().and_then(|identity| identity.geometry)
     }
@@ -34,8 +34,7 @@ impl Encoder {
         self.commutation.take(rest, geometry);
     }
 
-    /// Handles a failed job, and returns whether it was a reading requested by the user, whose error is then shown with
-    /// the request.
+    /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then shown with the request.
     pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

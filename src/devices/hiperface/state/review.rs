@@ -1,4 +1,4 @@
-//! Review of a write to a HIPERFACE encoder: permits, warnings and cost of its plan.
+//! Review of a write to a HIPERFACE encoder: the permits, warnings and cost of its plan.
 
 use crate::app::Text;
 use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};

@@ -1,5 +1,5 @@
-//! The encoder's rules for data fields, checked before an action is offered: the same plans that a write would make,
-//! based on the memory as read.
+//! Rules of the encoder for data fields, checked before an action is offered. The check makes the same plan as the
+//! write, from the memory as last read.
 
 use super::Staged;
 use crate::app::Text;
@@ -11,10 +11,10 @@ use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, Fie
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// Permission for an action, or the reason why it is not allowed.
+/// Permission for an action. The error is the reason why the action is not allowed.
 pub type Allowed = Result<(), Text>;
 
-/// Checks whether a new field of this size can be created.
+/// Checks whether a field of this size can be created.
 pub fn create(memory: FreeMemory, size: FieldSize, code: AccessCodeNumber, code_required: bool) -> Allowed {
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
@@ -25,7 +25,7 @@ pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
-/// Checks whether the field can change its size, which only the last field can.
+/// Checks whether the size of the field can be changed. The encoder permits this for the last field only.
 pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     status(field)?;
     allowed(plan_delete(memory, field))
@@ -36,8 +36,8 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowe
     check_edits_preserved(staged, field.number, 0)
 }
 
-/// Checks whether the protection and access code of the field can be changed, for which the encoder requires the
-/// field's access code.
+/// Checks whether the protection and access code of the field can be changed. The encoder requires the field's access
+/// code for this.
 pub fn status(field: &FieldImage) -> Allowed {
     match field.bytes {
         Some(_) => Ok(()),
@@ -45,7 +45,7 @@ pub fn status(field: &FieldImage) -> Allowed {
     }
 }
 
-/// Checks a change before the encoder is queried.
+/// Checks a change without querying the encoder.
 pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
     match change {
@@ -67,7 +67,7 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     }
 }
 
-/// Checks that the bytes of every unwritten edit still exist after the plan.
+/// Checks that the plan keeps every byte that has an unwritten edit.
 pub(super) fn preserves_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
@@ -77,7 +77,7 @@ pub(super) fn preserves_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed 
     })
 }
 
-/// Checks that no edit of the field is beyond the first `bytes` bytes.
+/// Checks that the field has no edit beyond its first `bytes` bytes.
 fn check_edits_preserved(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
@@ -96,7 +96,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
     Ok(())
 }
 
-/// Returns the maximum size to which the last field can be changed.
+/// Returns the largest possible size of the last field.
 pub fn largest_size(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())

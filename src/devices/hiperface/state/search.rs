@@ -1,5 +1,4 @@
-//! Search for an encoder with unknown settings on the line of the connection form, at every baud rate, parity and
-//! address.
+//! Search for encoders with unknown settings on a line. It tries every baud rate, parity and address.
 
 use crossbeam_channel::Receiver;
 
@@ -26,10 +25,10 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Receiver that is disconnected once the link is open or cannot be opened.
+    /// Receiver that is disconnected when the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
-    /// Message about the end of the search, or `None` while it is running.
+    /// Message about the end of the search, or `None` until it has ended.
     pub end: Option<Text>,
 }
 
@@ -107,17 +106,17 @@ impl Search {
     pub(crate) fn stop(&mut self) {
         match &mut self.line {
             Some(line) => line.stop(),
-            // The link is still being opened, which may never end.
+            // The link is still being opened. This may never end.
             None => self.end = Some(TEXTS.text("find.cut_short").with("count", 0)),
         }
     }
 }
 
-/// Search for encoders on the line selected in the connection form.
+/// Search function of the connection form.
 #[derive(Default)]
 pub struct SearchFinder {
     pub search: Option<Search>,
-    /// Options of the search that starts once the user has confirmed that no drive is on the line.
+    /// Options of the requested search. It starts when the user confirms that no drive is on the line.
     asked: Option<FindOptions>,
 }
 
@@ -175,7 +174,7 @@ impl Finder for SearchFinder {
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),
-            // A search that was ended while its link was opening does not use it.
+            // The search ended while its link was being opened, so the link is not needed.
             (None, Ok(opened)) => opened.close_unneeded(SessionId(number), services),
             (None, Err(_)) => {}
         }

@@ -1,21 +1,22 @@
-//! Data fields of the encoder with the edited bytes. Nothing is written to an encoder here; a plan is made from the
-//! difference.
+//! Data fields of the encoder with the edited bytes. Nothing is written to the encoder here. The plan of a write is
+//! made from the differences.
 //!
-//! Edits survive a new reading: an edited byte keeps its edited value, whatever the encoder now contains; all other
-//! bytes follow the encoder. Edits of a field that cannot be read because its access code is no longer known wait until
-//! it can.
+//! Edits survive a new reading. An edited byte keeps its edited value, and all other bytes take the value from the
+//! encoder. If a field cannot be read because its access code is unknown, its edits are kept until the field is
+//! readable.
 
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with edited bytes, by field and address.
+/// Data fields with edited bytes, which are addressed by field and index.
 pub type Staged = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Place = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from the encoder's byte, as far as known.
+    /// Returns whether a byte differs from the encoder's byte. In a field that could not be read, every byte counts as
+    /// different.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -30,20 +31,20 @@ impl EditBase for Vec<FieldImage> {
 pub enum StagedError {
     #[error("data field {field} does not exist")]
     NoField { field: u8 },
-    /// The bytes are unknown, because the access code is unknown.
+    /// The field could not be read, because its access code is unknown.
     #[error("data field {field} is locked")]
     Locked { field: u8 },
-    /// The field ends before.
+    /// The bytes extend beyond the end of the field.
     #[error("data field {field} ends at {last}")]
     Outside {
         field: u8,
-        /// Index of the last byte.
+        /// Index of the last byte of the field.
         last: usize,
     },
 }
 
 impl Staged {
-    /// Adopts the values read from the encoder. Edits are kept, unless their byte no longer exists or already has the
+    /// Adopts the bytes read from the encoder. An edit is dropped if its byte no longer exists or already has the
     /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.reread(|own| *own = device);
@@ -72,12 +73,12 @@ impl Staged {
         self.get((field, address)).or_else(|| self.device_byte(field, address))
     }
 
-    /// Returns whether the edited byte differs from the encoder's.
+    /// Returns whether the byte has an edit that has not been written.
     pub fn is_edited(&self, field: u8, address: usize) -> bool {
         self.get((field, address)).is_some()
     }
 
-    /// Runs of edited bytes.
+    /// Returns the ranges of consecutive edited bytes.
     pub fn changes(&self) -> Vec<FieldRange> {
         let mut runs: Vec<FieldRange> = Vec::new();
         for ((field, address), _) in self.iter() {
@@ -93,7 +94,7 @@ impl Staged {
         runs
     }
 
-    /// Returns the runs of edited bytes.
+    /// Returns the ranges of consecutive edited bytes, with their new values.
     pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
         let bytes = |range: &FieldRange| {
             let addresses = (range.start..).take(range.count.unwrap_or(0));
@@ -102,10 +103,10 @@ impl Staged {
         self.changes().into_iter().map(|range| (range, bytes(&range))).collect()
     }
 
-    /// Writes bytes to a field as one undoable step.
+    /// Edits consecutive bytes of a field as one undoable step.
     ///
     /// # Errors
-    /// The bytes exceed the field; nothing is changed.
+    /// Returns an error without any change if the field does not exist, is locked or is too short.
     pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), StagedError> {
         let image = self.field(field).ok_or(StagedError::NoField { field })?;
         let size = image.bytes.as_ref().ok_or(StagedError::Locked { field })?.len();
@@ -124,7 +125,7 @@ impl Staged {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Adopts edits from a draft, except those for bytes that do not exist or already have the value.
+    /// Adopts the edits of a draft. Edits of missing bytes and edits without effect are left out.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

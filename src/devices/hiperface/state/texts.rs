@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Message catalogue of HIPERFACE; names not found here are those of common messages.
+/// Messages of HIPERFACE encoders. Names that it does not define refer to common messages.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperface.ron"));

@@ -1,4 +1,4 @@
-//! Writing to an encoder: edits or a profile as a request, its jobs, and the consequences in the session.
+//! Writing of edits or a profile to an encoder, and the update of the session afterwards.
 
 use super::commutation::Commutation;
 use super::encoder::Encoder;
@@ -19,7 +19,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Prepares the plan under review again. An encoder that did not reply is queried again.
+    /// Prepares the plan under review again, for example after the encoder did not reply.
     pub(super) fn replan(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
@@ -69,7 +69,7 @@ impl HasMemory for Encoder {
         self.follow(&ops, services);
     }
 
-    /// Logs nothing, because the list of jobs shows the start.
+    /// Does nothing, because the list of jobs already shows the start.
     fn log_write_start(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
@@ -122,7 +122,7 @@ impl HasProfile for Encoder {
     }
 }
 
-/// Returns a restore with other options, and any other change unchanged.
+/// Returns the change with other options if it is a restore. Any other change stays the same.
 pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
     match change {
         Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },

@@ -1,4 +1,4 @@
-//! The commutation assistant page: preparation, readings, results, and both ways to store them.
+//! The page of the commutation assistant: preparation, readings, results, and both ways to store the result.
 
 mod result;
 
@@ -18,20 +18,19 @@ use crate::ui::controls::{
 use crate::ui::{Theme, icons};
 
 const NUMBER: f32 = 96.0;
-/// Width of the column with the read buttons.
 const READ: f32 = 160.0;
 const POSITION: f32 = 80.0;
-/// Width from which the position is on the line of its buttons.
+/// Minimum width in points for showing the position on the same line as its buttons.
 const BESIDE: f32 = 430.0;
-/// Width from which both limits are in one row.
+/// Minimum width in points for both limits in one row.
 const BOTH_LIMITS: f32 = 420.0;
 const MESSAGE_LINES: f32 = 2.0;
-/// Minimum width for a layout with two columns.
+/// Minimum width in points for two columns.
 const COLUMNS: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
-    // Beside the long column if there are two, else at the end.
+    // The report is below the shorter of two columns, or at the end of a single one.
     let wide = ui.available_width() >= COLUMNS;
     split(
         ui,
@@ -97,7 +96,6 @@ fn before_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     });
 }
 
-/// Draws the entries of the current limit and time limit, in one row if there is room.
 fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     if ui.available_width() < BOTH_LIMITS {
         number_ui(ui, theme, "commutation.current", &mut form.current_a, "");
@@ -201,7 +199,7 @@ fn second_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, act
     });
 }
 
-/// Draws a message in a space that is the same without one.
+/// Draws a message in a space of constant height. The layout does not move when the message appears or disappears.
 pub(super) fn reserved_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);
     ui.allocate_ui(room, |ui| {
@@ -210,7 +208,7 @@ pub(super) fn reserved_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     });
 }
 
-/// Draws one position, read or entered, and the controls for both methods.
+/// Draws the controls for one reading: a button to read the position and an entry to type it.
 fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {
@@ -221,7 +219,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
     let beside = ui.available_width() >= BESIDE;
     ui.horizontal_wrapped(|ui| {
         let allowed = check_can_read(commutation, encoder.session.is_ready());
-        // All of the same width, so that the entries form one column.
+        // All buttons have the same width, which aligns the entries in a column.
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
@@ -229,7 +227,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
-        // Entries of different places must be distinguishable.
+        // The labels differ between the readings, for screen readers.
         let label = format!("{} · {}", say(theme, slot.word()), say(theme, "commutation.fine"));
         let response = text_entry(ui, typed, POSITION, &label, &say(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
@@ -246,7 +244,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
     }
 }
 
-/// Draws the position of a slot and how it was obtained, on one line with and without it.
+/// Draws the position of a slot and its source. The height is one line, also without a reading.
 fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
     let Some(reading) = encoder.commutation.reading(slot) else {
         ui.label(theme.monospace("–").color(theme.palette.muted));

@@ -26,7 +26,7 @@ pub(crate) struct SearchView {
     power_cycle: bool,
 }
 
-/// Time allowed for switching the encoder's supply off and on.
+/// Time for switching the supply of the encoder off and on.
 const POWER_CYCLE: Duration = Duration::from_secs(30);
 
 pub(crate) struct HiperfaceConnectForm;

@@ -64,7 +64,6 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-/// Draws the number of repetitions on the line while connected.
 fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     if encoder.session.line().is_none() {
         return;

@@ -1,4 +1,4 @@
-//! The large display of a HIPERFACE position, and the values that are read with it.
+//! The large display of the position, and the values read along with it.
 
 use egui::{RichText, Ui};
 
@@ -35,7 +35,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let Some(reading) = reading else { return unknown_rows(ui, theme, &["live.turns", "live.step", "live.raw"]) };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
     if ui.available_height() < LOW {
-        // In a low window the plot needs the space.
+        // In a window of small height, the plot needs the space.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
             words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));
@@ -50,7 +50,6 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     raw_row(ui, theme, format!("{:08X}h  {}", reading.raw, reading.raw));
 }
 
-/// Draws the menu for selecting the values read along with the position.
 pub(crate) fn watch_menu(
     ui: &mut Ui,
     theme: &Theme,

@@ -17,7 +17,7 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, edit_bar, icons};
 
-/// Selection and text buffers of the page.
+/// State of the memory page: the selected field and its text buffers.
 pub(super) struct MemoryUiState {
     field: u8,
     free: bool,
@@ -101,7 +101,7 @@ fn map_ui(
         })
         .collect();
     let free_blocks = memory.map_or(0, |memory| usize::from(memory.blocks));
-    // The free space counts, not the number of its blocks drawn. A field can grow to eight.
+    // At least eight free blocks are drawn if available, because a field can grow to eight.
     let taken: usize = fields.iter().map(|field| field.blocks).sum();
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
@@ -198,7 +198,7 @@ fn field_ui(
             typed_view(ui, theme, view.hex.to_read(bytes));
         });
     }
-    // The buttons of the edit bar undo like the keys do.
+    // The undo buttons of the edit bar move the cursor, as the keys do.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(bytes);
     }
@@ -214,7 +214,7 @@ fn field_ui(
     }));
 }
 
-/// Draws the selected field and its actions; disabled actions show the reason.
+/// Draws the selected field and its actions. A disabled action shows the reason.
 fn field_header_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -38,14 +38,14 @@ impl TabPage for Page {
     ];
 }
 
-/// State of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session, with text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperfaceUiState {
     memory: memory::MemoryUiState,
     values: values::ValuesUiState,
     setup: setup::SetupUiState,
     check_restart: bool,
-    /// Number of the analogue channel to watch, as typed.
+    /// Analogue channel to watch, as typed.
     channel: String,
 }
 
@@ -86,7 +86,7 @@ impl TypedDeviceView for HiperfaceView {
         actions: &mut Vec<Action>,
     ) {
         if page == Page::Memory {
-            // The editor scrolls by itself; its buttons stay in place.
+            // The editor scrolls, and its buttons stay in place.
             egui::Frame::NONE
                 .inner_margin(page::around(ui, theme))
                 .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));
@@ -117,7 +117,7 @@ impl TypedDeviceView for HiperfaceView {
     }
 }
 
-/// Returns a message from this catalogue or the common one, in the window's language.
+/// Returns a message in the window's language, from the HIPERFACE catalogue or the common one.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,4 +1,4 @@
-//! The setup page: position, synchronisation, address, line settings, access codes and restart. Every persistent change
+//! The setup page: position, synchronisation, address, line settings, access codes and restart. Every permanent change
 //! goes through the review.
 
 use egui::Ui;
@@ -32,7 +32,7 @@ pub(super) struct SetupUiState {
     new_code: String,
     new_again: String,
     code_problem: Option<Text>,
-    /// Whether the user has confirmed that no motor depends on the encoder at present.
+    /// Whether the user has confirmed that no motor currently depends on the encoder.
     is_motor_disabled: bool,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn page_ui(
     );
 }
 
-/// Submits a change, or stores the reason why it cannot be made.
+/// Submits a valid change, or stores the reason why it is invalid.
 fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
     match change {
         Ok(change) => {

@@ -1,5 +1,5 @@
-//! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours differ between
-//! types and are listed in the data sheet.
+//! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours depend on the
+//! encoder type and are in its data sheet.
 
 use egui::Ui;
 
@@ -9,10 +9,9 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the column with the wire names.
 const WIRE: f32 = 56.0;
 
-/// Wire names from the manual, with their signals.
+/// Wire names from the manual, each with its signal.
 const WIRES: [(&str, &str); 8] = [
     ("US", "wiring.supply"),
     ("GND", "wiring.ground"),

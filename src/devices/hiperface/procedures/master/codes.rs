@@ -1,11 +1,11 @@
-//! The status code queue. 50h removes a code from the encoder, so a lost reply may have contained one: late replies are
-//! accepted as well, and possibly lost codes are counted.
+//! Reading of the status queue. 50h removes a code from the encoder, so a lost reply may have contained one. For this
+//! reason, late replies are accepted, and codes that may have been lost are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
-/// Maximum number of codes in the queue of an encoder, plus one to detect its end.
+/// Maximum number of codes in the queue of an encoder, plus one reply that shows its end.
 const MOST_CODES: usize = 5;
 /// Number of replies without a new code after which reading the queue is abandoned.
 const MOST_REPEATED: u32 = 5;
@@ -16,11 +16,11 @@ const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the complete status queue into the station, using 50h until the error bit is cleared.
+    /// Reads the complete status queue into the station. It repeats 50h until the error bit is clear.
     ///
     /// # Errors
-    /// Every attempt failed, or the user cancelled. Codes received so far are in the station, which also counts those
-    /// possibly lost.
+    /// Every attempt failed, or the user cancelled. The station then holds the codes received so far, and the number of
+    /// codes that may have been lost.
     pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
         let (mut seen, mut repeated) = (Vec::new(), 0);
         while seen.len() < MOST_CODES && repeated < MOST_REPEATED {
@@ -31,14 +31,14 @@ impl Master<'_> {
             repeated += u32::from(seen.len() == before);
         }
         if repeated == MOST_REPEATED {
-            // An old reply does not come this often: the encoder announces the same code again as soon as it is read.
+            // A late reply does not repeat this often. The encoder announces the same code again as soon as it is read.
             self.station.codes_unheard = self.station.codes_unheard.saturating_sub(repeated);
         }
         Ok(())
     }
 
-    /// Takes the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of each
-    /// reply so far.
+    /// Reads the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of each
+    /// earlier reply.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.detect_echo()?;
         let mut tries = 0;
@@ -47,7 +47,7 @@ impl Master<'_> {
             self.line.record_late_bytes();
             let sent = self.station.line.quality.requests;
             let attempt = self.attempt(&Request::ReadStatus);
-            // Cancellation, or a line that is never silent, is detected before it is sent.
+            // After a cancellation, or on a line that is never silent, the request was not sent.
             if self.station.line.quality.requests > sent {
                 self.station.codes_unheard += 1;
             }
@@ -77,8 +77,8 @@ impl Master<'_> {
         }
     }
 
-    /// Handles a reply to 50h. A reply equal to an earlier one for the same queue may be a late duplicate, in which
-    /// case its codes are known and the reply to the current request may be missing.
+    /// Records the codes of a reply to 50h. A reply equal to an earlier one may be a late duplicate. Its codes are then
+    /// known, and the reply to the current request may be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -93,7 +93,7 @@ impl Master<'_> {
         Ok(self.line.receive_late_bytes(&mut self.station.line, tries, quiet)?)
     }
 
-    /// Returns the replies to 50h among bytes that were skipped.
+    /// Finds replies to 50h in bytes that were skipped.
     fn find_replies(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {
@@ -109,8 +109,8 @@ impl Master<'_> {
     }
 
     /// Returns the reply to 50h at the start of the bytes, and the remaining bytes. The checksum also matches the first
-    /// bytes of some replies (01h and 11h from address 40h), so a reply that ends with the bytes, or before the next
-    /// reply, takes precedence.
+    /// bytes of some replies, such as 01h and 11h from address 40h. A reply that ends with the bytes, or before the
+    /// next reply, therefore takes precedence.
     fn parse_status_reply<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

@@ -1,8 +1,7 @@
 //! Single exchanges with the timing of the protocol (manual, "Dialog Timing"): dead time, request, reply, dead time.
 //!
-//! A reply ends with its last byte if its length is known, otherwise with silence. The host listens during the
-//! following dead time: a byte received then means that the frame was longer than expected, and the whole frame is
-//! discarded.
+//! A reply of known length ends with its last byte, any other with silence. The host listens during the following dead
+//! time. A byte received then means that the frame was longer than expected, so the whole frame is discarded.
 
 use std::time::Duration;
 
@@ -14,8 +13,8 @@ use crate::devices::hiperface::protocol::{Answer, Command, Request, SecretFrame,
 use crate::link::LinkError;
 use crate::units::Moment;
 
-/// Status codes with which the encoder replies to a request damaged on the line. The loss of a byte 00h leaves the
-/// checksum valid.
+/// Status codes that mean that the request was damaged on the line. `LENGTH` is among them because the checksum stays
+/// valid if a byte 00h is lost.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 pub(in super::super) enum ExchangeFailure {
@@ -33,7 +32,7 @@ pub(in super::super) struct ReceivedAnswer {
     pub(super) at: Moment,
 }
 
-/// Received bytes without the echo.
+/// Bytes received in one exchange, without the echo.
 struct ReceivedBytes {
     reply: Vec<u8>,
     /// Time at which the first byte of the reply was complete.
@@ -43,7 +42,7 @@ struct ReceivedBytes {
 }
 
 impl Master<'_> {
-    /// Performs one exchange. The outer error is final; the inner one may be retried.
+    /// Performs one exchange. The outer error is final. The inner error permits another attempt.
     pub(in super::super) fn attempt(
         &mut self,
         request: &Request,
@@ -59,11 +58,12 @@ impl Master<'_> {
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.judge(request, heard);
-        // A damaged reply to a frame with an access code may be the echo: none of it is shown.
+        // A damaged reply to a frame with an access code may be its echo, so none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
-        // Damaged bytes may contain a whole reply. A reply that was too late or too long is skipped; an echo is none.
+        // Damaged bytes may contain a whole reply. Late or extra bytes were kept while listening, and an echo is not a
+        // reply.
         if let Err(ExchangeFailure::Damage(Damage::Reply(_))) = judgement {
             self.line.skip_bytes(&reply);
         }
@@ -73,7 +73,7 @@ impl Master<'_> {
         }))
     }
 
-    /// Determines whether the line echoes, if not yet known.
+    /// Determines whether the line has an echo, unless this is already known.
     pub(super) fn detect_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
             self.ask(&Request::ReadTypeLabel)?;
@@ -81,18 +81,18 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Prepares an exchange: checks for cancellation, then waits for the dead time and for silence on the line.
+    /// Checks for cancellation, then waits for the dead time and for silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let quiet = self.silence_duration();
         Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
-    /// Sends a frame, and traces the part of it that may be shown.
+    /// Sends a frame, and traces it with its access codes masked.
     pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
         self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
-    /// Returns the dead time tT, which must exceed the time-out and is one bit longer.
+    /// Returns the dead time tT. It must exceed the time-out, so it is one bit longer.
     fn dead_time(&self) -> Duration {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
@@ -122,7 +122,7 @@ impl Master<'_> {
             }
             let first = self.strip_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
             if let Some(reply) = first {
-                // An adapter delivers several characters at once: the first of them was complete earlier.
+                // An adapter delivers several characters at once, so the first of them was complete earlier.
                 first_at = self.now() - timing.characters(reply.len() - 1);
             }
         }
@@ -140,7 +140,7 @@ impl Master<'_> {
         Ok(self.parse_received_line(&line, request, frame, first_at, intrusion))
     }
 
-    /// Listens during the dead time, and returns whether bytes arrived that belong to no reply.
+    /// Listens during the dead time, and returns whether unexpected bytes arrived.
     fn receive_during_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
@@ -174,7 +174,7 @@ impl Master<'_> {
         let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
         let wrong_echo = match self.station.line.echo {
             Echo::On => !echo_heard && !line.is_empty(),
-            // An echo and a reply together also have a right checksum: after 50h that looks like a reply with four codes.
+            // An echo followed by a reply also has a valid checksum. After 50h, it looks like a reply with four codes.
             Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
             Echo::Unknown => false,
         };
@@ -195,7 +195,7 @@ impl Master<'_> {
         if let Answer::Rejected { codes, .. } = &answer
             && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
-            // The request was right when it was sent: the line damaged it.
+            // The request was correct when it was sent, so the line damaged it.
             return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
         }
         self.station.line.answered();

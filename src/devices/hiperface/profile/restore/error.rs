@@ -47,7 +47,7 @@ pub enum PlanError {
         /// Number of free bytes.
         free: usize,
     },
-    /// A field would have to be created again, but its content cannot be read.
+    /// A field must be created again, but its content cannot be read.
     #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
     WouldLose {
         /// Field number.

@@ -25,8 +25,8 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Removes fields whose bytes are left unchanged from the targets, unless mounting values are written to them. A
-    /// field that the encoder lacks is created without content if another field must be created after it.
+    /// Removes fields that are left unchanged from the targets, unless mounting values are written to them. A field
+    /// that the encoder lacks is created without content if another field must be created after it.
     pub(super) fn skip_unknown_fields(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
@@ -58,7 +58,6 @@ impl Planner<'_> {
         }
     }
 
-    /// Lists the mounting values in fields that are left unchanged.
     fn report_skipped_mounting(&mut self) {
         let profile = self.profile;
         for target in &profile.fields {
@@ -130,8 +129,7 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// Returns the target fields: those of the profile and, if fields are created again, those that exist only in the
-    /// encoder.
+    /// Returns the fields of the profile. If fields are created again, those that exist only in the encoder are added.
     pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -159,13 +157,13 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans a new field. Since its initial content is unknown, all of it is written before the field is protected, if
-    /// necessary.
+    /// Plans a new field. All of its bytes are written, because its initial content is unknown. Write protection comes
+    /// afterwards.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
         if target.bytes.is_none() && !self.left.contains(&target.number) {
-            // It is created because others may follow it; its former content is not known.
+            // The field is created because others may follow it, but its former content is unknown.
             self.missing.push(FieldRange::of(target.number));
         }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });
@@ -180,7 +178,7 @@ impl Planner<'_> {
     }
 
     pub(super) fn change(&mut self, now: &FieldImage, target: &FieldImage) {
-        // A field that one side cannot read is left alone.
+        // A field that is unreadable on one side is left unchanged.
         let (Some(old), Some(new)) = (&now.bytes, &target.bytes) else {
             if now != target {
                 self.missing.push(FieldRange::of(now.number));
@@ -192,7 +190,7 @@ impl Planner<'_> {
             stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
         }
         if new.len() > old.len() {
-            // The part by which the last field grows: its content is not known.
+            // The content of the part by which the last field grows is unknown.
             stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
         }
         self.unchanged += u64::from(now.status == target.status);
@@ -213,7 +211,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the parts of a range that may be written: the whole range, or everything except mounting values.
+    /// Returns the parts of a range that may be written. For another encoder, they may exclude mounting values.
     fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];
@@ -271,7 +269,6 @@ impl Planner<'_> {
     }
 }
 
-/// Adds an index to the last run, or starts a new run.
 fn extend(runs: &mut Vec<Range<usize>>, at: usize) {
     match runs.last_mut() {
         Some(run) if run.end == at => run.end += 1,

@@ -4,8 +4,8 @@ use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Returns the fields to delete because the write of this backup created them, which are the last fields if unchanged
-/// since, and the numbers of the other created fields.
+/// Returns the created fields to delete, and the numbers of the other created fields. A field is deleted only if it is
+/// unchanged since the write and no field remains after it.
 pub(super) fn created_fields_to_undo(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {

@@ -4,15 +4,15 @@ use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use crate::profile::difference::runs;
 
-/// Data field with differing bytes of unknown meaning, if profile and encoder do not belong to the same device. These
-/// bytes may contain an offset between encoder and motor.
+/// Data field in which bytes of unknown meaning differ between the profile and another encoder. They may contain an
+/// offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownField {
     /// Field number.
     pub field: u8,
     /// Number of differing bytes of unknown meaning.
     pub bytes: usize,
-    /// Decision of the user: `true` copies the bytes. Without a decision, the bytes are left out.
+    /// Decision of the user. `Some(true)` copies the bytes. Otherwise they are left out.
     pub answer: Option<bool>,
 }
 
@@ -22,13 +22,13 @@ impl UnknownField {
         self.answer == Some(true)
     }
 
-    /// Returns the item in the form accepted by `--copy` and `--leave`.
+    /// Returns the whole field as an item, in the form that `--copy` and `--leave` accept.
     pub fn item(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }
 }
 
-/// Returns the data fields of another encoder's profile that differ in bytes other than mounting values.
+/// Returns the data fields that differ from another encoder's profile in bytes other than mounting values.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,
@@ -38,7 +38,7 @@ pub(super) fn unknown_fields(
         let new = target.bytes.as_ref()?;
         let now = device.fields.iter().find(|field| field.number == target.number);
         let old = match now {
-            // An unreadable field is left alone regardless.
+            // An unreadable field is left unchanged in any case.
             Some(now) => now.bytes.as_deref()?,
             None => &[],
         };

@@ -25,7 +25,8 @@ impl Encoder {
             CommutationAction::Store => match self.verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
-                    // Storing it there again keeps the place, whatever is empty then.
+                    // Fixes the location, so that storing again replaces this offset even if another location is then
+                    // empty.
                     (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
                     let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
                     if (address..).zip(&bytes).all(is_there) {
@@ -48,7 +49,7 @@ impl Encoder {
         }
     }
 
-    /// Returns the result if the offset may be used.
+    /// Returns the result, or an error if the offset has not been verified.
     fn verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
         let result = result(self)?;
         self.commutation.ensure_verified(self.geometry()).map(|()| result)

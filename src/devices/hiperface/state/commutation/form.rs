@@ -1,4 +1,4 @@
-//! The form of the commutation assistant and the interpretation of its entries.
+//! The form of the commutation assistant, and the parsing of its entries.
 
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
@@ -7,7 +7,7 @@ use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Entries of the assistant. If the number of periods is empty, that of the encoder type is used.
+/// Entries of the commutation assistant. An empty number of periods selects that of the encoder type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// Whether the user has confirmed that the controller is disabled.
@@ -18,10 +18,10 @@ pub struct Form {
     pub released: bool,
     /// Current limit in amperes, as typed.
     pub current_a: String,
-    /// Maximum time with current in seconds, as typed.
+    /// Maximum time in seconds for which the motor is energised, as typed.
     pub time_s: String,
     pub vector: Vector,
-    /// Typed angle of a custom vector in electrical degrees.
+    /// Angle of a custom vector in electrical degrees, as typed.
     pub vector_deg: String,
     /// Pole pairs of the motor, as typed.
     pub pole_pairs: String,
@@ -30,35 +30,35 @@ pub struct Form {
     /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub source: Source,
-    /// Typed position in periods, if measured externally.
+    /// Position within a period, as typed, if it was measured with another device.
     pub phase: String,
-    /// Permitted difference between both approach directions in electrical degrees, as typed.
+    /// Permitted difference in electrical degrees between approaching from either side, as typed.
     pub limit_deg: String,
-    /// Lead of the second vector in electrical degrees, as typed.
+    /// Angle from the first to the second vector in electrical degrees, as typed.
     pub second_deg: String,
-    /// Whether the user has decided to use the offset without verifying it with a second vector.
+    /// Whether the user accepts the offset without verification by a second vector.
     pub without_second: bool,
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
     /// Data field for the offset, or `None` for the proposed field.
     pub field: Option<u8>,
-    /// Index of the first byte, as typed; empty for the proposed index.
+    /// Index of the first byte, as typed, or empty for the proposed index.
     pub address: String,
-    /// Period of the position for method 2, as typed.
+    /// Signal period of the position to set with method 2, as typed.
     pub period: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     OneSide,
-    /// Position at rest, approached from the other side.
+    /// Rest position after an approach from the other side.
     OtherSide,
-    /// Position at rest in the second vector.
+    /// Rest position in the second vector.
     Second,
 }
 
-/// Vector energised while the position is read, named by its wiring.
+/// Vector that is energised during a reading, named by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vector {
     /// Current into U, returning through V and W: 0°.
@@ -72,10 +72,10 @@ pub enum Vector {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Analogue channels of the encoder if available, otherwise the absolute position.
+    /// Analogue channels of the encoder, or the absolute position if there are none.
     Signals,
     Typed,
-    /// Absolute position alone, with a resolution of 1/32 period.
+    /// Absolute position only, with a resolution of 1/32 of a period.
     Absolute,
 }
 
@@ -83,7 +83,7 @@ pub enum Source {
 pub enum Storage {
     /// Commutation record of sixteen bytes.
     Record,
-    /// Plain number of four bytes, most significant byte first.
+    /// Offset as a number of four bytes, most significant byte first.
     Number,
 }
 
@@ -95,11 +95,11 @@ pub struct OffsetInputs {
     /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub vector_turns: f64,
-    /// Permitted difference between both approach directions, in electrical degrees.
+    /// Permitted difference in electrical degrees between approaching from either side.
     pub limit_deg: f64,
 }
 
-/// Limit for the number of pole pairs, greater than that of any motor.
+/// Highest number of pole pairs that is accepted. No motor has as many.
 const MOST_POLE_PAIRS: u32 = 500;
 
 impl Slot {
@@ -134,16 +134,16 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Returns the current in amperes and the time in seconds.
+    /// Returns the current limit in amperes and the time limit in seconds.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns an error that names a missing or invalid entry.
     pub fn limits(&self) -> Result<(f64, f64), Text> {
         let (current, time) = self.each_limit();
         Ok((current?, time?))
     }
 
-    /// Returns the problems with the entered current and time; an empty entry is not yet a problem.
+    /// Returns the problems with the current limit and the time limit. An empty entry is not reported.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.each_limit();
@@ -155,10 +155,10 @@ impl Form {
         (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
-    /// Checks that everything required before energising the motor has been confirmed and recorded.
+    /// Checks that all steps before energising the motor are confirmed and all limits are entered.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns an error that names a missing or invalid entry.
     pub fn prepared(&self) -> Result<(), Text> {
         let ticks = [
             (self.disabled, "commutation.disabled"),
@@ -173,10 +173,10 @@ impl Form {
         self.vector_deg().map(|_| ())
     }
 
-    /// Returns the angle of the energised vector in electrical degrees.
+    /// Returns the angle of the first vector in electrical degrees.
     ///
     /// # Errors
-    /// States why the entry is invalid.
+    /// Returns an error if the entry is invalid.
     pub fn vector_deg(&self) -> Result<f64, Text> {
         match self.vector {
             Vector::UAgainstBoth => Ok(0.0),
@@ -186,27 +186,27 @@ impl Form {
         }
     }
 
-    /// Returns the lead of the second vector in electrical turns. The lead must be below ½, since otherwise the shaft
-    /// may turn the other way.
+    /// Returns the angle from the first to the second vector in electrical turns. It is always below ½. From ½ on, the
+    /// shaft could turn in the opposite direction.
     ///
     /// # Errors
-    /// States why the entry is invalid.
+    /// Returns an error if the entry is invalid.
     pub fn second_vector_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
-    /// Returns the entered position within a period.
+    /// Returns the typed position within a period.
     ///
     /// # Errors
-    /// States why the entry is invalid.
+    /// Returns an error if the entry is invalid.
     pub fn phase(&self) -> Result<Phase, Text> {
         phase(&self.phase)
     }
 
-    /// Returns the entered fine position of a slot in periods.
+    /// Returns the typed position of a slot in signal periods.
     ///
     /// # Errors
-    /// States why the entry is invalid.
+    /// Returns an error if the entry is invalid.
     pub fn fine(&self, slot: Slot) -> Result<f64, Text> {
         let [one, other, second] = &self.typed;
         let text = match slot {
@@ -217,10 +217,10 @@ impl Form {
         within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the signal periods per revolution as entered, or otherwise those of the encoder type.
+    /// Returns the typed number of signal periods per revolution, or that of the encoder type if the entry is empty.
     ///
     /// # Errors
-    /// States why the entry is invalid.
+    /// Returns an error if the entry is invalid.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
@@ -236,10 +236,10 @@ impl Form {
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
-    /// Returns all numbers required for the offset.
+    /// Returns the numbers from which the offset is calculated.
     ///
     /// # Errors
-    /// Explains why the first invalid entry is invalid.
+    /// Returns the reason why the first invalid entry was refused.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
         let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;

@@ -1,5 +1,5 @@
-//! The location of the offset in the memory: a free location is proposed, and the content of any other is shown before
-//! it is replaced. Nothing here changes the memory.
+//! Location of the offset in the memory. The assistant proposes a free location, and warns before other data is
+//! replaced. Nothing here changes the memory.
 
 use super::{Commutation, Storage};
 use crate::app::Text;
@@ -8,7 +8,7 @@ use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 
-/// Byte values that count as empty, because the memory was erased or never written.
+/// Byte values of empty memory, which was erased or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,11 +19,11 @@ pub struct OffsetLocation {
 }
 
 impl Commutation {
-    /// Returns the selected or entered location, or otherwise the proposed one: a stored record of the same kind, or
-    /// the last writable field with enough space.
+    /// Returns the location that the user has entered, or otherwise a proposed location. The proposal is an existing
+    /// record that can be replaced, or else an empty block in the last writable field that has one.
     ///
     /// # Errors
-    /// Explains that no field has enough space, or that the entry is not an address.
+    /// Returns an error if no field has enough space or the typed address is invalid.
     pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
@@ -41,13 +41,13 @@ impl Commutation {
         Ok(OffsetLocation { field, address })
     }
 
-    /// Returns a warning about the content that the offset would replace, or `None` if the location is empty or
-    /// contains an offset.
+    /// Returns a warning that names the data that the offset would replace. Returns `None` if the location is empty or
+    /// already contains an offset.
     pub fn replaced(&self, geometry: Option<Geometry>, staged: &Staged) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
-        // Once it is stored there as an edit, the content that will be replaced is the encoder's.
+        // If the offset is already an edit here, the warning is about the bytes in the encoder.
         let there = match wanted == bytes {
             true => places.filter_map(|at| staged.device_byte(field, at)).collect(),
             false => wanted,
@@ -60,8 +60,8 @@ impl Commutation {
     }
 }
 
-/// Returns the first record-sized block of a field that satisfies `holds`. A plain number also requires a whole block,
-/// since zeros among other numbers may be numbers.
+/// Returns the first block of a field that satisfies `holds`. A block has the size of a commutation record. A plain
+/// number also occupies a whole block, since zeros between other numbers may be data.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -71,7 +71,7 @@ fn is_filler(bytes: &[u8]) -> bool {
     FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
 }
 
-/// Returns whether the location already contains a complete record, which a new record would replace.
+/// Returns whether the location contains a complete record that a new record may replace.
 fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }

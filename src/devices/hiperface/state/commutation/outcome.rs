@@ -1,5 +1,5 @@
-//! Result of the readings: mean of both sides, offset, verification with a second vector, the bytes for method 1 and
-//! the position for method 2.
+//! Results of the commutation readings: the mean of both approaches, the offset, its verification with a second vector,
+//! the bytes for method 1, and the position for method 2.
 
 use super::{Commutation, Kind, OffsetInputs, OffsetLocation, RestReading, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
@@ -11,51 +11,51 @@ use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordErr
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
-/// Step size in degrees from which method 2 is refused, because the torque may have the wrong sign (U).
+/// Step size in electrical degrees from which method 2 is refused. The torque may then have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
-/// Step size in degrees from which a warning is given, because the torque is reduced to cos 30° or less (U).
+/// Step size in electrical degrees from which a warning is given. The torque is then reduced to cos 30° or less (U).
 const WEAK_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommutationOffset {
-    /// Rest position of the shaft, in periods within a revolution.
+    /// Rest position of the shaft in signal periods, within a revolution.
     pub fine_periods: f64,
     pub shaft_deg: f64,
-    /// Difference between both approach directions in electrical degrees, or `None` if only one was used.
+    /// Difference in electrical degrees between approaching from either side, or `None` for a single typed position.
     pub apart_deg: Option<f64>,
-    /// Electrical offset, such that electrical angle = pole pairs × shaft − offset.
+    /// Electrical offset. The electrical angle is pole pairs × shaft angle − offset.
     pub angle: ElectricalAngle,
     /// Resolution of the readings in electrical degrees, if known.
     pub resolution_deg: Option<f64>,
 }
 
-/// Position to be set by method 2.
+/// Position to set with method 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     pub value: u32,
-    /// Whether exactly this value must be set because absolute position and phase currently disagree.
+    /// Whether the encoder must be set to exactly this value, because its absolute position and phase disagree.
     pub exact: bool,
-    /// Remaining offset in electrical degrees, −180 to 180.
+    /// Offset in electrical degrees that remains after setting the position, −180 to 180.
     pub remaining_deg: f64,
     pub verdict: Verdict,
 }
 
-/// Commutation offset stored in the edited memory.
+/// Commutation record found in the memory, including edits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     pub field: u8,
     /// Index of the first byte.
     pub address: usize,
     pub record: Result<CommutationRecord, CommutationRecordError>,
-    /// Whether the location contains an edit that has not been written yet.
+    /// Whether the record contains edits that have not been written yet.
     pub edited: bool,
 }
 
 impl Commutation {
-    /// Returns the commutation offset.
+    /// Returns the commutation offset from the readings.
     ///
     /// # Errors
-    /// States what is missing, or why the readings cannot be used.
+    /// Returns an error if an entry or a reading is missing, or if the readings cannot be used.
     pub fn offset(&self, geometry: Option<Geometry>) -> Result<CommutationOffset, Text> {
         let inputs = self.form.inputs(geometry)?;
         let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
@@ -77,7 +77,7 @@ impl Commutation {
             Kind::Absolute => Some(1.0 / f64::from(STEPS_PER_PERIOD)),
             Kind::Typed => None,
         });
-        // The coarser one counts.
+        // The coarser resolution applies to the mean.
         let resolution = resolution.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
         Ok(CommutationOffset {
             fine_periods,
@@ -88,17 +88,17 @@ impl Commutation {
         })
     }
 
-    /// Returns the result of the second vector with its verdict, or `None` until it has been read.
+    /// Returns the comparison of the second vector with the offset, or `None` until the second vector has been read.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns an error if an entry or a reading is missing or unusable.
     pub fn second_vector_result(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
         let reading = self.reading(Slot::Second)?;
         Some(self.evaluate_second_reading(reading.fine_periods, geometry))
     }
 
     fn evaluate_second_reading(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
-        /// Fraction of the expected movement below which the shaft counts as not having moved.
+        /// Fraction of the expected movement below which the shaft is considered not to have moved.
         const STILL: f64 = 0.1;
         /// Permitted ratio of the actual movement to the expected movement.
         const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
@@ -125,23 +125,23 @@ impl Commutation {
         Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", second.pole_pairs)))
     }
 
-    /// Returns whether the second vector was read and fits the offset.
+    /// Returns whether the second vector confirms the offset.
     pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
         matches!(self.second_vector_result(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Returns whether both sides gave the same signals and the same position, as if the shaft had not been turned.
+    /// Returns whether both approaches gave identical readings, which suggests that the shaft was not turned.
     pub fn sides_are_equal(&self) -> bool {
         let is_fine = |reading: &&RestReading| matches!(reading.kind, Kind::Fine { .. });
         let [one, other] = [Slot::OneSide, Slot::OtherSide].map(|slot| self.reading(slot).filter(is_fine));
         one.is_some() && one == other
     }
 
-    /// Checks whether the offset may be used, which requires a matching second vector, or the decision of the user to
-    /// do without it.
+    /// Checks whether the offset may be used. The second vector must confirm the offset, or the user must have chosen
+    /// to do without it.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns an error if an entry or a reading is missing or unusable.
     pub fn ensure_verified(&self, geometry: Option<Geometry>) -> Result<(), Text> {
         let is_usable = self.form.without_second || self.is_confirmed(geometry);
         if is_usable { Ok(()) } else { Err(TEXTS.text("commutation.needs_second")) }
@@ -154,10 +154,10 @@ impl Commutation {
         }
     }
 
-    /// Returns the data field, the index of the first byte, and the bytes to store for method 1.
+    /// Returns the data field, the index of the first byte and the bytes for method 1.
     ///
     /// # Errors
-    /// States what is missing.
+    /// Returns an error if an entry or a reading is missing or unusable.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         self.ensure_not_refuted(geometry)?;
@@ -179,10 +179,10 @@ impl Commutation {
         Ok((field, address, bytes))
     }
 
-    /// Returns the position to set for method 2, with the shaft at its present rest position.
+    /// Returns the position to set with method 2. The shaft must still be at the rest position last read.
     ///
     /// # Errors
-    /// States what is missing, or why the method cannot be used.
+    /// Returns an error if an entry or a reading is missing, or if method 2 cannot be used.
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         self.ensure_not_refuted(geometry)?;
@@ -225,7 +225,7 @@ pub fn stored(staged: &Staged) -> Vec<Stored> {
     found
 }
 
-/// Checks whether the position may be read, which requires all previous steps to be complete.
+/// Checks whether the position may be read. All previous steps of the assistant must be complete.
 pub fn check_can_read(commutation: &Commutation, ready: bool) -> Allowed {
     commutation.form.prepared()?;
     if commutation.form.source == Source::Typed {
@@ -234,7 +234,7 @@ pub fn check_can_read(commutation: &Commutation, ready: bool) -> Allowed {
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// Returns the distance between two positions in periods, along the shorter way within a revolution.
+/// Returns the signed distance between two positions in signal periods, the shorter way within a revolution.
 fn apart(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);
@@ -245,7 +245,7 @@ fn electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
-/// Returns the offset that results if the electrical angle at a position equals that of the vector.
+/// Returns the offset for which the electrical angle at the given position equals the angle of the vector.
 fn angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;

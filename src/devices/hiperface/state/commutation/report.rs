@@ -1,4 +1,4 @@
-//! Report of a commutation run: preparation, readings and results, one line per item.
+//! Report of a commutation run. It lists the preparation, the readings and the results, one item per line.
 
 use super::{Commutation, Kind, RestReading, Slot, Vector};
 use crate::analysis::synchronise::Synchroniser;
@@ -7,7 +7,6 @@ use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    /// Returns the lines of the report for an encoder with the given name.
     pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];

@@ -39,7 +39,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Explains why an edit of `count` bytes from index `start` cannot be made.
+/// Explains why `count` bytes from index `start` cannot be edited.
 pub fn staged(error: &StagedError, count: usize, start: usize) -> Text {
     match error {
         StagedError::NoField { field } => TEXTS.text("staged.no_field").with("field", field),

@@ -1,20 +1,20 @@
-//! The extended type label, described byte by byte.
+//! Description of the extended type label, byte by byte.
 
 use crate::app::Text;
 use crate::bits::hex;
 use crate::devices::hiperface::protocol::{ExtendedLabel, LabelPart};
 use crate::devices::hiperface::state::TEXTS;
 
-/// Bytes of the extended label with their meaning.
+/// Group of bytes in the extended type label, with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LabelRow {
-    /// First and last address.
+    /// Address of the byte, or first and last address.
     pub addresses: String,
     pub bytes: String,
     pub meaning: Text,
 }
 
-/// Returns the rows of a label without invalid limits, or no rows if the bytes are not a label.
+/// Returns the rows of an extended type label, or an empty list if the bytes are no label. Invalid limits are left out.
 pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
     let Ok(parts) = ExtendedLabel::parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);

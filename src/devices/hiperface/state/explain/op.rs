@@ -1,4 +1,4 @@
-//! Operations of a plan, described for the review.
+//! Descriptions of plan operations for the review.
 
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
@@ -66,7 +66,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
     }
 }
 
-/// Returns the properties of a field that an operation changes, each with old and new value.
+/// Returns the old and new text of each property that differs between two field statuses.
 fn changed_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());

@@ -1,4 +1,5 @@
-//! Messages about an unusable user-defined table of encoder types, and about links that cannot be opened because of it.
+//! Messages about a user-defined table of encoder types that cannot be used, and about links that cannot be opened for
+//! this reason.
 
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax};
@@ -8,7 +9,7 @@ use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
 use crate::worker::OpenError;
 
-/// Explains why a table of encoder types cannot be read or used.
+/// Explains why a user-defined table of encoder types cannot be used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<TypeTableFileError>() {

@@ -1,4 +1,4 @@
-//! Texts for the data of an encoder in both languages. The English ones are those of the protocol tables.
+//! Texts for the data of an encoder in both languages. The English texts are those of the protocol tables.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
@@ -72,7 +72,7 @@ pub fn geometry(geometry: Geometry) -> Text {
             TEXTS.text("geometry.multiturn").with("periods", periods).with("turns", turns)
         }
         Geometry::Linear { period_nm, .. } => {
-            // As many decimals as a whole number of nanometres needs.
+            // The number of decimals suffices for a whole number of nanometres.
             let decimals = (0..6u32).find(|decimals| period_nm.is_multiple_of(10u32.pow(6 - decimals))).unwrap_or(6);
             let decimals = usize::try_from(decimals).unwrap_or(6);
             TEXTS.text("geometry.linear").with_number("millimetres", f64::from(period_nm) * 1e-6, decimals)
@@ -80,7 +80,7 @@ pub fn geometry(geometry: Geometry) -> Text {
     }
 }
 
-/// Describes a position as turn and degrees, or in millimetres.
+/// Describes a position by turns and degrees, or in millimetres.
 pub fn position(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {
@@ -91,7 +91,7 @@ pub fn position(position: Position) -> Text {
     }
 }
 
-/// Describes a position word whose geometry is unknown.
+/// Describes a position in steps, for an encoder of unknown geometry.
 pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }

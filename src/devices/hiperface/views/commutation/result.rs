@@ -1,4 +1,5 @@
-//! Result of the readings: the offset, storing it in a data field, setting a position, and the report.
+//! The results of the commutation assistant: the offset, its storage in a data field, the setting of a position, and
+//! the report.
 
 use egui::{RichText, Ui};
 
@@ -13,7 +14,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Draws the offset, in a space that is the same without one.
+/// Draws the offset. The space is the same while there is no offset.
 pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
         let offset = encoder.commutation.offset(encoder.geometry());
@@ -71,7 +72,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         number_ui(ui, theme, "commutation.address", &mut form.address, &proposed);
         let bytes = encoder.commutation.bytes(encoder.geometry(), &encoder.staged);
         if let Ok((_, _, bytes)) = &bytes {
-            // Eight per line: sixteen do not fit beside the other column.
+            // Eight bytes per line, because sixteen do not fit beside the other column.
             let lines: Vec<String> = bytes.chunks(8).map(crate::bits::hex).collect();
             theme.sunken_frame().show(ui, |ui| ui.label(theme.monospace(lines.join("\n"))));
         }
