@@ -226,10 +226,10 @@ fn distance_and_duration_of_a_move_are_estimated() {
     let desk = in_control("sim:");
     assert_eq!(unit(&desk).actual(ONE).unwrap().position, 0);
     let estimate = unit(&desk).move_estimate(35 * 65_536).unwrap();
-    assert!(estimate.words(Language::English).ends_with(", about 240.0 s"), "{estimate:?}");
+    assert!(estimate.words(Language::English).ends_with(", about 4 min 0 s"), "{estimate:?}");
     assert_eq!(
         unit(&desk).move_estimate(-35 * 65_536).unwrap().words(Language::German).split_once(", ").unwrap().1,
-        "etwa 240,0 s"
+        "etwa 4 min 0 s"
     );
 }
 

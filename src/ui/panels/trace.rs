@@ -68,7 +68,11 @@ pub(in crate::ui) fn trace_ui(
     };
     let gone = view.removed.replace(removed).map_or(0, |before| removed.saturating_sub(before));
     if rows == 0 {
-        empty_placeholder(ui, theme, &theme.say("trace.no_match"), None);
+        let words = match view.filter.search.trim() {
+            "" => theme.words(&Text::new("trace.no_faults").with("count", log.lines().len())),
+            _ => theme.say("trace.no_match"),
+        };
+        empty_placeholder(ui, theme, &words, None);
         return;
     }
     ui.spacing_mut().item_spacing.y = theme.space.inside;

@@ -258,14 +258,25 @@ impl Unit {
     }
 
     /// Returns the distance from the actual position to `target`, and how long a move takes at the set speed. The time
-    /// does not include acceleration. Returns `None` while the position or the speed is unknown.
+    /// does not include acceleration. Returns `None` while the position or the speed is unknown, and during a motion.
     pub fn move_estimate(&self, target: i32) -> Option<Text> {
         let drive = self.drive();
         let distance = target.saturating_sub(self.actual(drive)?.position);
         let rpm = self.speed_rpm(self.moves.move_effort(drive).speed).filter(|rpm| *rpm > 0.0)?;
         let turns = self.ruler(drive).of(i64::from(distance).abs(), PositionUnit::Turns)?;
-        let text = TEXTS.text("hd_move.estimate").with_text("distance", self.place(drive, distance));
-        Some(text.with_number("seconds", turns / rpm * 60.0, 1))
+        if self.moves.phase(drive).is_some_and(|phase| phase != Doing::Idle) {
+            return None;
+        }
+        let (seconds, distance) = (turns / rpm * 60.0, self.place(drive, distance));
+        let text = |id| TEXTS.text(id).with_text("distance", distance);
+        Some(match seconds.round() {
+            whole @ 60.0.. => {
+                let text = text("hd_move.estimate_minutes").with_number("minutes", (whole / 60.0).floor(), 0);
+                text.with_number("seconds", whole % 60.0, 0)
+            }
+            whole @ 10.0.. => text("hd_move.estimate").with_number("seconds", whole, 0),
+            _ => text("hd_move.estimate").with_number("seconds", seconds, 1),
+        })
     }
 
     /// Returns the torque that the drive applies for a percentage, rounded up to the next 25 %.

@@ -251,7 +251,8 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
             }
         }
     });
-    paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_run.words")));
+    let words = if expert { "hd_run.endless_words" } else { "hd_run.words" };
+    paragraph(ui, theme.caption(move_effort_text(theme, unit, words)));
     let endless = unit.check_can_allow_endless(unit.drive());
     // The option can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {

@@ -74,7 +74,11 @@ pub(super) fn page_ui(
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.add_space(theme.space.inside);
-        if view.is_narrow {
+        // Below the table, so that its rows keep their place.
+        if let Some(problem) = view.table.problem(theme) {
+            let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
+            paragraph(ui, RichText::new(words).color(theme.palette.bad));
+        } else if view.is_narrow {
             let row = view.table.selected().and_then(|place| rows.get(place.group)?.get(place.row));
             let words = row.map_or_else(|| say(theme, "hd_params.select"), |row| row_details(theme, row));
             ui.add(egui::Label::new(theme.caption(words).color(theme.palette.text)).truncate());
@@ -89,7 +93,7 @@ pub(super) fn page_ui(
     }
 }
 
-/// Draws the filter, and the reason if a typed value was refused.
+/// Draws the search and the filter.
 fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = say(theme, "hd_params.seek");
@@ -108,10 +112,6 @@ fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
             ui.memory_mut(|memory| memory.stop_text_input());
         }
     });
-    if let Some(problem) = view.table.problem(theme).filter(|_| !view.is_scale_shown()) {
-        let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
-        paragraph(ui, RichText::new(words).color(theme.palette.bad));
-    }
 }
 
 impl DriveParametersUiState {
