@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::devices::hiperface::jobs::{DeviceMessage, HiperfaceJob, HiperfaceOutput};
-use encoder_studio::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
+use encoder_studio::devices::hiperface::procedures::find::{EncoderSearchResult, FindOptions, FoundEncoder};
 use encoder_studio::devices::hiperface::protocol::LineSettings;
 use encoder_studio::link::{CancelToken, Clock};
 use encoder_studio::units::CharacterFormat;
@@ -11,7 +11,7 @@ use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
-fn find(desk: &mut Desk, options: FindOptions) -> SearchFindings {
+fn find(desk: &mut Desk, options: FindOptions) -> EncoderSearchResult {
     let findings = match desk.run(HiperfaceJob::Find(options)).unwrap() {
         HiperfaceOutput::Found(findings) => findings,
         other => panic!("{other:?}"),
@@ -22,7 +22,7 @@ fn find(desk: &mut Desk, options: FindOptions) -> SearchFindings {
 
 fn searched(desk: &mut Desk, options: FindOptions) -> Vec<FoundEncoder> {
     match find(desk, options) {
-        SearchFindings::Searched { found, complete: true } => found,
+        EncoderSearchResult::Searched { found, complete: true } => found,
         other => panic!("{other:?}"),
     }
 }
@@ -60,7 +60,7 @@ fn on_a_line_in_use_nothing_is_sent() {
         let mut desk = Desk::new("");
         desk.tap().foreign = traffic.clone().into();
         let options = FindOptions { one_encoder: true, power_cycle: Some(Duration::from_secs(3)) };
-        let SearchFindings::ForeignTraffic { bytes } = find(&mut desk, options) else { panic!() };
+        let EncoderSearchResult::ForeignTraffic { bytes } = find(&mut desk, options) else { panic!() };
         assert_eq!(bytes, traffic.len());
         assert_eq!(desk.tap().sent.len(), 0);
     }
@@ -125,7 +125,9 @@ fn an_interrupted_search_reports_its_findings() {
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();
         desk.session.set_cancel(CancelToken::after(questions));
-        let SearchFindings::Searched { found, complete } = find(&mut desk, FindOptions::default()) else { panic!() };
+        let EncoderSearchResult::Searched { found, complete } = find(&mut desk, FindOptions::default()) else {
+            panic!()
+        };
         assert!(!complete);
         assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), expected, "{questions}");
         assert_eq!(desk.tap().sent.len() as u64, questions);
@@ -147,7 +149,7 @@ fn encoders_are_reported_as_they_answer() {
             _ => {}
         });
     let Event::Finished(_, output) = end else { panic!("{end:?}") };
-    let HiperfaceOutput::Found(SearchFindings::Searched { found, complete: true }) = *output else {
+    let HiperfaceOutput::Found(EncoderSearchResult::Searched { found, complete: true }) = *output else {
         panic!("{output:?}")
     };
     assert_eq!(told.iter().map(|(found, _)| found.clone()).collect::<Vec<_>>(), found);

@@ -125,7 +125,7 @@ impl Ending<'_> {
         for field in [1, 4] {
             let open = memory.get(usize::from(field)).is_some_and(|(status, _)| status & 0x40 != 0);
             let told = interrupted.end_state.unlocked.contains(&field);
-            let changes_it = |op: &Op| op.field() == Some(field) && (op.is_unlock() || op.locks(field));
+            let changes_it = |op: &Op| op.field() == Some(field) && (op.removes_protection() || op.locks(field));
             let unclear = in_flight.is_some_and(changes_it);
             assert!(open == told || told && unclear, "{context}: field {field} open {open}, told {told}");
         }
@@ -295,7 +295,7 @@ fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
         probe.set_faults(&format!("silent-after:{frames}").parse().unwrap());
-        probe.encoders()[0].settings_at(encoder_studio::units::Moment::START).is_none()
+        probe.encoders()[0].active_settings_at(encoder_studio::units::Moment::START).is_none()
     };
     (0..).take_while(|frames| is_silent(*frames)).count().saturating_sub(1)
 }

@@ -35,7 +35,7 @@ fn a_restart_with_any_stored_settings_is_followed() {
         position(&mut desk);
         // No request kept the encoder at factory settings.
         let now = encoder_studio::link::Clock::now(&*desk.clock);
-        let in_force = desk.bus().encoders()[0].settings_at(now).unwrap();
+        let in_force = desk.bus().encoders()[0].active_settings_at(now).unwrap();
         assert_eq!(in_force.format(), settings.format(), "{settings}");
         assert_eq!(in_force.has_long_timeout(), settings.has_long_timeout(), "{settings}");
         assert_eq!(desk.tap().count(Command::Reset), 1);

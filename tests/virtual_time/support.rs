@@ -213,7 +213,7 @@ impl Desk {
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
-        *desk.session.codes_mut() = self.session.station().codes;
+        *desk.session.access_codes_mut() = self.session.station().codes;
         desk
     }
 
@@ -232,7 +232,7 @@ impl Desk {
     }
 
     pub(crate) fn remember_code(&mut self, number: u8, code: u8) {
-        self.session.codes_mut().set(AccessCodeNumber::new(number).unwrap(), AccessCode::new(code));
+        self.session.access_codes_mut().set(AccessCodeNumber::new(number).unwrap(), AccessCode::new(code));
     }
 
     pub(crate) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput, JobError> {

@@ -6,7 +6,7 @@ use encoder_studio::app::connect::{ConnectAction, ConnectDialog};
 use encoder_studio::app::{Studio, Tab};
 use encoder_studio::devices::hiperdrive::state::{Discovery, DiscoveryAction, DiscoveryFinder};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
-use encoder_studio::devices::hiperface::state::{Search, SearchAction, SearchFinder};
+use encoder_studio::devices::hiperface::state::{EncoderSearchForm, Search, SearchAction};
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
 use encoder_studio::kinds::{KINDS, Program};
 use encoder_studio::signals;
@@ -67,12 +67,12 @@ impl Tabs for Studio {
 
 /// Searches encoders on the line of the form.
 pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
-    ConnectAction::find::<SearchFinder>(SearchAction::Search(options))
+    ConnectAction::find::<EncoderSearchForm>(SearchAction::Search(options))
 }
 
 /// Connects to an encoder that was found.
 pub(crate) fn choose(at: usize) -> ConnectAction {
-    ConnectAction::find::<SearchFinder>(SearchAction::Choose(at))
+    ConnectAction::find::<EncoderSearchForm>(SearchAction::Choose(at))
 }
 
 /// Searches devices in the network.
@@ -87,7 +87,7 @@ pub(crate) fn choose_answer(at: usize) -> ConnectAction {
 
 /// Returns the search of a dialog.
 pub(crate) fn search(dialog: &ConnectDialog) -> Option<&Search> {
-    dialog.finder::<SearchFinder>()?.search.as_ref()
+    dialog.finder::<EncoderSearchForm>()?.search.as_ref()
 }
 
 /// Returns the question to the network of a dialog.

@@ -190,7 +190,10 @@ impl CaptureReport<'_> {
             .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
             .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
             .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_peak_to_peak_deg()))
-            .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_text(error.basis)));
+            .add(
+                "corrected",
+                format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, error_basis_text(error.basis)),
+            );
         if let Some(Revolution { raw, corrected }) = &self.revolution {
             let both = |raw: f64, corrected: f64| {
                 format!("±{:.1}″ as measured, ±{:.1}″ corrected (mechanical)", raw * 3_600.0, corrected * 3_600.0)
@@ -219,7 +222,7 @@ fn basis(basis: ErrorBasis) -> &'static str {
     }
 }
 
-fn basis_text(basis: ErrorBasis) -> String {
+fn error_basis_text(basis: ErrorBasis) -> String {
     match basis {
         ErrorBasis::Motion { noise_deg } => format!("noise {noise_deg:.3}° rms"),
         ErrorBasis::Ellipse => "estimated from the residual: the motion is too short or not uniform".to_owned(),

@@ -60,7 +60,7 @@ impl Default for Signals {
 impl Tool for Signals {
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError> {
         match action.open()? {
-            SignalsAction::Source(SourceAction::StartAdapter) => self.begin_with_adapter(context),
+            SignalsAction::Source(SourceAction::StartAdapter) => self.start_adapter_when_free(context),
             action => Signals::act(self, action, context.services()),
         }
         Ok(())
@@ -116,7 +116,7 @@ impl Signals {
     }
 
     /// Starts the adapter after other users have released its connection. The link is stored in the settings.
-    fn begin_with_adapter(&mut self, context: &mut ToolContext<'_>) {
+    fn start_adapter_when_free(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
             None => Ok(None),
@@ -191,12 +191,12 @@ impl Signals {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
-            self.reevaluate(services);
+            self.judge_again(services);
         }
     }
 
     /// Discards the reading in progress.
-    pub(super) fn forget_reading(&mut self) {
+    pub(super) fn abort_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
         }
@@ -210,20 +210,20 @@ impl Signals {
 
     pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
-            SignalsAction::Open(path) => self.open_source(TableSource::File(path), services),
-            SignalsAction::Example(example) => self.open_source(TableSource::Example(example), services),
+            SignalsAction::Open(path) => self.open_table_source(TableSource::File(path), services),
+            SignalsAction::Example(example) => self.open_table_source(TableSource::Example(example), services),
             SignalsAction::SetDelimiter(delimiter) => {
-                self.reread_table(services, |hints| hints.delimiter = Some(delimiter))
+                self.reread_with_hints(services, |hints| hints.delimiter = Some(delimiter))
             }
             SignalsAction::SetDecimalComma(comma) => {
-                self.reread_table(services, |hints| hints.decimal_comma = Some(comma))
+                self.reread_with_hints(services, |hints| hints.decimal_comma = Some(comma))
             }
-            SignalsAction::SetTimeUnit(unit) => self.reread_table(services, |hints| hints.time_unit = Some(unit)),
+            SignalsAction::SetTimeUnit(unit) => self.reread_with_hints(services, |hints| hints.time_unit = Some(unit)),
             SignalsAction::SetVolts(volts) if volts.is_finite() && volts != 0.0 => {
-                self.reread_table(services, |hints| hints.volts_per_unit = Some(volts));
+                self.reread_with_hints(services, |hints| hints.volts_per_unit = Some(volts));
             }
             SignalsAction::SetVolts(_) => {}
-            SignalsAction::Detect => self.reread_table(services, |hints| *hints = TableHints::default()),
+            SignalsAction::Detect => self.reread_with_hints(services, |hints| *hints = TableHints::default()),
             SignalsAction::SetColumn(column, number) => {
                 let settled = self.settled();
                 if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
@@ -234,7 +234,7 @@ impl Signals {
             SignalsAction::Source(action) => self.handle_source_action(action, services),
             SignalsAction::SetFamily(family) => {
                 self.family = family;
-                self.reevaluate(services);
+                self.judge_again(services);
             }
             SignalsAction::Keep => {
                 let shown = self.measurement.as_ref().map(|own| own.results().clone());
@@ -268,10 +268,10 @@ impl Signals {
     fn failed(&mut self, failed: FailedTask, services: &mut Services) {
         let what = match failed {
             FailedTask::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
-                self.forget_reading();
+                self.abort_reading();
                 "signals.reading_failed"
             }
-            FailedTask::Measure(number) if self.handle_measurement_failure(number, services) => {
+            FailedTask::Measure(number) if self.stop_after_failed_measurement(number, services) => {
                 "signals.measuring_failed"
             }
             FailedTask::Judge => "signals.judging_failed",
@@ -298,7 +298,7 @@ impl Signals {
     }
 
     /// Displays a measurement of the newest samples instead of a capture.
-    pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
+    pub(super) fn show_live_measurement(&mut self, measurement: Measurement, services: &Services) {
         self.show(measurement, services);
         self.problem = None;
         self.table = None;
@@ -314,7 +314,7 @@ impl Signals {
                 let judge = measurement.judge;
                 self.show(measurement, services);
                 if judge != self.judge() {
-                    self.reevaluate(services);
+                    self.judge_again(services);
                 }
                 self.problem = None;
                 self.table = Some(table);
@@ -337,7 +337,7 @@ impl Signals {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
 
-    fn reread_table(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
+    fn reread_with_hints(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
             change(&mut table.hints);
@@ -351,7 +351,7 @@ impl Signals {
         }
     }
 
-    fn open_source(&mut self, place: TableSource, services: &mut Services) {
+    fn open_table_source(&mut self, place: TableSource, services: &mut Services) {
         let settled = self.settled();
         if std::mem::take(&mut self.periods_of_source) {
             self.periods = None;
@@ -363,7 +363,7 @@ impl Signals {
         DiagnosisSettings { family: self.family, periods: self.periods }
     }
 
-    pub(super) fn reevaluate(&mut self, services: &mut Services) {
+    pub(super) fn judge_again(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());

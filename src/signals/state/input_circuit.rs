@@ -80,7 +80,7 @@ impl InputCircuitResult {
 
     /// Returns the angle error per microsecond between the sampling of both channels. The error is in electrical
     /// degrees, at the entered speed.
-    pub fn degrees_per_microsecond(&self) -> f64 {
+    pub fn sampling_skew_deg(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }
 }
@@ -126,7 +126,7 @@ mod tests {
         // 1/(2π · 10 kΩ · 47 pF) = 338.628 kHz; a microsecond at 102.4 kHz is 36.864°.
         let circuit = form("1024", "6000", "10k", "47p").circuit().unwrap();
         assert!((circuit.corner_hz - 338_627.5).abs() < 0.5, "{circuit:?}");
-        assert!((circuit.degrees_per_microsecond() - 36.864).abs() < 1e-9);
+        assert!((circuit.sampling_skew_deg() - 36.864).abs() < 1e-9);
     }
 
     #[test]

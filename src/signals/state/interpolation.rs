@@ -12,7 +12,7 @@ use crate::signals::state::TEXTS;
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TableError {
+pub struct OctantTableError {
     pub intervals: usize,
     pub largest_deg: f64,
     /// Length of a period divided by the largest error.
@@ -30,13 +30,13 @@ pub struct InterpolatedPhase {
     pub difference_deg: f64,
 }
 
-pub fn table_errors() -> &'static [TableError] {
-    static ERRORS: LazyLock<Vec<TableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
+pub fn table_errors() -> &'static [OctantTableError] {
+    static ERRORS: LazyLock<Vec<OctantTableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
     &ERRORS
 }
 
 /// Determines the largest error of a table with the given number of intervals.
-fn table_error(intervals: usize) -> TableError {
+fn table_error(intervals: usize) -> OctantTableError {
     const PLACES: usize = 64;
     let table = OctantTable::new(intervals);
     let error = |place: usize| {
@@ -46,7 +46,7 @@ fn table_error(intervals: usize) -> TableError {
     };
     let largest_deg = (0..=intervals * PLACES).map(error).fold(0.0, f64::max);
     let parts = DEGREES / largest_deg;
-    TableError { intervals, largest_deg, parts, bits: parts.log2() }
+    OctantTableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
 
 /// Calculates the phase of typed voltages exactly and with a table of the given number of intervals. The voltages must

@@ -167,7 +167,7 @@ impl Source {
     }
 
     /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is shorter.
-    pub fn limited_window_ms(&self) -> Option<f64> {
+    pub fn actual_limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
             SourceKind::Adapter => self.streaming()?.period_ns,
@@ -297,7 +297,7 @@ impl Signals {
         match action {
             SourceAction::Start => {
                 if self.source.start_encoder(services) {
-                    self.forget_reading();
+                    self.abort_reading();
                     self.replace_scope(Scope::live(true), services);
                     self.set_periods(settings.periods as u32, true, services);
                 }
@@ -343,7 +343,7 @@ impl Signals {
     /// Starts the adapter after the previous user of its connection has ended.
     pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
-            self.forget_reading();
+            self.abort_reading();
             self.replace_scope(Scope::live(false), services);
         }
     }
@@ -403,16 +403,16 @@ impl Signals {
             return;
         }
         let judge = measurement.judge;
-        self.show_live(measurement, services);
+        self.show_live_measurement(measurement, services);
         // The settings have changed during the measurement.
         if judge != self.judge() {
-            self.reevaluate(services);
+            self.judge_again(services);
         }
     }
 
     /// Handles a failed measurement of the newest samples. The source is stopped, because every further measurement
     /// would fail too.
-    pub(super) fn handle_measurement_failure(&mut self, number: u32, services: &mut Services) -> bool {
+    pub(super) fn stop_after_failed_measurement(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {
             self.source.stop(services);

@@ -81,7 +81,7 @@ impl Quantity {
         Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }
     }
 
-    pub(super) fn with_secondary_value(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
+    pub(super) fn with_value_in_second_unit(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
         self.also = Some((value, decimals, unit));
         self
     }
@@ -139,7 +139,7 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     let percent = |word, share: f64, decimals| Quantity::new(word, 100.0 * share, decimals, Unit::Percent);
     let offset = |word, offset_v: f64| {
         percent(word, offset_v / ellipse.amplitude_v, 2)
-            .with_secondary_value(1000.0 * offset_v, 1, Unit::Millivolts)
+            .with_value_in_second_unit(1000.0 * offset_v, 1, Unit::Millivolts)
             .bounded(QuantityLimit::Within(100.0 * limits.offset))
     };
     let (least, most) = coverage.vector_v;
@@ -170,7 +170,7 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
     let peak_to_peak = |word, degrees: f64| {
         let quantity = Quantity::new(word, degrees, 3, Unit::Degrees);
         match a_degree {
-            Some(a_degree) => quantity.with_secondary_value(degrees * a_degree, 2, Unit::ArcSeconds),
+            Some(a_degree) => quantity.with_value_in_second_unit(degrees * a_degree, 2, Unit::ArcSeconds),
             None => quantity,
         }
     };

@@ -62,7 +62,7 @@ pub struct SynchroniseState {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Synchronisation {
+pub struct SynchronisationResult {
     pub absolute: u64,
     pub phase: Phase,
     pub period: u64,
@@ -104,13 +104,13 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
-    pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
+    pub fn synchronisation(&self) -> Result<SynchronisationResult, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
         let absolute = parse_number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
         let phase = self.phase()?;
         let step = absolute % STEPS;
-        Ok(Synchronisation {
+        Ok(SynchronisationResult {
             absolute,
             phase,
             period: absolute / STEPS,
@@ -141,7 +141,7 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
-    pub fn unlatched_rpm(&self) -> Result<f64, Text> {
+    pub fn max_unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
         Ok(0.5 * 60.0 / (f64::from(periods) * jitter_ms / 1e3))
@@ -174,7 +174,7 @@ impl Form {
     }
 }
 
-impl Synchronisation {
+impl SynchronisationResult {
     /// Returns the fine position as a shaft angle in degrees, within a revolution.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
@@ -210,7 +210,7 @@ impl SynchroniseState {
                     self.form.offset = format!("{offset:.2}");
                 }
             }
-            SynchroniseAction::UseCaptured(offset) => self.form.offset = format!("{:.2}", self.with_half_step(offset)),
+            SynchroniseAction::UseCaptured(offset) => self.form.offset = format!("{:.2}", self.add_half_step(offset)),
             SynchroniseAction::Forget => self.readings.clear(),
         }
     }
@@ -263,11 +263,11 @@ impl SynchroniseState {
         if self.readings.len() < LEAST_READINGS {
             return None;
         }
-        measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
+        measure_offset(self.readings.iter().copied()).map(|offset| self.add_half_step(offset))
     }
 
     /// Returns an offset in the form of the entry, which includes the half step if selected.
-    pub fn with_half_step(&self, offset: f64) -> f64 {
+    pub fn add_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }
 }
@@ -335,9 +335,9 @@ mod tests {
         assert_eq!(Form::default().quadrature(), Ok(None));
         let beyond = Form { quarters: "4096".to_owned(), ..Form::default() };
         assert_eq!(beyond.quadrature().unwrap_err().id(), "entry.position_range");
-        assert!((Form::default().unlatched_rpm().unwrap() - 29.296_875).abs() < 1e-9);
+        assert!((Form::default().max_unlatched_rpm().unwrap() - 29.296_875).abs() < 1e-9);
         let jitter = Form { jitter_ms: "0".to_owned(), ..Form::default() };
-        assert_eq!(jitter.unlatched_rpm().unwrap_err().id(), "entry.number");
+        assert_eq!(jitter.max_unlatched_rpm().unwrap_err().id(), "entry.number");
     }
 
     #[test]

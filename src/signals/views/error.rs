@@ -48,7 +48,7 @@ pub(super) fn page_ui(
                 paragraph(ui, theme.caption(theme.words(&basis(analysis.error.basis))));
             });
         },
-        |ui, _| bars_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
+        |ui, _| harmonics_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
     );
     theme.gap(ui);
     nonlinearity::card_ui(ui, theme, measurement, compared.map(AsRef::as_ref));
@@ -96,7 +96,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
     });
 }
 
-fn bars_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&MeasurementResult>) {
+fn harmonics_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&MeasurementResult>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
         Trace { name: say(theme, id), points, colour, dashed }

@@ -92,7 +92,7 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
         row(ui, theme, &say(theme, "input.gain"), theme.monospace(gain));
         row(ui, theme, &say(theme, "input.corner"), khz(circuit.corner_hz));
         row(ui, theme, &say(theme, "input.sampling"), khz(2.0 * frequency_hz));
-        row(ui, theme, &say(theme, "input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
+        row(ui, theme, &say(theme, "input.skew"), number(circuit.sampling_skew_deg(), 2, "° el./µs"));
     });
 }
 

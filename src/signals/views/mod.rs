@@ -53,7 +53,7 @@ pub(crate) struct SignalsUiState {
     corrected: bool,
     pictures: [quality::Picture; 2],
     octant: octant::OctantUiState,
-    scope: scope::ScopeView,
+    scope: scope::ScopeUiState,
     input_circuit: Circuit,
 }
 

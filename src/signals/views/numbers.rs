@@ -44,12 +44,12 @@ pub(super) fn rows_ui(
                     let other = compared.iter().find(|other| other.word == quantity.word);
                     comparison_ui(ui, theme, quantity, other);
                 }
-                let words = quantity.bound.map(|bound| bound_text(theme, bound, quantity.unit)).unwrap_or_default();
+                let words = quantity.bound.map(|bound| limit_text(theme, bound, quantity.unit)).unwrap_or_default();
                 if limits {
                     ui.label(theme.caption(&words));
                 }
                 if let Some(verdict) = quantity.verdict {
-                    mark_ui(ui, theme, verdict, &words);
+                    verdict_icon_ui(ui, theme, verdict, &words);
                 }
                 ui.end_row();
             }
@@ -86,7 +86,7 @@ fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<
 }
 
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
-    append_unit(theme.number(rounded(value, decimals), decimals), unit)
+    with_unit_symbol(theme.number(rounded(value, decimals), decimals), unit)
 }
 
 /// Returns zero for a value that is displayed as zero, which avoids a minus sign.
@@ -95,7 +95,7 @@ fn rounded(value: f64, decimals: usize) -> f64 {
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
-fn bound_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
+fn limit_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
     let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {
         QuantityLimit::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
@@ -103,10 +103,10 @@ fn bound_text(theme: &Theme, bound: QuantityLimit, unit: Unit) -> String {
         QuantityLimit::AtMost(most) => format!("≤ {}", plain(most)),
         QuantityLimit::AtLeast(least) => format!("≥ {}", plain(least)),
     };
-    append_unit(words, unit)
+    with_unit_symbol(words, unit)
 }
 
-fn append_unit(words: String, unit: Unit) -> String {
+fn with_unit_symbol(words: String, unit: Unit) -> String {
     match unit.unit_symbol() {
         "" => words,
         sign @ ("°" | "″") => format!("{words}{sign}"),
@@ -115,7 +115,7 @@ fn append_unit(words: String, unit: Unit) -> String {
 }
 
 /// Draws a verdict icon in its colour, with a label for screen readers and the limit as a tooltip.
-fn mark_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
+fn verdict_icon_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
     let (icon, colour) = controls::verdict(theme, verdict);
     let id = match verdict {
         Verdict::Ok => "quality.inside",

@@ -26,7 +26,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     card(ui, theme, TEXTS.text("octant.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "octant.words")));
         ui.add_space(theme.space.inside);
-        split(ui, theme, (0.5, 560.0), view, |ui, _| tables_ui(ui, theme), |ui, view| pair_ui(ui, theme, view));
+        split(ui, theme, (0.5, 560.0), view, |ui, _| tables_ui(ui, theme), |ui, view| voltage_pair_ui(ui, theme, view));
     });
 }
 
@@ -47,7 +47,7 @@ fn tables_ui(ui: &mut Ui, theme: &Theme) {
     });
 }
 
-fn pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
+fn voltage_pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     for (id, text) in [("octant.sine", &mut view.sine), ("octant.cosine", &mut view.cosine)] {
         labelled_entry(ui, theme, TEXTS.text(id), text, 88.0, "");
     }

@@ -18,7 +18,7 @@ const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
 #[derive(Default)]
-pub(super) struct ScopeView {
+pub(super) struct ScopeUiState {
     plot: plot::PlotUiState,
     /// Whether the spectrum is shown in volts instead of decibels.
     volts: bool,
@@ -42,7 +42,7 @@ pub(super) fn page_ui(
     }
 }
 
-fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeView, actions: &mut Vec<Action>) {
+fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeUiState, actions: &mut Vec<Action>) {
     let scope = signals.scope();
     let height = (ui.ctx().content_rect().height() * 0.5).max(TRACE);
     card(ui, theme, TEXTS.text("scope.title"), |ui| {
@@ -64,7 +64,7 @@ fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeView, ac
     });
 }
 
-fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement, view: &mut ScopeView) {
+fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement, view: &mut ScopeUiState) {
     let volts = view.volts;
     let mut wanted = volts;
     let aside = |ui: &mut Ui| {

@@ -32,7 +32,7 @@ pub(super) fn source_ui(
     problem(ui, theme, signals);
     let running = signals.source().is_running();
     if signals.measurement().is_some() || running {
-        present_ui(ui, theme, signals, view, actions);
+        displayed_capture_ui(ui, theme, signals, view, actions);
         ui.add_space(theme.space.between);
     }
     if view.adapter || signals.source().adapter_problem().is_some() {
@@ -112,7 +112,13 @@ pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-fn present_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+fn displayed_capture_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &mut SourceUiState,
+    actions: &mut Vec<Action>,
+) {
     theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
         ui.horizontal_wrapped(|ui| {

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
 use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as Page, SynchroniseState};
-use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
+use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::SynchronisationResult};
 use crate::signals::views::say;
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
@@ -49,9 +49,9 @@ pub(super) fn page_ui(
         COLUMNS,
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
-            measured_ui(ui, theme, state, actions);
+            measured_offset_ui(ui, theme, state, actions);
             theme.gap(ui);
-            captured_ui(ui, theme, signals, actions);
+            captured_offset_ui(ui, theme, signals, actions);
             theme.gap(ui);
             counter_ui(ui, theme, form);
         },
@@ -66,7 +66,7 @@ fn ask(action: Page) -> Action {
     Action::tool(Signals::Synchronise(action))
 }
 
-fn typed_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
+fn typed_entry_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
     labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
 }
 
@@ -80,7 +80,7 @@ fn positions_ui(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("synchronise.positions"), |ui| {
-        typed_ui(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
+        typed_entry_ui(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
         entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
             let ways = [
                 (PhaseInput::Periods, "synchronise.in_periods"),
@@ -91,15 +91,17 @@ fn positions_ui(
             choice(ui, &say(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
         match form.phase_input {
-            PhaseInput::Periods | PhaseInput::Degrees => typed_ui(ui, theme, "synchronise.phase", &mut form.phase, "0"),
+            PhaseInput::Periods | PhaseInput::Degrees => {
+                typed_entry_ui(ui, theme, "synchronise.phase", &mut form.phase, "0")
+            }
             PhaseInput::Volts => {
-                typed_ui(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
-                typed_ui(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
+                typed_entry_ui(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
+                typed_entry_ui(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
             }
         }
-        typed_ui(ui, theme, "synchronise.periods", &mut form.periods, "1024");
-        typed_ui(ui, theme, "synchronise.turns", &mut form.turns, "1");
-        typed_ui(ui, theme, "synchronise.offset", &mut form.offset, "0");
+        typed_entry_ui(ui, theme, "synchronise.periods", &mut form.periods, "1024");
+        typed_entry_ui(ui, theme, "synchronise.turns", &mut form.turns, "1");
+        typed_entry_ui(ui, theme, "synchronise.offset", &mut form.offset, "0");
         ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
             .on_hover_text(say(theme, "synchronise.half_step_hint"));
         show_error_below(ui, theme, refused.or(state.problem.as_ref()));
@@ -111,7 +113,7 @@ fn positions_ui(
     });
 }
 
-fn measured_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &mut Vec<Action>) {
+fn measured_offset_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &mut Vec<Action>) {
     let count = state.readings();
     let mut forget = false;
     let aside = |ui: &mut Ui| {
@@ -132,7 +134,7 @@ fn measured_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &m
     }
 }
 
-fn captured_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
+fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();
         let Some((own, offset)) = measurement.and_then(|own| Some((own, own.absolute_offset?))) else {
@@ -146,7 +148,7 @@ fn captured_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Ac
                 let steps = |steps| theme.monospace(format!("{}/32", theme.number(steps, 2)));
                 let state = signals.synchronise();
                 row(ui, theme, &say(theme, "quality.samples"), theme.monospace(offset.samples.to_string()));
-                row(ui, theme, &say(theme, "synchronise.mean"), steps(state.with_half_step(offset.offset_steps)));
+                row(ui, theme, &say(theme, "synchronise.mean"), steps(state.add_half_step(offset.offset_steps)));
                 row(ui, theme, &say(theme, "synchronise.farthest"), steps(offset.farthest_steps));
                 if enabled_button(ui, true, icons::CHECK, &say(theme, "synchronise.use_captured")).clicked() {
                     actions.push(ask(Page::UseCaptured(offset.offset_steps)));
@@ -157,7 +159,7 @@ fn captured_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Ac
     });
 }
 
-fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
+fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
     let (verdict, words) = synchronisation.words();
     let (_, colour) = controls::verdict(theme, verdict);
     card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
@@ -188,7 +190,7 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     });
 }
 
-fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
+fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
     let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
     row(ui, theme, &say(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
     // The numbers have the colours of the ring.
@@ -219,7 +221,7 @@ fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
 fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("synchronise.counter"), |ui| {
         paragraph(ui, theme.label(say(theme, "synchronise.counter_words")));
-        typed_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
+        typed_entry_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
         match form.quadrature() {
             Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.monospace(theme.number(fine, 5))),
             Ok(None) => {}
@@ -227,8 +229,8 @@ fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         }
         ui.add_space(theme.space.inside);
         paragraph(ui, theme.label(say(theme, "synchronise.check_words")));
-        typed_ui(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
-        match form.unlatched_rpm() {
+        typed_entry_ui(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
+        match form.max_unlatched_rpm() {
             Ok(rpm) => {
                 let words = format!("{} {}", theme.number(rpm, 1), say(theme, "input.rpm"));
                 row(ui, theme, &say(theme, "synchronise.below"), theme.monospace(words));

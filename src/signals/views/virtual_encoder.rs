@@ -19,7 +19,7 @@ struct SliderSpec {
     logarithmic: bool,
 }
 
-const fn slider_spec(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
+const fn linear_slider(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
     SliderSpec { quantity, ends: (least, most), decimals, logarithmic: false }
 }
 
@@ -31,21 +31,21 @@ const SIGNAL: [SliderSpec; 9] = [
     wide(Quantity::Speed, -6000.0, 6000.0, 1),
     wide(Quantity::Periods, 1.0, 65_536.0, 0),
     wide(Quantity::Rate, 1_000.0, 1_000_000.0, 0),
-    slider_spec(Quantity::Amplitude, 0.0, 1.0, 3),
-    slider_spec(Quantity::GainRatio, 0.5, 1.5, 3),
-    slider_spec(Quantity::PhaseError, -20.0, 20.0, 2),
-    slider_spec(Quantity::OffsetSine, -0.2, 0.2, 3),
-    slider_spec(Quantity::OffsetCosine, -0.2, 0.2, 3),
-    slider_spec(Quantity::Level, 0.0, 5.0, 2),
+    linear_slider(Quantity::Amplitude, 0.0, 1.0, 3),
+    linear_slider(Quantity::GainRatio, 0.5, 1.5, 3),
+    linear_slider(Quantity::PhaseError, -20.0, 20.0, 2),
+    linear_slider(Quantity::OffsetSine, -0.2, 0.2, 3),
+    linear_slider(Quantity::OffsetCosine, -0.2, 0.2, 3),
+    linear_slider(Quantity::Level, 0.0, 5.0, 2),
 ];
 const DISTURBANCES: [SliderSpec; 8] = [
     wide(Quantity::Noise, 0.0, 0.2, 4),
     wide(Quantity::Interference, 0.0, 0.2, 4),
     wide(Quantity::InterferenceFrequency, 10.0, 100_000.0, 0),
     wide(Quantity::Hum, 0.0, 0.2, 4),
-    slider_spec(Quantity::HumFrequency, 16.0, 400.0, 1),
-    slider_spec(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
-    slider_spec(Quantity::Modulation, 0.0, 20.0, 1),
+    linear_slider(Quantity::HumFrequency, 16.0, 400.0, 1),
+    linear_slider(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
+    linear_slider(Quantity::Modulation, 0.0, 20.0, 1),
     wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
 /// Durations of the measured samples to choose from, in milliseconds.
@@ -149,7 +149,7 @@ fn window(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(Sour
             ask(SourceAction::SetWindow(window));
         }
     });
-    if let Some(ms) = source.limited_window_ms() {
+    if let Some(ms) = source.actual_limited_window_ms() {
         let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
         paragraph(ui, theme.caption(theme.words(&text)));
     }

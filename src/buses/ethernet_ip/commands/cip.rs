@@ -5,7 +5,7 @@ use crate::bits::hex;
 use crate::buses::ethernet_ip::protocol::{
     AddressSource, ConfigurationControl, EPath, ForwardClose, ForwardCloseSuccess, ForwardErrorReply, ForwardOpen,
     ForwardOpenSuccess, GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Reply, Request, Segment,
-    Service, class_name, extended_row,
+    Service, class_name, find_extended_status,
 };
 use crate::cli::output::count;
 
@@ -69,7 +69,7 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
 fn reply_lines(reply: &Reply) -> Vec<String> {
     let mut lines = vec![format!("CIP reply: {}, status {}", service(reply.service, None), reply.status)];
     for code in &reply.extended {
-        let meaning = extended_row(reply.service, reply.status, *code)
+        let meaning = find_extended_status(reply.service, reply.status, *code)
             .map_or_else(|| "unknown".to_owned(), |row| format!("{}; {}", row.meaning, row.remedy));
         lines.push(format!("extended status 0x{code:04X} {meaning}"));
     }

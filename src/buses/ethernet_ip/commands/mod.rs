@@ -23,13 +23,13 @@ pub(crate) struct DecodedBytes {
 
 /// A function that decodes an attribute of a class. Returns its name, and its value or the reason why the value is
 /// invalid.
-pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
+pub(crate) type AttributeDecoder = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
     /// A known device. All its services are standard ones, and its attributes have known meanings.
-    Known(AttributeWords),
+    Known(AttributeDecoder),
 }
 
 const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
@@ -149,13 +149,13 @@ fn frame_lines(frame: &Frame, device: Device) -> std::result::Result<Vec<String>
     match frame.body().map_err(|why| why.to_string())? {
         Body::Empty => {}
         Body::Register { version, .. } => lines.push(format!("version {version} of the protocol")),
-        Body::List(items) | Body::Data { items, .. } => items_lines(&items, device, &mut lines),
+        Body::List(items) | Body::Data { items, .. } => item_list_lines(&items, device, &mut lines),
         Body::Other(data) => lines.push(format!("data {}", hex(&data))),
     }
     Ok(lines)
 }
 
-fn items_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
+fn item_list_lines(items: &ItemList, device: Device, lines: &mut Vec<String>) {
     for item in &items.0 {
         match item {
             Item::Null => {}

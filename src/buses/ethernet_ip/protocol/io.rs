@@ -56,7 +56,7 @@ impl RunIdleHeader {
 
 impl IoPacket {
     /// Returns the number of bytes for the sequence count and the header. A connection size includes them.
-    pub const fn overhead(format: RealTimeFormat) -> u16 {
+    pub const fn size_overhead(format: RealTimeFormat) -> u16 {
         match format {
             RealTimeFormat::Header => 6,
             RealTimeFormat::Modeless => 2,

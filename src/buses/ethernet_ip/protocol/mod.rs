@@ -41,8 +41,8 @@ pub use message::{Reply, Request, Service, class_name};
 pub use path::{EPath, ElectronicKey, LogicalKind, Segment, Width};
 pub use receiver::Receiver;
 pub use status::{
-    ENCAPSULATION_STATUS, EXTENDED_STATUS, EncapsulationStatus, ExtendedStatusRow, GENERAL_STATUS, GeneralStatus,
-    StatusRow, extended_row,
+    ENCAPSULATION_STATUS, EXTENDED_STATUS, EncapsulationStatus, ExtendedStatusTableRow, GENERAL_STATUS, GeneralStatus,
+    StatusTableRow, find_extended_status,
 };
 pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceConfiguration};
 

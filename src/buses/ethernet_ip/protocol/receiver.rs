@@ -36,7 +36,7 @@ impl Receiver {
     }
 
     /// Takes the bytes that do not form a complete frame.
-    pub fn take_remaining(&mut self) -> Vec<u8> {
+    pub fn take_unparsed_bytes(&mut self) -> Vec<u8> {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 

@@ -15,7 +15,7 @@ pub struct GeneralStatus(u8);
 
 /// A row of a status table.
 #[derive(Clone, Copy, Debug)]
-pub struct StatusRow<C> {
+pub struct StatusTableRow<C> {
     /// Status code.
     pub code: C,
     /// Meaning of the code.
@@ -26,7 +26,7 @@ pub struct StatusRow<C> {
 
 /// A row of the extended status table.
 #[derive(Clone, Copy, Debug)]
-pub struct ExtendedStatusRow {
+pub struct ExtendedStatusTableRow {
     /// General status with which the code occurs.
     pub general: GeneralStatus,
     /// Code in the first extended status word.
@@ -37,15 +37,15 @@ pub struct ExtendedStatusRow {
     pub remedy: &'static str,
 }
 
-const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusRow<C> {
-    StatusRow { code, meaning, remedy }
+const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusTableRow<C> {
+    StatusTableRow { code, meaning, remedy }
 }
 
 const AGAIN: &str = "try again; if the error returns, restart the device";
 const DEFECT: &str = "a defect of this program: report it with a trace";
 
 /// Known encapsulation status codes.
-pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
+pub const ENCAPSULATION_STATUS: [StatusTableRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::OK, "success", "nothing"),
     row(EncapsulationStatus(0x01), "command not supported", "use another command"),
     row(EncapsulationStatus(0x02), "not enough memory for the command", AGAIN),
@@ -56,7 +56,7 @@ pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
 ];
 
 /// Known general status codes.
-pub const GENERAL_STATUS: [StatusRow<GeneralStatus>; 31] = [
+pub const GENERAL_STATUS: [StatusTableRow<GeneralStatus>; 31] = [
     row(GeneralStatus::OK, "success", "nothing"),
     row(GeneralStatus::CONNECTION, "connection failure", "see the words that follow"),
     row(GeneralStatus(0x02), "resources unavailable", "close another connection to the device, or restart it"),
@@ -90,15 +90,15 @@ pub const GENERAL_STATUS: [StatusRow<GeneralStatus>; 31] = [
     row(GeneralStatus(0x2C), "attribute cannot be read", "it can only be set"),
 ];
 
-const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> ExtendedStatusRow {
-    ExtendedStatusRow { general: GeneralStatus::CONNECTION, code, meaning, remedy }
+const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> ExtendedStatusTableRow {
+    ExtendedStatusTableRow { general: GeneralStatus::CONNECTION, code, meaning, remedy }
 }
 
 const OTHER_MASTER: &str = "close the connection of the other master first";
 const SIZE: &str = "set parameter words and number of drives as in the device";
 
 /// Known reasons for a failure to open or close a connection.
-pub const EXTENDED_STATUS: [ExtendedStatusRow; 18] = [
+pub const EXTENDED_STATUS: [ExtendedStatusTableRow; 18] = [
     connection(0x0100, "connection already in use", "wait for its time-out, then connect again"),
     connection(0x0103, "transport class and trigger not supported", DEFECT),
     connection(0x0106, "another master owns the outputs", OTHER_MASTER),
@@ -146,7 +146,7 @@ impl EncapsulationStatus {
     }
 
     /// Returns the table row of the status, or `None` if the status is unknown.
-    pub fn row(self) -> Option<&'static StatusRow<EncapsulationStatus>> {
+    pub fn row(self) -> Option<&'static StatusTableRow<EncapsulationStatus>> {
         ENCAPSULATION_STATUS.iter().find(|row| row.code == self)
     }
 }
@@ -184,13 +184,17 @@ impl GeneralStatus {
     }
 
     /// Returns the table row of the status, or `None` if the status is unknown.
-    pub fn row(self) -> Option<&'static StatusRow<GeneralStatus>> {
+    pub fn row(self) -> Option<&'static StatusTableRow<GeneralStatus>> {
         GENERAL_STATUS.iter().find(|row| row.code == self)
     }
 }
 
 /// Returns the table row of an extended status code. Only codes of the connection manager's services are known.
-pub fn extended_row(service: Service, status: GeneralStatus, code: u16) -> Option<&'static ExtendedStatusRow> {
+pub fn find_extended_status(
+    service: Service,
+    status: GeneralStatus,
+    code: u16,
+) -> Option<&'static ExtendedStatusTableRow> {
     let connections = [Service::FORWARD_OPEN, Service::FORWARD_CLOSE].contains(&service);
     EXTENDED_STATUS.iter().find(|row| connections && row.general == status && row.code == code)
 }

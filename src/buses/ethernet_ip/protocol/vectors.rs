@@ -190,9 +190,9 @@ fn a_connection_ends_or_is_refused() {
     assert_eq!(hex(&refused.reply(&open().request(), 0x0106).emit()), text);
     let reply = Reply::parse(&bytes(text)).unwrap();
     assert_eq!(ForwardErrorReply::parse(&reply.data), Ok(refused));
-    let row = extended_row(reply.service, reply.status, reply.extended[0]).unwrap();
+    let row = find_extended_status(reply.service, reply.status, reply.extended[0]).unwrap();
     assert_eq!(row.meaning, "another master owns the outputs");
-    assert!(extended_row(Service::GET, reply.status, 0x0106).is_none());
+    assert!(find_extended_status(Service::GET, reply.status, 0x0106).is_none());
     let mut wrong = open().request().data;
     wrong[18] = 8;
     let field = PacketField::TimeoutMultiplier;
@@ -219,8 +219,8 @@ fn published_network_parameters_match() {
         );
     }
     // 16 and 8 bytes of process data: 2 + 4 in addition to the target, 2 back.
-    assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Header)), [22, 14]);
-    assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Modeless)), [18, 10]);
+    assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Header)), [22, 14]);
+    assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Modeless)), [18, 10]);
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
     let odd = NetworkParameters::of_word(0xFE05);
     assert_eq!((odd.kind(), odd.priority()), (NetworkType::Reserved, NetworkPriority::Urgent));

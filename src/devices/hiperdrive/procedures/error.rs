@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::buses::ethernet_ip::protocol::{
-    EncapsulationStatus, ExtendedStatusRow, GeneralStatus, PacketError, Service, extended_row,
+    EncapsulationStatus, ExtendedStatusTableRow, GeneralStatus, PacketError, Service, find_extended_status,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
 use crate::link::LinkError;
@@ -72,8 +72,8 @@ pub struct Refusal {
 
 impl Refusal {
     /// Returns the table row of the first extended status word, if the word is present and known.
-    pub fn row(&self) -> Option<&'static ExtendedStatusRow> {
-        extended_row(self.service, self.status, *self.extended.first()?)
+    pub fn row(&self) -> Option<&'static ExtendedStatusTableRow> {
+        find_extended_status(self.service, self.status, *self.extended.first()?)
     }
 
     /// Returns the remedy for the extended status if it is known, and otherwise the remedy for the status.

@@ -320,7 +320,7 @@ impl<'a> Master<'a> {
     }
 
     fn trace_remaining(&mut self) {
-        let (now, rest) = (self.line.now(), self.station.receiver.take_remaining());
+        let (now, rest) = (self.line.now(), self.station.receiver.take_unparsed_bytes());
         self.line.show(now, MaskedBytes::clear(&rest));
     }
 

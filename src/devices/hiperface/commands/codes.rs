@@ -6,12 +6,12 @@ use std::str::FromStr;
 use clap::Args;
 
 use crate::cli::{Failure, Result};
-use crate::devices::hiperface::procedures::AccessCodes;
+use crate::devices::hiperface::procedures::InitialAccessCodes;
 use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
 
 /// Access code option of every command.
 #[derive(Args)]
-pub(super) struct CodeOption {
+pub(super) struct AccessCodeArgs {
     /// Access code N, if it is not 55h; repeatable. Also read from ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
     // Parsed later: clap repeats an invalid argument in its error message, and the argument may be an access code.
@@ -45,7 +45,7 @@ pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
 }
 
 /// Returns the access codes from the environment, followed by those from the command line.
-pub(super) fn given(option: &CodeOption) -> Result<AccessCodes> {
+pub(super) fn given(option: &AccessCodeArgs) -> Result<InitialAccessCodes> {
     let mut codes = Vec::new();
     if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
         for code in text.split(',').filter(|code| !code.trim().is_empty()) {

@@ -12,12 +12,12 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperface::commands::run::{Runner, reported_codes};
+use crate::devices::hiperface::commands::run::{Runner, announced_codes};
 use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
+use crate::devices::hiperface::procedures::find::{EncoderSearchResult, FindOptions, FoundEncoder};
 use crate::devices::hiperface::procedures::{Identity, PositionReading};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
@@ -44,7 +44,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
     );
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
-        HiperfaceOutput::Found(SearchFindings::Searched { found, complete }) => {
+        HiperfaceOutput::Found(EncoderSearchResult::Searched { found, complete }) => {
             show_found(output, &found)?;
             if !complete {
                 return Err(Failure::Failed(vec![
@@ -60,7 +60,7 @@ pub(super) fn find(common: &CommonArgs, output: &Output, find: &FindArgs) -> Res
             }
             Ok(Done::Well)
         }
-        HiperfaceOutput::Found(SearchFindings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
+        HiperfaceOutput::Found(EncoderSearchResult::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
             "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
              drive or controller, then try again."
         )])),
@@ -206,7 +206,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
         output.print(table.header())?;
     }
     // A status code announced during identification also applies to this position.
-    let mut codes_before = reported_codes(&runner);
+    let mut codes_before = announced_codes(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {
         show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
@@ -230,10 +230,10 @@ fn show(
             }
         }
         Ok(other) => Err(unexpected_output(&other)),
-        Err(error) if error.means_no_position() => match table {
+        Err(error) if error.is_without_position() => match table {
             Some(table) => {
                 output.remark(&position_error_text(&error));
-                output.print(&table.row_without_position(&reported_codes(runner)))
+                output.print(&table.row_without_position(&announced_codes(runner)))
             }
             None => show_no_position(output, &error),
         },

@@ -14,7 +14,7 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
-use self::codes::CodeOption;
+use self::codes::AccessCodeArgs;
 use crate::app::Given;
 use crate::cli::args::{Command, CommonArgs, SimulateArgs};
 use crate::cli::commands::{CommandId, DeviceCommands, KindOptions, enum_values, options_of};
@@ -64,7 +64,7 @@ impl DeviceCommands for HiperfaceCommands {
     }
 
     fn common_options(&self) -> Vec<Arg> {
-        options_of::<CodeOption>()
+        options_of::<AccessCodeArgs>()
     }
 
     fn given(&self, options: &KindOptions, given: Given) -> Result<Given> {
@@ -119,7 +119,7 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
 
 impl Simulated for Bus {
     fn format(&self, now: Moment) -> Option<CharacterFormat> {
-        self.encoder(0).and_then(|encoder| encoder.settings_at(now)).and_then(LineSettings::format)
+        self.encoder(0).and_then(|encoder| encoder.active_settings_at(now)).and_then(LineSettings::format)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
-use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownField};
+use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownMeaningField};
 use crate::devices::hiperface::state::explain as words;
 use crate::profile::Body;
 use crate::result_of;
@@ -49,7 +49,7 @@ impl ProfileCommands for HiperfaceCommands {
         if let Some(types) = prepared.other_type {
             output.remark(&words::other_type(types).terminal_text());
         }
-        check_answers(output, &prepared, restore.dry_run)?;
+        check_copy_decisions(output, &prepared, restore.dry_run)?;
         if let Some(text) = words::created_left(&prepared.created_left) {
             output.remark(&text.terminal_text());
         }
@@ -115,10 +115,10 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
 
 /// Reports the data fields with bytes of unknown meaning. Fails if the command line gives no decision for one of them.
 /// A dry run leaves such a field unchanged instead.
-fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
-    let words = |own: &UnknownField| words::unknown_field(own).terminal_text();
+fn check_copy_decisions(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
+    let words = |own: &UnknownMeaningField| words::unknown_field(own).terminal_text();
     let fields = &prepared.unknown_fields;
-    let open: Vec<&UnknownField> = fields.iter().filter(|own| own.answer.is_none()).collect();
+    let open: Vec<&UnknownMeaningField> = fields.iter().filter(|own| own.answer.is_none()).collect();
     if !dry_run && !open.is_empty() {
         let open: Vec<String> = open.into_iter().map(words).collect();
         return Err(Failure::Failed(vec![format!(

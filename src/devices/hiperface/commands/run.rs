@@ -7,7 +7,7 @@ use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs};
 use crate::devices::hiperface::jobs::{DeviceMessage, Hiperface, JobStep, may_have_other_master};
-use crate::devices::hiperface::procedures::AccessCodes;
+use crate::devices::hiperface::procedures::InitialAccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
@@ -27,8 +27,8 @@ impl Runs for Hiperface {
     }
 
     fn begin(session: &mut Session<Self>, given: &Given) -> CharacterFormat {
-        if let Some(codes) = given.get::<AccessCodes>() {
-            codes.apply_codes(session.codes_mut());
+        if let Some(codes) = given.get::<InitialAccessCodes>() {
+            codes.apply_codes(session.access_codes_mut());
         }
         session.station().format
     }
@@ -49,7 +49,7 @@ impl Runs for Hiperface {
     }
 }
 
-pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
+pub(super) fn announced_codes(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }
 

@@ -136,7 +136,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
 fn change_lines(plan: &HiperfacePlan) -> Lines {
     let mut lines = Lines::default();
     for op in &plan.ops {
-        let (old, new) = change_texts(op);
+        let (old, new) = old_and_new_text(op);
         lines.add(op.item().to_string(), format!("{old}  →  {new}"));
     }
     lines
@@ -155,7 +155,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
                 // An access code is never shown.
                 Op::ChangeCode { .. } => (None, None),
                 op => {
-                    let (old, new) = change_texts(op);
+                    let (old, new) = old_and_new_text(op);
                     (Some(old), Some(new))
                 }
             };
@@ -166,7 +166,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
 
 /// Returns the old and new value of an operation as text. A field status and line settings are bytes, in the form that
 /// `status:N` and `settings` accept.
-fn change_texts(op: &Op) -> (String, String) {
+fn old_and_new_text(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {
             (from.map_or_else(|| "not there".to_owned(), |from| format!("{from:?}")), format!("{to:?}"))

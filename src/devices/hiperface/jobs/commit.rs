@@ -3,7 +3,7 @@
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWrite;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
-use crate::devices::hiperface::profile::{Base, Op, Recorded, ScalarValue, created_fields};
+use crate::devices::hiperface::profile::{Base, Op, Recorded, SingleValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::Body;
 use crate::store::DeviceKey;
@@ -48,9 +48,9 @@ impl Planned for Prepared {
         let mut recorded = Recorded::default();
         for scalar in &base.scalars {
             match scalar {
-                ScalarValue::Position(position) => recorded.position = Some(*position),
-                ScalarValue::Counter(counter) => recorded.counter = Some(*counter),
-                ScalarValue::Address(_) | ScalarValue::Settings(_) => {}
+                SingleValue::Position(position) => recorded.position = Some(*position),
+                SingleValue::Counter(counter) => recorded.counter = Some(*counter),
+                SingleValue::Address(_) | SingleValue::Settings(_) => {}
             }
         }
         let mut profile = profile_of(&self.identity, base.fields.clone(), recorded);

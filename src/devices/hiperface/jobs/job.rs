@@ -3,13 +3,14 @@
 use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
-use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, FoundEncoder, SearchFindings};
+use crate::devices::hiperface::procedures::find::{Attempt, EncoderSearchResult, FindOptions, FoundEncoder};
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::procedures::{
     Error, Identity, LineQuality, PositionReading, RestPosition, SaveOptions, Survey,
 };
 use crate::devices::hiperface::profile::{
-    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RequiredSetup, RestoreOptions, UnknownField,
+    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RequiredSetup, RestoreOptions,
+    UnknownMeaningField,
 };
 use crate::devices::hiperface::protocol::{
     AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
@@ -140,7 +141,7 @@ pub struct Prepared {
     /// Mounting values of another device that are written and must be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
-    pub unknown_fields: Vec<UnknownField>,
+    pub unknown_fields: Vec<UnknownMeaningField>,
     /// Data fields that the undone write created and that remain in place. They have changed since, or are not the last
     /// fields.
     pub created_left: Vec<u8>,
@@ -161,7 +162,7 @@ impl Prepared {
     /// unknown meaning, may be an offset between encoder and motor.
     pub fn redo(&self) -> Vec<RequiredSetup> {
         let values = self.mounting_written.iter().copied().map(RequiredSetup::Value);
-        let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
+        let copies = self.unknown_fields.iter().any(UnknownMeaningField::is_copied);
         let commutation = (copies || !self.mounting_written.is_empty()).then_some(RequiredSetup::Commutation);
         commutation.into_iter().chain(values).collect()
     }
@@ -230,7 +231,7 @@ pub enum HiperfaceOutput {
     Saved(Box<SavedProfile>),
     Check(Vec<HiperfaceStepResult>),
     Reset(Vec<StatusCode>),
-    Found(SearchFindings),
+    Found(EncoderSearchResult),
     Configured,
     CodeNoted,
     Prepared(Box<Prepared>),
@@ -247,7 +248,7 @@ impl From<PlanError> for JobError {
 
 impl JobError {
     /// Returns whether the encoder refused to report a position for a temporary reason.
-    pub fn means_no_position(&self) -> bool {
-        matches!(self, JobError::Device(error) if error.means_no_position())
+    pub fn is_without_position(&self) -> bool {
+        matches!(self, JobError::Device(error) if error.is_without_position())
     }
 }

@@ -78,8 +78,8 @@ impl Hiperface {
 
     /// Stores the status codes of samples. A persistent code occurs in many samples but is not stored each time.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
-        let codes = self.station.take_read_codes();
-        if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
+        let codes = self.station.take_unlogged_codes();
+        if !codes.is_empty() && self.status.mark_and_check_new(&codes, context.clock.now()) {
             self.store_codes(context, &codes);
         }
     }
@@ -102,7 +102,7 @@ impl Session<Hiperface> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    pub fn codes_mut(&mut self) -> &mut Codes {
+    pub fn access_codes_mut(&mut self) -> &mut Codes {
         &mut self.device.station.codes
     }
 
@@ -127,7 +127,7 @@ impl Device for Hiperface {
         tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let result = self.carry_out(context, job, tell);
-        let codes = self.station.take_read_codes();
+        let codes = self.station.take_unlogged_codes();
         self.store_codes(context, &codes);
         result
     }
@@ -156,8 +156,9 @@ impl Device for Hiperface {
     }
 
     fn take_remark(&mut self) -> Option<DeviceMessage> {
-        let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(DeviceMessage::Codes);
-        codes.or_else(|| self.unseen_codes_remark())
+        let codes =
+            Some(self.station.take_undisplayed_codes()).filter(|codes| !codes.is_empty()).map(DeviceMessage::Codes);
+        codes.or_else(|| self.lost_codes_message())
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
@@ -165,7 +166,7 @@ impl Device for Hiperface {
     }
 
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
-        if let Some(unheard) = self.unseen_codes_remark() {
+        if let Some(unheard) = self.lost_codes_message() {
             return Some(unheard);
         }
         let line = &self.station.line;
@@ -179,7 +180,7 @@ impl Device for Hiperface {
 }
 
 impl Hiperface {
-    fn unseen_codes_remark(&mut self) -> Option<DeviceMessage> {
+    fn lost_codes_message(&mut self) -> Option<DeviceMessage> {
         Some(self.station.take_unheard_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 

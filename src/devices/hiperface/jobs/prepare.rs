@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::{Change, Hiperface, JobError, JobStep, OtherType, Prepared, device_key};
-use crate::devices::hiperface::procedures::write::{ensure_address_free, read_guarded_fields, read_memory};
+use crate::devices::hiperface::procedures::write::{check_address_is_free, read_guarded_fields, read_memory};
 use crate::devices::hiperface::procedures::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
 use crate::devices::hiperface::profile::{
     Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, Restore, RestoreOptions,
-    ScalarValue, check_allowed, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
+    SingleValue, check_allowed, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
 use crate::devices::hiperface::protocol::{
     AccessCodeNumber, BROADCAST, FreeMemory, Geometry, LineSettings, nearest_in_phase,
@@ -52,7 +52,7 @@ pub(super) fn prepare(
             let to = u32::try_from(to).unwrap_or(now);
             let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
             let op = (to != now).then_some(Op::SetPosition { from: now, to, synchronise: false });
-            plan_scalar(fields, ScalarValue::Position(now), op)
+            plan_scalar(fields, SingleValue::Position(now), op)
         }
         Change::Store(edits) => {
             let memory = read_memory(&mut master)?;
@@ -90,25 +90,25 @@ pub(super) fn prepare(
             let from = master.station().address;
             // With broadcast, a single encoder is connected, which may itself have this address.
             if from != to.byte() && from != BROADCAST {
-                ensure_address_free(&mut master, to)?;
+                check_address_is_free(&mut master, to)?;
             }
             let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
-            plan_scalar(memory.fields, ScalarValue::Address(from), op)
+            plan_scalar(memory.fields, SingleValue::Address(from), op)
         }
         Change::Configure(to) => {
             let memory = read_memory(&mut master)?;
             let from: LineSettings = read_settings(&mut master)?;
-            plan_scalar(memory.fields, ScalarValue::Settings(from), (from != to).then_some(Op::Configure { from, to }))
+            plan_scalar(memory.fields, SingleValue::Settings(from), (from != to).then_some(Op::Configure { from, to }))
         }
         Change::ClearCounter => {
             let memory = read_memory(&mut master)?;
             let from = read_counter(&mut master)?;
-            plan_scalar(memory.fields, ScalarValue::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
+            plan_scalar(memory.fields, SingleValue::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
         }
         Change::IncrementCounter => {
             let memory = read_memory(&mut master)?;
             let from = read_counter(&mut master)?;
-            plan_scalar(memory.fields, ScalarValue::Counter(from), Some(Op::IncrementCounter { from }))
+            plan_scalar(memory.fields, SingleValue::Counter(from), Some(Op::IncrementCounter { from }))
         }
     };
     prepared.cycles_seen = cycles_seen(&context.store, &device_key(&prepared.identity, context.is_virtual));
@@ -164,7 +164,7 @@ fn set_position(
     let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
     // Synchronising aligns the tracks even if the position does not change.
     let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
-    Ok(plan_scalar(fields, ScalarValue::Position(now), op))
+    Ok(plan_scalar(fields, SingleValue::Position(now), op))
 }
 
 fn change_code(

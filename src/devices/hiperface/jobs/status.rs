@@ -18,7 +18,7 @@ pub(super) struct RecentStatusCodes(Vec<(StatusCode, Moment)>);
 
 impl RecentStatusCodes {
     /// Returns whether any of these codes was not recorded in the last minute. All of them then count as recorded.
-    pub(super) fn record_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
+    pub(super) fn mark_and_check_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
         let mut is_new = false;
         for code in codes {
@@ -56,10 +56,10 @@ mod tests {
         let mut keeper = RecentStatusCodes::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);
-        assert!(keeper.record_new(&[hot], at(0)));
-        assert!(!keeper.record_new(&[hot], at(59)));
-        assert!(keeper.record_new(&[hot, fast], at(59)), "another one came");
-        assert!(keeper.record_new(&[hot], at(60)));
-        assert!(!keeper.record_new(&[fast, hot], at(100)));
+        assert!(keeper.mark_and_check_new(&[hot], at(0)));
+        assert!(!keeper.mark_and_check_new(&[hot], at(59)));
+        assert!(keeper.mark_and_check_new(&[hot, fast], at(59)), "another one came");
+        assert!(keeper.mark_and_check_new(&[hot], at(60)));
+        assert!(!keeper.mark_and_check_new(&[fast, hot], at(100)));
     }
 }

@@ -1,6 +1,6 @@
 //! Device check: the start-up sequence of the manual (figures 8 and 9) with a verdict for each item.
 
-use super::fields::tolerate_read_error;
+use super::fields::separate_value_error;
 use super::{
     Error, Identity, LineQuality, Master, UnreadableField, identify, read_analogue, read_position, read_status, reset,
     try_read_field,
@@ -95,7 +95,7 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
 fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
     let step = CheckStep::Position;
     let reading = read_position(master, identity.geometry);
-    match tolerate_read_error(master, reading)? {
+    match separate_value_error(master, reading)? {
         Ok(reading) => {
             let mut findings = vec![match reading.position {
                 Some(position) => CheckFinding::Position(position),
@@ -122,7 +122,7 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<H
     let mut worst = Verdict::Good;
     for (channel, limit) in label.limits() {
         let value = read_analogue(master, channel);
-        match tolerate_read_error(master, value)? {
+        match separate_value_error(master, value)? {
             Ok(value) => {
                 if value > limit {
                     worst = worst.max(Verdict::Attention);

@@ -132,7 +132,7 @@ impl Error {
     }
 
     /// Returns whether the encoder refused to report a position for a temporary reason.
-    pub fn means_no_position(&self) -> bool {
+    pub fn is_without_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }
 

@@ -68,19 +68,19 @@ pub struct UnreadableField {
 /// The encoder no longer replies, or the user cancelled.
 pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
     let status = read_field_status(master, number);
-    let status = match tolerate_read_error(master, status)? {
+    let status = match separate_value_error(master, status)? {
         Ok(status) => status,
         Err(why) => return Ok(Err(UnreadableField { number, status: None, why })),
     };
     let field = read_field(master, number);
-    Ok(tolerate_read_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
+    Ok(separate_value_error(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
 /// Returns an error as the inner error, if the encoder still replies to another request.
 ///
 /// # Errors
 /// The encoder no longer replies, or the user cancelled.
-pub(super) fn tolerate_read_error<T>(
+pub(super) fn separate_value_error<T>(
     master: &mut Master<'_>,
     result: Result<T, Error>,
 ) -> Result<Result<T, Error>, Error> {

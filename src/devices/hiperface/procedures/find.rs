@@ -60,7 +60,7 @@ pub enum SearchProgress<'a> {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SearchFindings {
+pub enum EncoderSearchResult {
     /// Another device is sending on this line, so nothing was sent.
     ForeignTraffic {
         /// Bytes received while listening.
@@ -83,7 +83,7 @@ pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,
     watch: &mut dyn FnMut(SearchProgress<'_>),
-) -> Result<SearchFindings, Error> {
+) -> Result<EncoderSearchResult, Error> {
     let before = (master.station().address, master.station().format);
     let mut search = Search { found: Vec::new(), watch };
     let result = search.run(master, options);
@@ -92,9 +92,9 @@ pub fn find(
         master.set_format(before.1)
     })?;
     match result {
-        Ok(Some(bytes)) => Ok(SearchFindings::ForeignTraffic { bytes }),
-        Ok(None) => Ok(SearchFindings::Searched { found: search.found, complete: true }),
-        Err(Error::Cancelled) => Ok(SearchFindings::Searched { found: search.found, complete: false }),
+        Ok(Some(bytes)) => Ok(EncoderSearchResult::ForeignTraffic { bytes }),
+        Ok(None) => Ok(EncoderSearchResult::Searched { found: search.found, complete: true }),
+        Err(Error::Cancelled) => Ok(EncoderSearchResult::Searched { found: search.found, complete: false }),
         Err(error) => Err(error),
     }
 }
@@ -118,7 +118,7 @@ impl Search<'_> {
         }
         if let Some(patience) = options.power_cycle {
             self.report(0, total, &Attempt::DefaultWindow);
-            let hit = catch_default_window(master, patience, options.one_encoder)?;
+            let hit = search_in_default_window(master, patience, options.one_encoder)?;
             self.add(hit);
         }
         let mut done = 1;
@@ -161,7 +161,7 @@ fn formats() -> Vec<CharacterFormat> {
 }
 
 /// Sends a request with factory settings every tenth of a second, until an encoder that was just switched on replies.
-fn catch_default_window(
+fn search_in_default_window(
     master: &mut Master<'_>,
     patience: Duration,
     broadcast: bool,

@@ -32,7 +32,7 @@ impl Identity {
 }
 
 /// Returns the identity recorded in a profile. It lacks the free memory.
-pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
+pub fn recorded_identity(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
         settings: profile.interface.settings,
@@ -119,7 +119,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
-    master.request_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
+    master.request_with_time(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
 /// Reads the complete data field FFh, using 4Ch for its size and then 4Ah with code 0.
@@ -138,7 +138,7 @@ pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
 /// Errors of the exchange.
 pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     master.collect_codes()?;
-    Ok(master.station().take_codes())
+    Ok(master.station().take_undisplayed_codes())
 }
 
 /// Converts the refusal of an unsupported command to `None`. Any other error remains an error.

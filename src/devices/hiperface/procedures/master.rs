@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Every attempt failed, the encoder refused, or the user cancelled.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
-        self.request_timed(request).map(|timed| timed.reply)
+        self.request_with_time(request).map(|timed| timed.reply)
     }
 
     /// Runs `work` and requires every reply to be received twice. This is for values that will be stored.
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    pub(super) fn request_timed(&mut self, request: &Request) -> Result<Timed, Error> {
+    pub(super) fn request_with_time(&mut self, request: &Request) -> Result<Timed, Error> {
         let mut tries = 0;
         loop {
             tries += 1;

@@ -20,7 +20,9 @@ pub mod write;
 pub use crate::link::line::{Echo, LineQuality};
 pub use error::{Damage, Error, ReadBackValue};
 pub use fields::{UnreadableField, read_all_fields, read_field, read_field_status, read_range, try_read_field};
-pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
+pub use identify::{
+    Identity, identify, read_address, read_extended_label, read_settings, read_status, recorded_identity,
+};
 pub use master::Master;
 pub use position::{
     PositionReading, Sample, Watch, WatchedReading, ensure_standstill, read_analogue, read_analogue_limit,
@@ -29,7 +31,7 @@ pub use position::{
 pub use reset::{reset, set_temporary_line_settings};
 pub use rest_reading::{RestPosition, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
-pub use station::{AccessCodes, Codes, LinkParameters, MOST_PERIODS, Station};
+pub use station::{Codes, InitialAccessCodes, LinkParameters, MOST_PERIODS, Station};
 
 use survey::{Reading, read_survey};
 pub use survey::{Survey, survey};

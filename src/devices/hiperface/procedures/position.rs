@@ -27,7 +27,7 @@ pub struct PositionReading {
 /// Errors of the exchange, or a refusal because the encoder has no position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
-    let timed = master.request_timed(&Request::ReadPosition)?;
+    let timed = master.request_with_time(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
         return Err(Error::unexpected_reply(Command::ReadPosition, &timed.reply));
     };
@@ -114,7 +114,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     let met_before = master.station().codes_met.len();
     match read_position(master, geometry) {
         Ok(reading) => Ok(Sample::Position(reading)),
-        Err(error) if error.means_no_position() => {
+        Err(error) if error.is_without_position() => {
             let at = master.now();
             let mut codes = match error {
                 Error::Rejected { codes, .. } => codes,
@@ -139,7 +139,7 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
 
 /// Reads an analogue channel, and returns its value with the time at which the encoder sampled it.
 fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
-    let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
+    let timed = master.request_with_time(&Request::ReadAnalogue { channel })?;
     match timed.reply {
         Reply::Analogue(value) => Ok((timed.at, value)),
         other => Err(Error::unexpected_reply(Command::ReadAnalogue, &other)),

@@ -55,9 +55,9 @@ impl Codes {
 
 /// Numbered access codes with which each session begins. If a number occurs twice, its last code counts.
 #[derive(Clone, Debug, Default)]
-pub struct AccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
+pub struct InitialAccessCodes(Vec<(AccessCodeNumber, AccessCode)>);
 
-impl AccessCodes {
+impl InitialAccessCodes {
     pub fn apply_codes(&self, codes: &mut Codes) {
         for (number, code) in &self.0 {
             codes.set(*number, *code);
@@ -65,9 +65,9 @@ impl AccessCodes {
     }
 }
 
-impl FromIterator<(AccessCodeNumber, AccessCode)> for AccessCodes {
+impl FromIterator<(AccessCodeNumber, AccessCode)> for InitialAccessCodes {
     fn from_iter<I: IntoIterator<Item = (AccessCodeNumber, AccessCode)>>(codes: I) -> Self {
-        AccessCodes(codes.into_iter().collect())
+        InitialAccessCodes(codes.into_iter().collect())
     }
 }
 
@@ -135,14 +135,14 @@ impl Station {
         self.thorough || self.line.damaged > 0
     }
 
-    pub(super) fn add_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
+    pub(super) fn queue_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
         self.codes_read.extend(&codes);
         self.codes_met.extend(codes);
     }
 
     /// Takes the codes for the logbook. They must be stored before any of them is displayed.
-    pub fn take_read_codes(&mut self) -> Vec<StatusCode> {
+    pub fn take_unlogged_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
@@ -152,7 +152,7 @@ impl Station {
         std::mem::take(&mut self.codes_unheard)
     }
 
-    pub fn take_codes(&mut self) -> Vec<StatusCode> {
+    pub fn take_undisplayed_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_met)
     }
 }
@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn given_access_codes_are_never_printed() {
         let number = |number| AccessCodeNumber::new(number).unwrap();
-        let given: AccessCodes =
+        let given: InitialAccessCodes =
             [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
         let mut codes = Codes::default();
         given.apply_codes(&mut codes);

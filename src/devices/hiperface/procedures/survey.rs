@@ -1,6 +1,6 @@
 //! Reading all values that the pages of an encoder display, in one job.
 
-use super::fields::tolerate_read_error;
+use super::fields::separate_value_error;
 use super::{
     Error, Identity, LineQuality, Master, Sample, UnreadableField, identify, read_all_fields, read_counter,
     read_sample, try_read_field,
@@ -36,7 +36,7 @@ pub fn survey(
     // The codes stay in the station until the survey is complete, so they are reported even if it fails.
     master.collect_codes()?;
     let mut survey = read_survey(master, types, progress, Reading::AsFarAsPossible)?;
-    survey.codes = master.station().take_codes();
+    survey.codes = master.station().take_undisplayed_codes();
     // A code that the encoder announced before applies to this position too.
     let spoilt = survey.codes.iter().any(|code| code.invalidates_position());
     if let Some(Sample::Position(reading)) = &mut survey.position {
@@ -69,9 +69,9 @@ pub(super) fn read_survey(
     };
     // A restore needs neither value, so a refusal does not end the reading.
     let position = read_sample(master, identity.geometry);
-    let position = tolerate_read_error(master, position)?.ok();
+    let position = separate_value_error(master, position)?.ok();
     let counter = read_counter(master);
-    let counter = tolerate_read_error(master, counter)?.ok();
+    let counter = separate_value_error(master, counter)?.ok();
     let line = master.station().line.quality.clone();
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }

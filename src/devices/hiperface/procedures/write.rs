@@ -12,7 +12,7 @@ use crate::devices::hiperface::procedures::identify::{read_serial, read_type_lab
 use crate::devices::hiperface::procedures::master::ExchangeFailure;
 use crate::devices::hiperface::procedures::position::{distance, position_range};
 use crate::devices::hiperface::profile::{
-    Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, ScalarValue,
+    Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, SingleValue,
 };
 use crate::devices::hiperface::protocol::{
     AccessCodeNumber, BROADCAST, Command, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request,
@@ -67,7 +67,7 @@ impl Write for EncoderWrite<'_, '_> {
                 return Err(Error::Changed { item: PlanItem::Item(Item::Field(FieldRange::of(field.number))) });
             }
         }
-        plan.base.scalars.iter().try_for_each(|scalar| check_scalar_unchanged(master, *scalar, identity.geometry))
+        plan.base.scalars.iter().try_for_each(|scalar| ensure_scalar_unchanged(master, *scalar, identity.geometry))
     }
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
@@ -99,11 +99,11 @@ impl Write for EncoderWrite<'_, '_> {
         let ops = &confirmed.plan().ops;
         let (before, after) = ops.split_at(done.ops.min(ops.len()));
         let begun = before.iter().chain(after.first().filter(|_| may_have_been_executed(cause)));
-        let unlocked: Vec<u8> = begun.filter(|op| op.is_unlock()).filter_map(Op::field).collect();
+        let unlocked: Vec<u8> = begun.filter(|op| op.removes_protection()).filter_map(Op::field).collect();
         let range = position_range(self.identity.geometry);
         for field in unlocked {
             let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
-            let lock_again = |master: &mut Master<'_>| restore_lock(master, lock, confirmed, range, done);
+            let lock_again = |master: &mut Master<'_>| restore_write_protection(master, lock, confirmed, range, done);
             if cause.is_lost() || self.master.run_uncancellable(lock_again).is_err() {
                 self.left.unlocked.push(field);
             }
@@ -120,27 +120,27 @@ fn may_have_been_executed(cause: &Error) -> bool {
     !matches!(cause, Error::Cancelled | Error::Rejected { .. })
 }
 
-fn check_scalar_unchanged(
+fn ensure_scalar_unchanged(
     master: &mut Master<'_>,
-    scalar: ScalarValue,
+    scalar: SingleValue,
     geometry: Option<Geometry>,
 ) -> Result<(), Error> {
     let (same, item) = match scalar {
-        ScalarValue::Position(then) => {
+        SingleValue::Position(then) => {
             let now = ensure_standstill(master, geometry)?;
             if distance(now, then, position_range(geometry)) > 1 {
                 return Err(Error::Moving { readings: vec![then, now] });
             }
             (true, PlanItem::Position)
         }
-        ScalarValue::Counter(then) => (read_counter(master)? == then, PlanItem::Item(Item::Counter)),
-        ScalarValue::Settings(then) => (read_type_label(master)?.settings == then, PlanItem::Item(Item::Settings)),
-        ScalarValue::Address(then) => (master.station().address == then, PlanItem::Item(Item::Address)),
+        SingleValue::Counter(then) => (read_counter(master)? == then, PlanItem::Item(Item::Counter)),
+        SingleValue::Settings(then) => (read_type_label(master)?.settings == then, PlanItem::Item(Item::Settings)),
+        SingleValue::Address(then) => (master.station().address == then, PlanItem::Item(Item::Address)),
     };
     if same { Ok(()) } else { Err(Error::Changed { item }) }
 }
 
-fn restore_lock(
+fn restore_write_protection(
     master: &mut Master<'_>,
     lock: &Op,
     confirmed: &Confirmed<'_>,
@@ -170,7 +170,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             let guarded_by = from.unwrap_or(*to).code();
             let code = master.station().codes.get(guarded_by);
             let request = Request::DefineField { field: *field, status: *to, code };
-            master.send_verified(&request, |master| has_status(master, *field, *to))
+            master.send_verified(&request, |master| reads_back_status(master, *field, *to))
         }
         Op::Store { field, address, status, new, .. } => {
             let code = master.station().codes.get(status.code());
@@ -181,7 +181,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
             let sent = master
-                .send_verified(&request, |master| can_open_field(master, &confirmed.plan().base, *number, *new))?;
+                .send_verified(&request, |master| is_code_accepted(master, &confirmed.plan().base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
@@ -213,7 +213,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
                 // Some types report the overflow this way although the counter was incremented (manual, "Zähler
                 // erhöhen").
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
-                    master.station().add_codes(codes);
+                    master.station().queue_codes(codes);
                     Ok(1)
                 }
                 result => result,
@@ -243,7 +243,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
     Ok(sent)
 }
 
-fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Result<bool, Error> {
+fn reads_back_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Result<bool, Error> {
     match read_field_status(master, field) {
         Ok(status) => Ok(status == wanted),
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => Ok(!wanted.exists()),
@@ -252,7 +252,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
 }
 
 /// Returns whether an access code opens a field that it protects. Without such a field, the code cannot be tested.
-fn can_open_field(
+fn is_code_accepted(
     master: &mut Master<'_>,
     base: &Base,
     number: AccessCodeNumber,
@@ -277,7 +277,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
         match op {
             Op::Define { field, to, .. } => {
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
-                if !later.iter().any(redefined) && !has_status(master, *field, *to)? {
+                if !later.iter().any(redefined) && !reads_back_status(master, *field, *to)? {
                     let (item, expected) = (op.item(), format!("{:02X}", to.byte()));
                     return Err(Error::NotVerified { item, expected, got: ReadBackValue::AnotherStatus });
                 }
@@ -339,7 +339,7 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
 ///
 /// # Errors
 /// [`Error::AddressTaken`] if anything is received, errors of the connection, or cancellation.
-pub fn ensure_address_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
+pub fn check_address_is_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
     master.station().address = before;

@@ -1,6 +1,6 @@
 //! Planning of single changes, each of which is checked against the rules of the encoder before anything is sent.
 
-use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, ScalarValue};
+use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, SingleValue};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
 /// Plans to write bytes to data fields. Adjacent or overlapping edits become one operation, in which the last edit of a
@@ -89,7 +89,7 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
 pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     let from = field.status;
     if to.size() != from.size() {
-        check_last(memory, field.number)?;
+        check_is_last_field(memory, field.number)?;
         let more = to.size().blocks().saturating_sub(from.size().blocks());
         if more > memory.blocks {
             let needed = usize::from(more) * FieldSize::BLOCK;
@@ -105,19 +105,19 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
 /// # Errors
 /// The field is not the last one.
 pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePlan, PlanError> {
-    check_last(memory, field.number)?;
+    check_is_last_field(memory, field.number)?;
     let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() };
     Ok(plan(memory.fields, vec![field.clone()], vec![op]))
 }
 
 /// Plans to change a single value.
-pub fn plan_scalar(fields: u8, now: ScalarValue, op: Option<Op>) -> HiperfacePlan {
+pub fn plan_scalar(fields: u8, now: SingleValue, op: Option<Op>) -> HiperfacePlan {
     let mut plan = plan(fields, Vec::new(), op.into_iter().collect());
     plan.base.scalars.push(now);
     plan
 }
 
-fn check_last(memory: FreeMemory, field: u8) -> Result<(), PlanError> {
+fn check_is_last_field(memory: FreeMemory, field: u8) -> Result<(), PlanError> {
     match memory.fields.checked_sub(1) {
         Some(last) if last == field => Ok(()),
         Some(last) => Err(PlanError::NotLast { field, last }),

@@ -16,12 +16,12 @@ pub struct Base {
     /// The affected fields.
     pub fields: Vec<FieldImage>,
     /// The affected single values.
-    pub scalars: Vec<ScalarValue>,
+    pub scalars: Vec<SingleValue>,
 }
 
 /// A single value stored in an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ScalarValue {
+pub enum SingleValue {
     /// Position in steps, with the shaft at rest.
     Position(u32),
     /// Value of the counter.
@@ -133,7 +133,7 @@ impl Op {
 
     /// Returns whether the operation makes a protected field writable. In that case, the operation that protects the
     /// field again must be carried out even if an operation in between fails.
-    pub fn is_unlock(&self) -> bool {
+    pub fn removes_protection(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }

@@ -13,10 +13,10 @@ use std::fmt;
 pub use device::{check_allowed, check_device};
 pub use error::PlanError;
 pub use undo::created_fields;
-pub use unknown::UnknownField;
+pub use unknown::UnknownMeaningField;
 
 use planner::Planner;
-use undo::{created_fields_to_undo, delete, without};
+use undo::{deletable_created_fields, delete, without};
 use unknown::unknown_fields;
 
 use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
@@ -58,7 +58,7 @@ pub struct Restore {
     /// Part of the result that is common to all kinds of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields whose bytes of unknown meaning differ from those of another encoder.
-    pub unknown_fields: Vec<UnknownField>,
+    pub unknown_fields: Vec<UnknownMeaningField>,
     /// Data fields created by the write that remain in place. They have changed since, or are not the last fields.
     pub created_left: Vec<u8>,
 }
@@ -95,7 +95,7 @@ pub fn plan_restore(
     let unknown_fields = if is_other { unknown_fields(profile, device, &options) } else { Vec::new() };
     let left: Vec<u8> = unknown_fields.iter().filter(|own| !own.is_copied()).map(|own| own.field).collect();
     let (undone, created_left) =
-        if is_other { (Vec::new(), Vec::new()) } else { created_fields_to_undo(profile, device) };
+        if is_other { (Vec::new(), Vec::new()) } else { deletable_created_fields(profile, device) };
     let now = without(device, &undone);
     let mut planner = Planner {
         profile,
@@ -112,12 +112,12 @@ pub fn plan_restore(
         touched: Vec::new(),
     };
     planner.skip_unknown_fields();
-    planner.check_order()?;
-    let recreated = planner.first_to_recreate(options.recreate)?;
+    planner.check_fields_are_consecutive()?;
+    let recreated = planner.first_field_to_recreate(options.recreate)?;
     planner.check_memory(recreated)?;
     let mut kept = now.fields.clone();
     if let Some(first) = recreated {
-        planner.delete_from(first)?;
+        planner.delete_fields_from(first)?;
         kept.truncate(usize::from(first));
     }
     for target in planner.targets(recreated) {

@@ -43,7 +43,7 @@ pub enum TypeTableError {
         /// Type code of the row.
         code: u8,
         /// The invalid entry.
-        entry: ShapeEntry,
+        entry: GeometryEntry,
         /// Valid range.
         range: RangeInclusive<u32>,
     },
@@ -51,7 +51,7 @@ pub enum TypeTableError {
 
 /// Numeric entry of a row. It is displayed with its name in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ShapeEntry {
+pub enum GeometryEntry {
     /// Periods per turn.
     #[error("periods")]
     Periods,
@@ -134,19 +134,19 @@ impl Row {
         let geometry = match self.shape {
             None => None,
             Some(Shape::Rotary { periods, turns }) => {
-                self.within(ShapeEntry::Periods, periods, 1..=Self::MOST)?;
-                self.within(ShapeEntry::Turns, turns, 1..=Self::MOST / periods)?;
+                self.within(GeometryEntry::Periods, periods, 1..=Self::MOST)?;
+                self.within(GeometryEntry::Turns, turns, 1..=Self::MOST / periods)?;
                 Some(Geometry::Rotary { periods, turns })
             }
             Some(Shape::Linear { period_nm }) => {
-                self.within(ShapeEntry::PeriodLength, period_nm, 1..=u32::MAX)?;
+                self.within(GeometryEntry::PeriodLength, period_nm, 1..=u32::MAX)?;
                 Some(Geometry::Linear { period_nm, periods: 0 })
             }
         };
         Ok(EncoderType { code: self.code, name: self.name, geometry, kit: self.kit })
     }
 
-    fn within(&self, entry: ShapeEntry, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
+    fn within(&self, entry: GeometryEntry, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
         if range.contains(&value) { Ok(()) } else { Err(TypeTableError::Range { code: self.code, entry, range }) }
     }
 }
@@ -195,7 +195,7 @@ mod tests {
     fn a_bad_table_is_refused_with_its_location() {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
         let refused = EncoderTypes::parse(zero);
-        assert!(matches!(refused, Err(TypeTableError::Range { code: 1, entry: ShapeEntry::Periods, .. })));
+        assert!(matches!(refused, Err(TypeTableError::Range { code: 1, entry: GeometryEntry::Periods, .. })));
         let misspelt = "(types: [\n(code: 1, nam: \"x\")])";
         assert!(matches!(EncoderTypes::parse(misspelt), Err(TypeTableError::Syntax { line: 2, .. })));
         assert!(EncoderTypes::parse("").is_err());

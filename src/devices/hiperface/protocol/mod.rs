@@ -36,13 +36,13 @@ pub use data_field::{
     AccessCode, AccessCodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
 pub use describe::{Arguments, FrameDetail, describe};
-pub use encoder_type::{EncoderType, EncoderTypes, ShapeEntry, TypeTableError};
+pub use encoder_type::{EncoderType, EncoderTypes, GeometryEntry, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};
 pub use line_settings::{BAUDS, LineSettings};
 pub use position::{Geometry, Position, STEPS_PER_PERIOD, nearest_in_phase};
 pub use reply::{Answer, Reply, ReplyError, ReplyLength};
-pub use request::{Request, RequestError, SecretFrame};
+pub use request::{MaskableFrame, Request, RequestError};
 pub use status::{StatusClass, StatusCode};
 pub use timing::Timing;
 pub use type_label::{SerialLabel, TypeLabel};

@@ -176,7 +176,7 @@ impl Request {
     }
 
     /// Returns the frame to send. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
-    pub fn emit(&self, address: u8) -> SecretFrame {
+    pub fn emit(&self, address: u8) -> MaskableFrame {
         let (payload, codes) = self.payload();
         let frame = Frame { address, command: self.command().byte(), payload: &payload };
         let bytes = frame.emit();
@@ -184,7 +184,7 @@ impl Request {
         if !secret.is_empty() {
             secret.push(bytes.len() - 1); // the checksum is an XOR: it reveals the code
         }
-        SecretFrame { bytes, secret }
+        MaskableFrame { bytes, secret }
     }
 
     /// Parses a request.
@@ -312,12 +312,12 @@ impl Request {
 
 /// Bytes of a request, of which those that reveal an access code are marked.
 #[derive(Clone, PartialEq, Eq)]
-pub struct SecretFrame {
+pub struct MaskableFrame {
     bytes: Vec<u8>,
     secret: Vec<usize>,
 }
 
-impl SecretFrame {
+impl MaskableFrame {
     /// Returns the bytes to be sent.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
@@ -334,7 +334,7 @@ impl SecretFrame {
     }
 }
 
-impl fmt::Debug for SecretFrame {
+impl fmt::Debug for MaskableFrame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "SecretFrame({})", self.masked())
     }

@@ -23,26 +23,26 @@ pub struct Bus {
     to_encoders: TransitQueue<CharacterInTransit>,
     /// Characters in transit to the host, by end time.
     to_host: TransitQueue<CharacterInTransit>,
-    talks: Vec<LineOccupation>,
+    talks: Vec<LineDrivePeriod>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Talker {
+enum LineDriver {
     Host,
     Encoder(usize),
 }
 
 #[derive(Clone, Copy)]
 struct CharacterInTransit {
-    talker: Talker,
+    talker: LineDriver,
     character: SerialCharacter,
     format: CharacterFormat,
 }
 
 /// Period during which a device drives the line.
 #[derive(Clone, Copy, Debug)]
-struct LineOccupation {
-    talker: Talker,
+struct LineDrivePeriod {
+    talker: LineDriver,
     start: Moment,
     end: Moment,
 }
@@ -99,15 +99,15 @@ impl Bus {
         }
         // An encoder without power stops sending.
         let now = self.wires.now;
-        let is_sent = |own: &CharacterInTransit| own.talker == Talker::Host || own.character.start < now;
+        let is_sent = |own: &CharacterInTransit| own.talker == LineDriver::Host || own.character.start < now;
         self.to_encoders.retain(is_sent);
         self.to_host.retain(is_sent);
     }
 
-    fn run_encoder_action(&mut self, index: usize, at: Moment) {
+    fn execute_encoder_action(&mut self, index: usize, at: Moment) {
         let Some(transmission) = self.encoders.get_mut(index).and_then(|encoder| encoder.act(at)) else { return };
         if let Some(format) = transmission.settings.format() {
-            self.drive(Talker::Encoder(index), transmission.start, format, &transmission.bytes);
+            self.drive(LineDriver::Encoder(index), transmission.start, format, &transmission.bytes);
         }
     }
 
@@ -117,10 +117,10 @@ impl Bus {
         let SerialCharacter { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
             // An encoder that sends receives only its own bytes.
-            if travelling.talker == Talker::Encoder(index) {
+            if travelling.talker == LineDriver::Encoder(index) {
                 continue;
             }
-            let Some(format) = encoder.settings_at(start).and_then(LineSettings::format) else { continue };
+            let Some(format) = encoder.active_settings_at(start).and_then(LineSettings::format) else { continue };
             let clean = !collides && format == travelling.format;
             let byte = if clean { byte } else { garbage_byte(&mut self.wires.rng) };
             // Without a parity bit a flipped bit is not detected.
@@ -138,30 +138,30 @@ impl Bus {
     }
 
     /// Transmits bytes one character after another, and returns the end of the last character.
-    fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
+    fn drive(&mut self, talker: LineDriver, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
         let on_the_way = |character: SerialCharacter| CharacterInTransit { talker, character, format };
         for heard in sent.heard.into_iter().map(on_the_way) {
-            if talker != Talker::Host {
+            if talker != LineDriver::Host {
                 self.to_host.insert(heard.character.end, heard);
             }
-            if talker == Talker::Host || self.encoders.len() > 1 {
+            if talker == LineDriver::Host || self.encoders.len() > 1 {
                 self.to_encoders.insert(heard.character.start, heard);
             }
         }
-        if self.echo && talker == Talker::Host {
+        if self.echo && talker == LineDriver::Host {
             let echo = sent.own.into_iter().map(on_the_way);
             echo.for_each(|own| self.to_host.insert(own.character.end, own));
         }
         let now = self.wires.now;
         self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
-        self.talks.push(LineOccupation { talker, start, end: sent.end });
+        self.talks.push(LineDrivePeriod { talker, start, end: sent.end });
         sent.end
     }
 
     /// Returns whether another device drives the line during this character.
     fn has_collision(&self, CharacterInTransit { talker, character, .. }: &CharacterInTransit) -> bool {
-        let other = |talk: &&LineOccupation| talk.talker != *talker;
+        let other = |talk: &&LineDrivePeriod| talk.talker != *talker;
         self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }
@@ -193,14 +193,14 @@ impl VirtualLine for Bus {
 
     fn schedule_event(&mut self, at: Moment, event: Event) {
         match event {
-            Event::EncoderActs(index) => self.run_encoder_action(index, at),
+            Event::EncoderActs(index) => self.execute_encoder_action(index, at),
             Event::EncodersHear => self.deliver_to_encoders(),
             Event::HostReceives => self.deliver_to_host(),
         }
     }
 
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
-        self.drive(Talker::Host, start, self.wires.host, bytes)
+        self.drive(LineDriver::Host, start, self.wires.host, bytes)
     }
 
     fn supply_power(&mut self, now: Moment) {

@@ -215,7 +215,7 @@ impl EncoderElectronics {
     ///
     /// # Errors
     /// The errors of a complete store.
-    pub(super) fn store_partially(
+    pub(super) fn store_first_half(
         &mut self,
         field: u8,
         address: u8,

@@ -188,7 +188,7 @@ impl Encoder {
     }
 
     /// Returns the settings with which the encoder listens at time `at`, or `None` while it does not listen.
-    pub fn settings_at(&self, at: Moment) -> Option<LineSettings> {
+    pub fn active_settings_at(&self, at: Moment) -> Option<LineSettings> {
         if self.silent {
             return None;
         }
@@ -255,7 +255,7 @@ impl Encoder {
 
     /// Records the start of a received character. All actions due earlier must already have been [executed](Self::act).
     pub(super) fn handle_input(&mut self, heard: ReceivedCharacter) {
-        let Some(settings) = self.settings_at(heard.start) else { return };
+        let Some(settings) = self.active_settings_at(heard.start) else { return };
         let Some(timing) = Timing::from_settings(settings) else { return };
         let in_lost_frame = self.lost.is_some_and(|end| heard.start < end + timing.timeout);
         match &mut self.activity {
@@ -288,7 +288,7 @@ impl Encoder {
 
     fn handle_frame_end(&mut self, at: Moment, reception: &IncomingFrame) {
         // A frame that ends while the settings change is lost.
-        let Some(settings) = self.settings_at(at) else { return };
+        let Some(settings) = self.active_settings_at(at) else { return };
         let broadcast = match reception.bytes.first() {
             Some(&BROADCAST) => true,
             Some(first) if *first == self.address().byte() => false,
@@ -366,7 +366,7 @@ impl Encoder {
         }
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.faults.die_in_store() == Some(self.stores_begun)
-            && self.electronics.store_partially(*field, *address, data, *code).is_ok()
+            && self.electronics.store_first_half(*field, *address, data, *code).is_ok()
     }
 }
 

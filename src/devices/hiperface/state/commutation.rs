@@ -20,7 +20,7 @@ use crate::devices::hiperface::state::TEXTS;
 pub use form::{Form, OffsetInputs, Slot, Source, Storage, Vector};
 pub use offset_location::OffsetLocation;
 pub use outcome::{CommutationOffset, Setting, Stored, check_can_read, stored};
-pub use report::kind_text;
+pub use report::reading_kind_text;
 
 pub enum CommutationAction {
     Edit(Box<Form>),

@@ -1,6 +1,6 @@
 //! The connection form for HIPERFACE encoders, and the link that it builds. The form does not open the link.
 
-use super::search::SearchFinder;
+use super::search::EncoderSearchForm;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, Typed, parameters_without_entry};
@@ -10,7 +10,7 @@ use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
-use crate::devices::hiperface::state::forms::with_addresses;
+use crate::devices::hiperface::state::forms::with_address_range;
 use crate::link::{LinkScheme, LinkUrl, UrlError};
 use crate::parameter::{Entry, Parameters as _, Values as _, chosen};
 use crate::sim::ConfigError;
@@ -73,7 +73,7 @@ impl Default for LinkForm {
 }
 
 impl FormModel for LinkForm {
-    type Finder = SearchFinder;
+    type Finder = EncoderSearchForm;
 
     fn usual() -> LinkUrl {
         LinkUrl::sim()
@@ -203,7 +203,7 @@ impl LinkForm {
         }
         let digits = entry.strip_prefix("0x").or_else(|| entry.strip_prefix("0X")).unwrap_or(entry);
         let digits = digits.strip_suffix(['h', 'H']).unwrap_or(digits);
-        u8::from_str_radix(digits, 16).map_err(|_| with_addresses(TEXTS.text("form.address")).with("value", entry))
+        u8::from_str_radix(digits, 16).map_err(|_| with_address_range(TEXTS.text("form.address")).with("value", entry))
     }
 
     fn refused(&self, url: &LinkUrl, error: &OpenError) -> Text {
@@ -216,7 +216,7 @@ impl LinkForm {
             "address" => {
                 let of_the_virtual = matches!(error, OpenError::Sim(_));
                 let id = if of_the_virtual { "form.address_virtual" } else { "form.address" };
-                return with_addresses(TEXTS.text(id)).with("value", self.address.trim());
+                return with_address_range(TEXTS.text(id)).with("value", self.address.trim());
             }
             "model" => {
                 let models = Self::model_names().collect::<Vec<_>>().join(", ");

@@ -137,7 +137,7 @@ impl Encoder {
         if fresh {
             self.log_answer(services);
         }
-        self.report_code(services);
+        self.report_code_result(services);
         self.list_backups(services);
     }
 
@@ -165,7 +165,7 @@ impl Encoder {
     }
 
     /// Reports whether the access code entered last opens its fields. The message does not contain the code.
-    fn report_code(&mut self, services: &mut Services) {
+    fn report_code_result(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
         let fields: Vec<&FieldImage> = self.staged.device().iter().filter(own).collect();

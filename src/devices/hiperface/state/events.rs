@@ -83,7 +83,7 @@ impl Encoder {
         }
     }
 
-    fn note_announced_codes(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
+    fn add_announced_codes(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
         let texts = codes.iter().map(|code| explained::status(*code)).collect();
         services.notify(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
@@ -178,7 +178,7 @@ impl SessionEvents for Encoder {
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            DeviceMessage::Codes(codes) => self.note_announced_codes(codes, services),
+            DeviceMessage::Codes(codes) => self.add_announced_codes(codes, services),
             DeviceMessage::CodesUnheard(count) => {
                 let text = explained::codes_unheard(count);
                 services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
@@ -206,7 +206,7 @@ impl SessionEvents for Encoder {
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
-            HiperfaceOutput::Rest(rest) => self.adopt_rest_reading(rest),
+            HiperfaceOutput::Rest(rest) => self.take_rest_reading(rest),
             HiperfaceOutput::Value(value) => self.apply_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);
@@ -278,7 +278,7 @@ impl SessionEvents for Encoder {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.end_job(self.session.id, id, JobState::Failed(why.clone()));
-        let stands_there = self.handle_rest_failure(&why);
+        let stands_there = self.take_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
             // The encoder does not have this channel. This is a result, shown where the reading was requested.
             self.analogue.insert(channel, Err(why));

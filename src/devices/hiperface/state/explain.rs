@@ -29,7 +29,7 @@ pub use label::{LabelRow, label};
 pub use op::op;
 pub use types::{open, store};
 pub use words::{
-    field_access, field_code_required, field_status, geometry, line_settings, position, raw_position, status,
+    field_access, field_code_required, field_status, geometry, line_settings, position, raw_position_text, status,
     status_with_number,
 };
 
@@ -38,7 +38,7 @@ use crate::app::explain::{link, not_started_text};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, OtherType};
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
-use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownField};
+use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownMeaningField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
 /// Returns the messages for a job that ended early. There is at least one message.
@@ -141,9 +141,9 @@ pub fn encoder(error: &Error) -> Text {
             TEXTS.text("encoder.position_range").with("wanted", wanted).with("last", last)
         }
         Error::OutOfField { field, address, count, size } => {
-            out_of_field(*field, size.saturating_sub(1), *address, *count)
+            out_of_field_text(*field, size.saturating_sub(1), *address, *count)
         }
-        Error::CodeUnknown { field, number } => code_unknown(*field, number),
+        Error::CodeUnknown { field, number } => unknown_code_text(*field, number),
         Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", plan_item_text(item)),
         Error::NotVerified { item, expected, got } => TEXTS
             .text("encoder.not_verified")
@@ -170,7 +170,7 @@ pub fn redo(redo: &RequiredSetup) -> Text {
 }
 
 /// Returns the message for a data field that contains bytes of unknown meaning.
-pub fn unknown_field(field: &UnknownField) -> Text {
+pub fn unknown_field(field: &UnknownMeaningField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
@@ -221,18 +221,18 @@ pub fn plan(error: &PlanError) -> Text {
             TEXTS.text("encoder.no_field").with("field", field).with("count", count).with("last", count - 1)
         }
         PlanError::WriteProtected { field } => TEXTS.text("plan.write_protected").with("field", field),
-        PlanError::OutOfField { field, last, start, count } => out_of_field(*field, *last, *start, *count),
-        PlanError::CodeUnknown { field, code } => code_unknown(*field, code),
+        PlanError::OutOfField { field, last, start, count } => out_of_field_text(*field, *last, *start, *count),
+        PlanError::CodeUnknown { field, code } => unknown_code_text(*field, code),
     }
 }
 
 /// Returns the message for an access to bytes beyond the end of a field.
-pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
+pub fn out_of_field_text(field: u8, last: usize, start: usize, count: usize) -> Text {
     let text = TEXTS.text(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
     text.with("field", field).with("last", last).with("start", start).with("count", count)
 }
 
-fn code_unknown(field: u8, number: impl ToString) -> Text {
+fn unknown_code_text(field: u8, number: impl ToString) -> Text {
     TEXTS.text("encoder.code_unknown").with("field", field).with("number", number)
 }
 

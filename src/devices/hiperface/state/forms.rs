@@ -31,11 +31,11 @@ pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
     byte(text)
         .and_then(DeviceAddress::new)
-        .ok_or_else(|| with_addresses(TEXTS.text("entry.address")).with("entry", text))
+        .ok_or_else(|| with_address_range(TEXTS.text("entry.address")).with("entry", text))
 }
 
 /// Adds the range of encoder addresses to a message.
-pub(super) fn with_addresses(text: Text) -> Text {
+pub(super) fn with_address_range(text: Text) -> Text {
     let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
     text.with("first", first).with("last", last)
 }

@@ -5,7 +5,7 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Severity, Text};
 use crate::devices::hiperface::jobs::{self, Hiperface, check, encoder_types};
-use crate::devices::hiperface::procedures::{LinkParameters, identity_of};
+use crate::devices::hiperface::procedures::{LinkParameters, recorded_identity};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
@@ -49,7 +49,7 @@ impl DeviceType for Encoder {
                 services.notify(Severity::Warning, vec![words::store(&error)], None);
                 EncoderTypes::built_in()
             });
-            encoder.identify(identity_of(profile, &types));
+            encoder.identify(recorded_identity(profile, &types));
             encoder.counter = profile.recorded.counter;
             encoder.staged.refresh(profile.fields.clone());
         }

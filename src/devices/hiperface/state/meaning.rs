@@ -47,12 +47,12 @@ impl Meaning {
         // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
         let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
-        let fault = answer.filter(is_report).map(|_| TraceFault::Reported);
+        let fault = answer.filter(is_status_report).map(|_| TraceFault::Reported);
         Explained { meaning, fault }
     }
 }
 
-fn is_report(answer: &Answer) -> bool {
+fn is_status_report(answer: &Answer) -> bool {
     match answer {
         Answer::Rejected { .. } => true,
         Answer::Reply { reply: Reply::Status(codes), .. } => codes.iter().any(|code| *code != StatusCode::OK),

@@ -33,5 +33,5 @@ pub use encoder::Encoder;
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use rules::Allowed;
-pub use search::{Search, SearchAction, SearchFinder};
-pub use staged::{Staged, StagedError};
+pub use search::{EncoderSearchForm, Search, SearchAction};
+pub use staged::{ByteEditError, Staged};

@@ -8,7 +8,7 @@ use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
-use crate::devices::hiperface::procedures::AccessCodes;
+use crate::devices::hiperface::procedures::InitialAccessCodes;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Hiperface");
@@ -16,8 +16,8 @@ impl DeviceModel for Encoder {
     type Done = Infallible;
 
     fn prepare(&self, world: &StudioEnvironment) -> Prepare<Hiperface> {
-        let codes = world.given.get::<AccessCodes>().cloned().unwrap_or_default();
-        Box::new(move |session| codes.apply_codes(session.codes_mut()))
+        let codes = world.given.get::<InitialAccessCodes>().cloned().unwrap_or_default();
+        Box::new(move |session| codes.apply_codes(session.access_codes_mut()))
     }
 
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::Written;
-use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownField};
+use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownMeaningField};
 use crate::devices::hiperface::protocol::AccessCodeNumber;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
@@ -54,7 +54,7 @@ impl Reviewable for Hiperface {
     }
 
     fn questions(prepared: &Prepared) -> Vec<Question> {
-        let question = |own: &UnknownField| Question {
+        let question = |own: &UnknownMeaningField| Question {
             title: words::unknown_field(own),
             no: TEXTS.text("review.leave_field").with("field", own.field),
             yes: Text::new("review.copy_field").with("field", own.field),

@@ -14,7 +14,7 @@ use crate::app::{DeviceModel, Text, explain};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobStep, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
+use crate::devices::hiperface::procedures::find::{EncoderSearchResult, FindOptions, FoundEncoder};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
 use crate::link::LinkUrl;
@@ -86,7 +86,7 @@ impl Search {
 
     fn finish(&mut self, output: HiperfaceOutput) {
         self.end = Some(match output {
-            HiperfaceOutput::Found(SearchFindings::Searched { found, complete }) => {
+            HiperfaceOutput::Found(EncoderSearchResult::Searched { found, complete }) => {
                 let id = match (found.is_empty(), complete) {
                     (true, true) => "find.nothing",
                     (false, true) => "find.done",
@@ -96,7 +96,7 @@ impl Search {
                 self.found = found;
                 text
             }
-            HiperfaceOutput::Found(SearchFindings::ForeignTraffic { bytes }) => {
+            HiperfaceOutput::Found(EncoderSearchResult::ForeignTraffic { bytes }) => {
                 TEXTS.text("find.foreign_traffic").with("bytes", bytes)
             }
             _ => Text::new("session.ended"),
@@ -114,7 +114,7 @@ impl Search {
 
 /// Search function of the connection form.
 #[derive(Default)]
-pub struct SearchFinder {
+pub struct EncoderSearchForm {
     pub search: Option<Search>,
     /// Options of the requested search. It starts when the user confirms that no drive is on the line.
     asked: Option<FindOptions>,
@@ -130,7 +130,7 @@ pub struct SearchLinkResult {
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>,
 }
 
-impl Finder for SearchFinder {
+impl Finder for EncoderSearchForm {
     type Form = LinkForm;
     type Action = SearchAction;
     type Done = SearchLinkResult;
@@ -164,7 +164,7 @@ impl Finder for SearchFinder {
             Err(problem) => return context.refuse(problem),
         };
         let number = context.new_number();
-        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, SearchLinkResult { number, result });
+        let done = move |result| Done::finder::<EncoderSearchForm>(Encoder::TAB, SearchLinkResult { number, result });
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
     }

@@ -28,7 +28,7 @@ impl EditBase for Vec<FieldImage> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StagedError {
+pub enum ByteEditError {
     #[error("data field {field} does not exist")]
     NoField { field: u8 },
     /// The field could not be read, because its access code is unknown.
@@ -107,11 +107,11 @@ impl Staged {
     ///
     /// # Errors
     /// Returns an error without any change if the field does not exist, is locked or is too short.
-    pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), StagedError> {
-        let image = self.field(field).ok_or(StagedError::NoField { field })?;
-        let size = image.bytes.as_ref().ok_or(StagedError::Locked { field })?.len();
+    pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), ByteEditError> {
+        let image = self.field(field).ok_or(ByteEditError::NoField { field })?;
+        let size = image.bytes.as_ref().ok_or(ByteEditError::Locked { field })?.len();
         if address.checked_add(bytes.len()).is_none_or(|end| end > size) {
-            return Err(StagedError::Outside { field, last: size.saturating_sub(1) });
+            return Err(ByteEditError::Outside { field, last: size.saturating_sub(1) });
         }
         self.set((address..).zip(bytes).map(|(at, byte)| ((field, at), *byte)));
         Ok(())
@@ -170,10 +170,10 @@ mod tests {
     #[test]
     fn refused_edits_name_a_reason_and_change_nothing() {
         let mut staged = staged();
-        assert_eq!(staged.put(0, 15, &[1, 2]), Err(StagedError::Outside { field: 0, last: 15 }));
-        assert_eq!(staged.put(0, usize::MAX, &[1]), Err(StagedError::Outside { field: 0, last: 15 }));
-        assert_eq!(staged.put(1, 0, &[1]), Err(StagedError::Locked { field: 1 }));
-        assert_eq!(staged.put(7, 0, &[1]), Err(StagedError::NoField { field: 7 }));
+        assert_eq!(staged.put(0, 15, &[1, 2]), Err(ByteEditError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.put(0, usize::MAX, &[1]), Err(ByteEditError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.put(1, 0, &[1]), Err(ByteEditError::Locked { field: 1 }));
+        assert_eq!(staged.put(7, 0, &[1]), Err(ByteEditError::NoField { field: 7 }));
         assert!(!staged.is_dirty() && !staged.undo());
     }
 

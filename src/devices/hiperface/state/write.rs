@@ -20,7 +20,7 @@ impl Encoder {
     }
 
     /// Prepares the plan under review again, for example after the encoder did not reply.
-    pub(super) fn replan(&mut self, change: Change, services: &mut Services) {
+    pub(super) fn prepare_plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
@@ -74,7 +74,7 @@ impl HasMemory for Encoder {
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
-            self.replan(change, services);
+            self.prepare_plan_again(change, services);
         }
     }
 

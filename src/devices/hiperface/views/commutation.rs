@@ -7,7 +7,7 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, kind_text,
+    CommutationAction as Assistant, CommutationOffset, Form, Slot, Source, Vector, check_can_read, reading_kind_text,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
@@ -38,7 +38,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (0.5, COLUMNS),
         (&mut *actions, &mut form),
         |ui, (_, form)| {
-            before_ui(ui, theme, form);
+            preparation_ui(ui, theme, form);
             theme.gap(ui);
             motor_ui(ui, theme, encoder, form);
             if wide {
@@ -47,9 +47,9 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             }
         },
         |ui, (actions, form)| {
-            rest_ui(ui, theme, encoder, form, actions);
+            rest_position_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
-            second_ui(ui, theme, encoder, form, actions);
+            second_vector_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
             result::offset_ui(ui, theme, encoder, form);
             theme.gap(ui);
@@ -71,7 +71,7 @@ fn ask(encoder: &Encoder, action: Assistant) -> Action {
     Action::device(encoder.session.id, Hiperface::Commutation(action))
 }
 
-fn before_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+fn preparation_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.before"), |ui| {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
@@ -122,7 +122,7 @@ fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
         number_ui(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
         number_ui(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
-        if let Some(words) = form.periods_mismatch(encoder.geometry()) {
+        if let Some(words) = form.periods_warning(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         entry(ui, theme, &say(theme, "commutation.direction"), |ui| {
@@ -154,7 +154,7 @@ fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hi
     labelled_entry(ui, theme, TEXTS.text(id), text, NUMBER, hint)
 }
 
-fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
     let mut clear = false;
@@ -171,7 +171,7 @@ fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actio
             (Some(problem), _) => RichText::new(theme.words(problem)).color(theme.palette.bad),
             (None, Err(why)) if any => warn(why),
             (None, Err(_)) => RichText::new(""),
-            (None, Ok(_)) if commutation.sides_are_equal() => warn(TEXTS.text("commutation.sides_equal")),
+            (None, Ok(_)) if commutation.are_sides_identical() => warn(TEXTS.text("commutation.sides_equal")),
             (None, Ok(CommutationOffset { apart_deg: None, .. })) => warn(TEXTS.text("commutation.only_one_side")),
             (None, Ok(CommutationOffset { apart_deg: Some(apart), fine_periods, .. })) => {
                 let text = TEXTS.text("commutation.rest_value").with_number("apart", apart, 2);
@@ -185,7 +185,7 @@ fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actio
     }
 }
 
-fn second_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("commutation.second"), |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.second_words")));
         number_ui(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
@@ -251,6 +251,6 @@ fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
         return;
     };
     ui.label(theme.monospace(theme.number(reading.fine_periods, 5)));
-    let words = theme.words(&kind_text(reading));
+    let words = theme.words(&reading_kind_text(reading));
     ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
 }

@@ -12,7 +12,7 @@ use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction, SearchFinder};
+use crate::devices::hiperface::state::{EncoderSearchForm, LinkForm, LinkKind, Search, SearchAction};
 use crate::ui::controls::{button, button_with_reason, choice, entry, fill, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
@@ -21,7 +21,7 @@ use crate::ui::dialogs::connect::entries::{
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
-pub(crate) struct SearchView {
+pub(crate) struct SearchUiState {
     one_encoder: bool,
     power_cycle: bool,
 }
@@ -33,14 +33,14 @@ pub(crate) struct HiperfaceConnectForm;
 
 impl TypedConnectForm for HiperfaceConnectForm {
     type Form = LinkForm;
-    type Memory = SearchView;
+    type Memory = SearchUiState;
 
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
         dialog: &Dialog,
         form: &mut LinkForm,
-        (view, open): (&mut SearchView, &mut bool),
+        (view, open): (&mut SearchUiState, &mut bool),
         actions: &mut Vec<Action>,
     ) {
         let kinds = [
@@ -105,8 +105,8 @@ fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut 
     typed(ui, theme, say, LinkForm::link_entries(), &mut form.typed);
 }
 
-fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {
-    let search = dialog.finder::<SearchFinder>().and_then(|finder| finder.search.as_ref());
+fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState, actions: &mut Vec<Action>) {
+    let search = dialog.finder::<EncoderSearchForm>().and_then(|finder| finder.search.as_ref());
     let running = search.is_some_and(Search::is_running);
     theme.card().show(ui, |ui| {
         fill(ui);
@@ -150,7 +150,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, ac
 }
 
 fn find(action: SearchAction) -> Action {
-    Action::Connect(Connect::find::<SearchFinder>(action))
+    Action::Connect(Connect::find::<EncoderSearchForm>(action))
 }
 
 fn found_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {

@@ -113,7 +113,7 @@ impl Master<'_> {
         // No image is longer than 72 bytes.
         let length = layout.length() as u16;
         let parameters = |kind, format| {
-            let size = length + IoPacket::overhead(format);
+            let size = length + IoPacket::size_overhead(format);
             NetworkParameters::new(kind, NetworkPriority::Scheduled, size)
         };
         let to_target = parameters(NetworkType::PointToPoint, RealTimeFormat::Header).ok_or(Error::NoCyclic)?;

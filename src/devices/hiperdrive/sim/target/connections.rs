@@ -235,9 +235,9 @@ impl TargetDevice {
     fn layout(&self, open: &ForwardOpen) -> Result<Layout, Refusal> {
         let topology = self.station.topology();
         let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
-        let length = usize::from(open.to_target.size().saturating_sub(IoPacket::overhead(RealTimeFormat::Header)));
+        let length = usize::from(open.to_target.size().saturating_sub(IoPacket::size_overhead(RealTimeFormat::Header)));
         let layout = layouts.into_iter().find(|layout| layout.length() == length).ok_or(TO_TARGET_SIZE)?;
-        let back = layout.length() + usize::from(IoPacket::overhead(RealTimeFormat::Modeless));
+        let back = layout.length() + usize::from(IoPacket::size_overhead(RealTimeFormat::Modeless));
         if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
     }
 

@@ -84,7 +84,7 @@ impl Master<'_> {
             return;
         }
         self.station.codes_unheard = self.station.codes_unheard.saturating_sub(1);
-        self.station.add_codes(codes.iter().copied());
+        self.station.queue_codes(codes.iter().copied());
         seen.push(codes);
     }
 

@@ -9,7 +9,7 @@ use super::Master;
 use crate::bits::MaskedBytes;
 use crate::devices::hiperface::procedures::error::Damage;
 use crate::devices::hiperface::procedures::{Echo, Error};
-use crate::devices::hiperface::protocol::{Answer, Command, Request, SecretFrame, StatusCode};
+use crate::devices::hiperface::protocol::{Answer, Command, MaskableFrame, Request, StatusCode};
 use crate::link::LinkError;
 use crate::units::Moment;
 
@@ -88,7 +88,7 @@ impl Master<'_> {
     }
 
     /// Sends a frame, and traces it with its access codes masked.
-    pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
+    pub(super) fn send(&mut self, frame: &MaskableFrame, sent_at: Moment) -> Result<(), LinkError> {
         self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
@@ -102,7 +102,7 @@ impl Master<'_> {
         self.dead_time() + self.station.line.margin
     }
 
-    fn listen(&mut self, request: &Request, frame: &SecretFrame, sent_at: Moment) -> Result<ReceivedBytes, Error> {
+    fn listen(&mut self, request: &Request, frame: &MaskableFrame, sent_at: Moment) -> Result<ReceivedBytes, Error> {
         let timing = self.station.timing();
         let deadline = sent_at + timing.worst_case(request) + self.station.line.margin;
         let gap = timing.timeout + self.station.line.margin;
@@ -141,7 +141,7 @@ impl Master<'_> {
     }
 
     /// Listens during the dead time, and returns whether unexpected bytes arrived.
-    fn receive_during_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
+    fn receive_during_dead_time(&mut self, line: &mut Vec<u8>, frame: &MaskableFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
         self.line.receive(quiet_until, line)?;
@@ -156,7 +156,7 @@ impl Master<'_> {
     }
 
     /// Returns the reply received so far, or `None` while it may still be the echo.
-    fn strip_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
+    fn strip_echo<'l>(&self, line: &'l [u8], frame: &MaskableFrame) -> Option<&'l [u8]> {
         self.station.line.echo.strip(line, frame.bytes())
     }
 
@@ -164,7 +164,7 @@ impl Master<'_> {
         &self,
         line: &[u8],
         request: &Request,
-        frame: &SecretFrame,
+        frame: &MaskableFrame,
         first_at: Moment,
         intrusion: Option<Damage>,
     ) -> ReceivedBytes {

@@ -75,7 +75,7 @@ impl Planner<'_> {
     }
 
     /// Checks that the numbers of fields to be created are consecutive.
-    pub(super) fn check_order(&self) -> Result<(), PlanError> {
+    pub(super) fn check_fields_are_consecutive(&self) -> Result<(), PlanError> {
         let mut next = self.device.memory.fields;
         for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {
             if field.number != next {
@@ -87,7 +87,7 @@ impl Planner<'_> {
     }
 
     /// Returns the first field that must change size although other fields follow it.
-    pub(super) fn first_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
+    pub(super) fn first_field_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {
             let Some(now) = self.device.fields.iter().find(|field| field.number == target.number) else { continue };
@@ -146,7 +146,7 @@ impl Planner<'_> {
         targets
     }
 
-    pub(super) fn delete_from(&mut self, first: u8) -> Result<(), PlanError> {
+    pub(super) fn delete_fields_from(&mut self, first: u8) -> Result<(), PlanError> {
         for now in self.device.fields.iter().rev().filter(|field| field.number >= first) {
             if now.bytes.is_none() {
                 return Err(PlanError::WouldLose { field: now.number, code: now.status.code() });

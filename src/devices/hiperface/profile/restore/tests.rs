@@ -179,7 +179,10 @@ fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     let none = plan_restore(&wanted, &now, options(&[], false)).unwrap();
     assert_eq!(
         none.unknown_fields,
-        [UnknownField { field: 1, bytes: 1, answer: None }, UnknownField { field: 2, bytes: 16, answer: None }],
+        [
+            UnknownMeaningField { field: 1, bytes: 1, answer: None },
+            UnknownMeaningField { field: 2, bytes: 16, answer: None }
+        ],
         "of a field that is not there every byte"
     );
     assert!(none.common.plan.is_empty() && none.common.missing.is_empty(), "{none:?}");

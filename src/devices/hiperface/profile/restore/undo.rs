@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::FreeMemory;
 
 /// Returns the created fields to delete, and the numbers of the other created fields. A field is deleted only if it is
 /// unchanged since the write and no field remains after it.
-pub(super) fn created_fields_to_undo(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
+pub(super) fn deletable_created_fields(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {
         let is_wanted = profile.fields.iter().any(|field| field.number == now.number);

@@ -7,7 +7,7 @@ use crate::profile::difference::runs;
 /// Data field in which bytes of unknown meaning differ between the profile and another encoder. They may contain an
 /// offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnknownField {
+pub struct UnknownMeaningField {
     /// Field number.
     pub field: u8,
     /// Number of differing bytes of unknown meaning.
@@ -16,7 +16,7 @@ pub struct UnknownField {
     pub answer: Option<bool>,
 }
 
-impl UnknownField {
+impl UnknownMeaningField {
     /// Returns whether the bytes are copied to the other encoder.
     pub fn is_copied(&self) -> bool {
         self.answer == Some(true)
@@ -33,7 +33,7 @@ pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,
     options: &RestoreOptions,
-) -> Vec<UnknownField> {
+) -> Vec<UnknownMeaningField> {
     let of = |target: &FieldImage| {
         let new = target.bytes.as_ref()?;
         let now = device.fields.iter().find(|field| field.number == target.number);
@@ -46,7 +46,7 @@ pub(super) fn unknown_fields(
         let differing = runs(old, new).into_iter().flatten().chain(grown);
         let bytes = differing.filter(|at| !profile.depends_on_mounting(target.number, *at)).count();
         let answer = options.copy.get(&target.number).copied();
-        (bytes > 0).then_some(UnknownField { field: target.number, bytes, answer })
+        (bytes > 0).then_some(UnknownMeaningField { field: target.number, bytes, answer })
     };
     profile.fields.iter().filter_map(of).collect()
 }

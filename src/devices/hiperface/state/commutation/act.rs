@@ -52,7 +52,7 @@ impl Encoder {
     /// Returns the result, or an error if the offset has not been verified.
     fn verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
         let result = result(self)?;
-        self.commutation.ensure_verified(self.geometry()).map(|()| result)
+        self.commutation.check_offset_is_verified(self.geometry()).map(|()| result)
     }
 
     fn read_into_slot(&mut self, slot: Slot, services: &mut Services) {

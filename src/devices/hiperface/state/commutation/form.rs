@@ -230,7 +230,7 @@ impl Form {
     }
 
     /// Returns a warning if the entered number of periods differs from that of the encoder type.
-    pub fn periods_mismatch(&self, geometry: Option<Geometry>) -> Option<Text> {
+    pub fn periods_warning(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))

@@ -65,7 +65,7 @@ impl Commutation {
             (None, None) => return Err(TEXTS.text("commutation.no_reading")),
             _ => return Err(TEXTS.text("commutation.one_side_only")),
         };
-        let apart_deg = apart.map(|apart| electrical_deg(apart.abs(), &inputs));
+        let apart_deg = apart.map(|apart| periods_to_electrical_deg(apart.abs(), &inputs));
         if let Some(apart_deg) = apart_deg.filter(|apart| *apart > inputs.limit_deg) {
             let text = TEXTS.text("commutation.friction").with_number("apart", apart_deg, 1);
             return Err(text.with_number("limit", inputs.limit_deg, 1));
@@ -84,7 +84,7 @@ impl Commutation {
             shaft_deg: fine_periods / turn * 360.0,
             apart_deg,
             angle: angle(fine_periods, &inputs).ok_or_else(|| TEXTS.text("commutation.no_reading"))?,
-            resolution_deg: resolution.map(|periods| electrical_deg(periods, &inputs)),
+            resolution_deg: resolution.map(|periods| periods_to_electrical_deg(periods, &inputs)),
         })
     }
 
@@ -131,7 +131,7 @@ impl Commutation {
     }
 
     /// Returns whether both approaches gave identical readings, which suggests that the shaft was not turned.
-    pub fn sides_are_equal(&self) -> bool {
+    pub fn are_sides_identical(&self) -> bool {
         let is_fine = |reading: &&RestReading| matches!(reading.kind, Kind::Fine { .. });
         let [one, other] = [Slot::OneSide, Slot::OtherSide].map(|slot| self.reading(slot).filter(is_fine));
         one.is_some() && one == other
@@ -142,12 +142,12 @@ impl Commutation {
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
-    pub fn ensure_verified(&self, geometry: Option<Geometry>) -> Result<(), Text> {
+    pub fn check_offset_is_verified(&self, geometry: Option<Geometry>) -> Result<(), Text> {
         let is_usable = self.form.without_second || self.is_confirmed(geometry);
         if is_usable { Ok(()) } else { Err(TEXTS.text("commutation.needs_second")) }
     }
 
-    fn ensure_not_refuted(&self, geometry: Option<Geometry>) -> Result<(), Text> {
+    fn check_second_vector_agrees(&self, geometry: Option<Geometry>) -> Result<(), Text> {
         match self.second_vector_result(geometry) {
             Some(Ok((Verdict::Fault, _))) => Err(TEXTS.text("commutation.second_refuses")),
             _ => Ok(()),
@@ -160,7 +160,7 @@ impl Commutation {
     /// Returns an error if an entry or a reading is missing or unusable.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
-        self.ensure_not_refuted(geometry)?;
+        self.check_second_vector_agrees(geometry)?;
         let OffsetLocation { field, address } = self.place(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
@@ -185,7 +185,7 @@ impl Commutation {
     /// Returns an error if an entry or a reading is missing, or if method 2 cannot be used.
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
-        self.ensure_not_refuted(geometry)?;
+        self.check_second_vector_agrees(geometry)?;
         let step = inputs.motor.electrical_step_deg();
         if step >= UNUSABLE_DEG {
             return Err(TEXTS.text("commutation.unusable").with_number("step", step, 1));
@@ -241,7 +241,7 @@ fn apart(from: f64, to: f64, periods: u32) -> f64 {
     if forward > turn / 2.0 { forward - turn } else { forward }
 }
 
-fn electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
+fn periods_to_electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 

@@ -37,7 +37,9 @@ impl Commutation {
         for slot in Slot::ALL {
             if let Some(reading) = self.reading(slot) {
                 let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.word()));
-                lines.push(text.with_number("fine", reading.fine_periods, 5).with_text("kind", kind_text(reading)));
+                lines.push(
+                    text.with_number("fine", reading.fine_periods, 5).with_text("kind", reading_kind_text(reading)),
+                );
             }
         }
         if let Ok(offset) = self.offset(geometry) {
@@ -52,7 +54,7 @@ impl Commutation {
     }
 }
 
-pub fn kind_text(reading: &RestReading) -> Text {
+pub fn reading_kind_text(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
             let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MOST_STEPS);

@@ -3,7 +3,7 @@
 use super::words;
 use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
-use crate::devices::hiperface::state::{StagedError, TEXTS};
+use crate::devices::hiperface::state::{ByteEditError, TEXTS};
 
 pub fn change(change: &Change) -> Text {
     match change {
@@ -40,10 +40,10 @@ pub fn change(change: &Change) -> Text {
 }
 
 /// Explains why `count` bytes from index `start` cannot be edited.
-pub fn staged(error: &StagedError, count: usize, start: usize) -> Text {
+pub fn staged(error: &ByteEditError, count: usize, start: usize) -> Text {
     match error {
-        StagedError::NoField { field } => TEXTS.text("staged.no_field").with("field", field),
-        StagedError::Locked { field } => TEXTS.text("staged.locked").with("field", field),
-        StagedError::Outside { field, last } => super::out_of_field(*field, *last, start, count),
+        ByteEditError::NoField { field } => TEXTS.text("staged.no_field").with("field", field),
+        ByteEditError::Locked { field } => TEXTS.text("staged.locked").with("field", field),
+        ByteEditError::Outside { field, last } => super::out_of_field_text(*field, *last, start, count),
     }
 }

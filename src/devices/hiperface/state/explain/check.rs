@@ -1,7 +1,7 @@
 //! Texts for the device check.
 
 use super::encoder;
-use super::words::{field_status, position, raw_position, status_with_number};
+use super::words::{field_status, position, raw_position_text, status_with_number};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
@@ -40,7 +40,7 @@ fn finding_text(finding: &CheckFinding) -> Text {
     match finding {
         CheckFinding::Code(code) => status_with_number(*code),
         CheckFinding::Position(found) => position(*found),
-        CheckFinding::RawPosition(raw) => raw_position(*raw),
+        CheckFinding::RawPosition(raw) => raw_position_text(*raw),
         CheckFinding::Name(name) => plain(name),
         CheckFinding::SerialNumber(number) => plain(number),
         CheckFinding::Limit { channel, value, limit } => {

@@ -58,7 +58,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
             OperationTexts::one(item, field_status(from), TEXTS.text("op.deleted"))
         }
         Some(from) if from.exists() => {
-            let (old, new) = changed_properties(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+            let (old, new) = changed_status_properties(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
             OperationTexts::one(item, parts(old), parts(new))
         }
@@ -67,7 +67,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
 }
 
 /// Returns the old and new text of each property that differs between two field statuses.
-fn changed_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
+fn changed_status_properties(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());
     let parts: [&dyn Fn(DataFieldStatus) -> Text; 4] = [&size, &field_access, &code, &field_code_required];

@@ -4,7 +4,7 @@
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax};
 use crate::devices::hiperface::jobs::TypeTableFileError;
-use crate::devices::hiperface::protocol::{ShapeEntry, TypeTableError};
+use crate::devices::hiperface::protocol::{GeometryEntry, TypeTableError};
 use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
 use crate::worker::OpenError;
@@ -39,11 +39,11 @@ fn type_table(error: &TypeTableError) -> Text {
     }
 }
 
-fn shape_entry(entry: ShapeEntry) -> Text {
+fn shape_entry(entry: GeometryEntry) -> Text {
     TEXTS.text(match entry {
-        ShapeEntry::Periods => "shape_entry.periods",
-        ShapeEntry::Turns => "shape_entry.turns",
-        ShapeEntry::PeriodLength => "shape_entry.period_length",
+        GeometryEntry::Periods => "shape_entry.periods",
+        GeometryEntry::Turns => "shape_entry.turns",
+        GeometryEntry::PeriodLength => "shape_entry.period_length",
     })
 }
 

@@ -87,12 +87,12 @@ pub fn position(position: Position) -> Text {
             TEXTS.text("position.rotary").with("turn", turn).with_number("degrees", degrees, 3)
         }
         (.., Some(millimetres)) => TEXTS.text("position.linear").with_number("millimetres", millimetres, 6),
-        _ => raw_position(position.raw),
+        _ => raw_position_text(position.raw),
     }
 }
 
 /// Describes a position in steps, for an encoder of unknown geometry.
-pub fn raw_position(raw: u32) -> Text {
+pub fn raw_position_text(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }
 

@@ -83,7 +83,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         ui.horizontal_wrapped(|ui| {
-            let verified = encoder.commutation.ensure_verified(encoder.geometry());
+            let verified = encoder.commutation.check_offset_is_verified(encoder.geometry());
             let allowed = bytes.as_ref().map_err(Clone::clone).and(verified);
             if button_with_reason(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
@@ -149,7 +149,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
             }
             Err(_) => {}
         }
-        let allowed = setting.and(encoder.commutation.ensure_verified(encoder.geometry()));
+        let allowed = setting.and(encoder.commutation.check_offset_is_verified(encoder.geometry()));
         let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
         if button_with_reason(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));
