@@ -46,11 +46,11 @@ pub(crate) fn run(parts: &[String]) {
     let seconds = parts.first().and_then(|word| word.parse().ok()).unwrap_or(60);
     let folder = tempfile::tempdir().unwrap();
     let mut screen = connected(folder.path());
-    let links = screen.state().0.studio().devices().len();
+    let devices: Vec<String> = screen.state().0.studio().devices().iter().map(|own| own.name()).collect();
     let (began, end) = (Instant::now(), Duration::from_secs(seconds));
     let mut frames: [Vec<f64>; TABS.len()] = Default::default();
     let mut points = vec![Usage::now(&screen)];
-    println!("{links} devices, a source of sine and cosine, {seconds} s");
+    println!("{} and a source of sine and cosine, {seconds} s", devices.join(", "));
     println!(
         "{:>7} {:>7} {:>9} {:>8} {:>8} {:>12} {:>8}",
         "s", "CPU %", "MB", "handles", "threads", "recorded MB", "dropped"

@@ -192,7 +192,7 @@ pub struct Opened<D: Kind> {
 
 /// An opened session on its thread, for any kind of device.
 pub trait OpenedSession: Any + Send {
-    /// Closes a session that is not needed any more.
+    /// Closes a session that is no longer needed.
     fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;

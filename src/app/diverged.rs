@@ -132,7 +132,7 @@ impl ProfileConflict {
     /// Returns a save operation that overwrites the file, provided that its content does not change again.
     fn overwrite_file(self, document: Option<ProfileDocument>) -> SaveRequest {
         let ProfileConflict { mut saving, theirs, text, .. } = self;
-        // A file that is not a profile any more has no content to preserve, and the user knows this.
+        // A file that is no longer a profile has no content to preserve, and the user knows this.
         saving.may_lose = theirs.is_err();
         saving.opened = saving.opened.map(|opened| FileSnapshot { text, ..opened });
         if let Some(document) = document {

@@ -52,7 +52,7 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 
-    /// Ends a jog or run whose panel is not visible any more. Another tab or device, a dialog or a question can hide
+    /// Ends a jog or run whose panel is no longer visible. Another tab or device, a dialog or a question can hide
     /// it.
     pub(super) fn end_invisible_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();

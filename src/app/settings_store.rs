@@ -68,7 +68,7 @@ impl SettingsStore {
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
-        // The channel has no buffer. If nothing receives from it any more, the settings go to the mailbox.
+        // The channel has no buffer. If nothing receives from it, the settings go to the mailbox.
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
             if let Err(late) = sender.send(read(path, kinds)) {

@@ -223,7 +223,7 @@ impl Recorder {
     /// Returns the next rows. The samples of all groups are in the order of time, and samples of the same time are in
     /// one row.
     fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
-        // The histories have the order of the heads. A group that was removed has no samples any more.
+        // The histories have the order of the heads. A group that was removed no longer has samples.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
         for (head, history) in heads.iter_mut().zip(&histories) {

@@ -118,7 +118,7 @@ impl Unit {
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
-                // Until now the entries served only for a preview. From now on, positions are measured on this spindle
+                // Until this step, the entries serve only for a preview. Afterwards, positions are measured on this spindle
                 // everywhere.
                 let confirms =
                     axis.step() == AxisStep::Scale && axis.end().is_none() && axis.check_can_continue(&seen).is_ok();

@@ -75,7 +75,7 @@ impl Staged {
         Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 
-    /// Sets the families of the drives. Their travel limits the positions from now on.
+    /// Sets the families of the drives. Their travel limits later entries of positions.
     pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }

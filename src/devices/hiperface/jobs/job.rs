@@ -43,7 +43,7 @@ pub enum HiperfaceJob {
     Find(FindOptions),
     /// Sends command 67h and then changes the line settings of the host to match.
     ConfigureForNow(LineSettings),
-    /// Uses an access code from now on, without sending anything.
+    /// Uses an access code for later requests, without sending anything.
     UseCode {
         number: AccessCodeNumber,
         /// Access code, which is never displayed.

@@ -251,7 +251,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the gateway cannot be reached any more, which makes further attempts useless.
+    /// Returns whether the gateway can no longer be reached, which makes further attempts useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,
