@@ -118,8 +118,8 @@ impl Unit {
             },
             AxisAction::TakePlace => axis.adopt_limit(&seen),
             AxisAction::Next => {
-                // Until this step, the entries serve only for a preview. Afterwards, positions are measured on this spindle
-                // everywhere.
+                // Until this step, the entries serve only for a preview. Afterwards, positions are measured on this
+                // spindle everywhere.
                 let confirms =
                     axis.step() == AxisStep::Scale && axis.end().is_none() && axis.check_can_continue(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
