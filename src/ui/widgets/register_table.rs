@@ -123,8 +123,8 @@ pub struct RegisterOutput {
 const LINE: f32 = 16.0;
 /// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Number of characters reserved for a number. The longest, −2³¹, takes eleven.
-const NUMBER: usize = 12;
+/// Number of characters reserved for the longest number. −2³¹ takes eleven.
+const NUMBER: usize = 11;
 
 /// Returns the width of a value, including the gap to the next column.
 fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
