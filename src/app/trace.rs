@@ -15,6 +15,8 @@ pub struct TraceLine {
     pub direction: Direction,
     /// Bytes of the frame. A masked byte is `**`.
     pub bytes: String,
+    /// Number of bytes at the beginning that only transport the message.
+    pub header: usize,
     pub meaning: Vec<Text>,
     /// Fault at the end of the frame, if any.
     pub fault: Option<TraceFault>,
@@ -30,19 +32,21 @@ pub enum TraceFault {
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
+    /// Number of bytes at the beginning that only transport the message.
+    pub header: usize,
     pub meaning: Vec<Text>,
     pub fault: Option<TraceFault>,
 }
 
 impl Explained {
     pub fn broken(why: Text) -> Self {
-        Explained { meaning: vec![why], fault: Some(TraceFault::Broken) }
+        Explained { meaning: vec![why], fault: Some(TraceFault::Broken), ..Explained::default() }
     }
 }
 
 impl From<Vec<Text>> for Explained {
     fn from(meaning: Vec<Text>) -> Self {
-        Explained { meaning, fault: None }
+        Explained { meaning, ..Explained::default() }
     }
 }
 
@@ -50,6 +54,12 @@ impl TraceLine {
     /// Returns the approximate memory use in bytes.
     fn size(&self) -> usize {
         size_of::<Self>() + self.bytes.len() + self.meaning.iter().map(Text::size).sum::<usize>()
+    }
+
+    /// Returns the bytes of the message, without the header of the transport.
+    pub fn message(&self) -> &str {
+        // Each byte takes two digits and a space.
+        self.bytes.get(3 * self.header..).unwrap_or(&self.bytes)
     }
 
     pub fn words(&self, language: Language) -> String {
@@ -140,9 +150,9 @@ impl TraceLog {
     /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
-        for (entry, Explained { meaning, fault }) in entries {
+        for (entry, Explained { header, meaning, fault }) in entries {
             let bytes = entry.bytes.to_string();
-            let line = TraceLine { at: entry.at, direction: entry.direction, bytes, meaning, fault };
+            let line = TraceLine { at: entry.at, direction: entry.direction, bytes, header, meaning, fault };
             self.size += line.size();
             self.lines.push_back(line);
         }
@@ -223,7 +233,7 @@ mod tests {
             frames.iter().cloned().map(|(millis, direction, bytes, meaning, fault)| {
                 let at = Moment::from_elapsed(Duration::from_millis(millis));
                 let bytes: MaskedBytes = bytes.parse().unwrap();
-                (TraceEntry { at, direction, bytes }, Explained { meaning: vec![meaning], fault })
+                (TraceEntry { at, direction, bytes }, Explained { header: 0, meaning: vec![meaning], fault })
             }),
             0,
         );

@@ -281,6 +281,41 @@ fn the_trace_is_searched_and_paused() {
     assert!(count(&screen, read_position) > before);
 }
 
+/// A frame that is clicked shows all of its bytes beside the list, and the arrow keys go to the frames around it.
+#[test]
+fn a_selected_frame_is_shown_with_its_bytes() {
+    use egui_kittest::kittest::Queryable;
+    let mut screen = Screen::new_form(LARGE);
+    screen.act(Action::OpenLowerPanel(true));
+    screen.command(DeviceCommand::ReadPosition);
+    screen.until("two positions", |studio| {
+        studio.hiperface().unwrap().session.trace.lines().iter().filter(|line| line.bytes == "40 42 02").count() > 1
+    });
+    screen.steps();
+    screen.click("trace.follow");
+    let row = screen.harness.query_all_by_label("40 42 02").next().unwrap().rect().center();
+    let press = |pressed| egui::Event::PointerButton {
+        pos: row,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    screen.harness.event(egui::Event::PointerMoved(row));
+    screen.steps();
+    screen.harness.event(press(true));
+    screen.harness.event(press(false));
+    screen.steps();
+    assert!(screen.shows("0000  40 42 02"));
+    screen.harness.key_press(Key::ArrowDown);
+    screen.steps();
+    assert!(screen.shows("0000  40 42 00 0E 05 31 38"), "the reply to it");
+    screen.harness.key_press(Key::ArrowUp);
+    screen.steps();
+    assert!(screen.shows("0000  40 42 02"));
+    screen.click("trace.close_frame");
+    assert!(!screen.shows("0000  "));
+}
+
 /// A trace that the window saves has the frames of the list, in the format that `replay:` reads.
 #[test]
 fn the_trace_is_saved_as_a_recording() {

@@ -1,11 +1,13 @@
 //! The trace panel of the selected session: time, gap, direction, bytes, meaning. The newest frame is at the bottom and
 //! stays visible until the user scrolls up or pauses the list. After that, the visible frames keep their place while
-//! others arrive.
+//! others arrive. A selected frame is shown with all of its bytes beside the list.
 
-use egui::{Align, RichText, Ui};
+mod detail;
+
+use egui::{Align, EventFilter, Id, Key, Modifiers, Rect, RichText, Sense, Ui, UiBuilder};
 use egui_extras::{Column, TableBuilder, TableRow};
 
-use crate::app::{Action, SessionId, Studio, Text, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};
+use crate::app::{Action, Rgb, SessionId, Studio, Text, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};
 use crate::link::Direction;
 use crate::ui::controls::{empty_placeholder, icon_button, name};
 use crate::ui::entries::text_entry;
@@ -15,6 +17,8 @@ const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 /// Width of the search entry in points.
 const SEARCH: f32 = 200.0;
+/// Width of a selected frame beside the list in points.
+const DETAIL: f32 = 300.0;
 
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
@@ -23,6 +27,8 @@ pub(in crate::ui) struct TraceView {
     matches: TraceMatches,
     /// Number of the first frame that is hidden because the list is paused.
     paused_at: Option<u64>,
+    /// Number of the selected frame.
+    selected: Option<u64>,
     /// Number of rows that the log had removed when the list was last drawn with the same filter.
     removed: Option<u64>,
     offset: f32,
@@ -56,6 +62,25 @@ pub(in crate::ui) fn trace_ui(
     let view = &mut views.trace;
     view.select(session, log);
     let jumps_to_end = toolbar(ui, theme, view, log, actions);
+    let selected = view.selected.and_then(|number| log.line(number));
+    view.selected = view.selected.filter(|_| selected.is_some());
+    let room = ui.available_rect_before_wrap();
+    let Some(line) = selected else {
+        rows_ui(ui, theme, view, log, jumps_to_end);
+        return;
+    };
+    let (list, detail) = room.split_left_right_at_x(room.right() - DETAIL);
+    let list = Rect { max: list.max - egui::vec2(theme.space.groups, 0.0), ..list };
+    ui.scope_builder(UiBuilder::new().max_rect(list), |ui| rows_ui(ui, theme, view, log, jumps_to_end));
+    ui.scope_builder(UiBuilder::new().max_rect(detail), |ui| {
+        if detail::frame_ui(ui, theme, log, line) {
+            view.selected = None;
+        }
+    });
+}
+
+/// Draws the frames that match the filter.
+fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jumps_to_end: bool) {
     let end = view.paused_at.unwrap_or(log.end());
     let (filters, language) = (!view.filter.is_empty(), theme.language);
     if filters {
@@ -66,6 +91,14 @@ pub(in crate::ui) fn trace_ui(
         Some(matches) => (matches.numbers().len(), matches.removed()),
         None => (usize::try_from(end.saturating_sub(log.gone())).unwrap_or_default(), log.gone()),
     };
+    let number_of = |row: usize| match matches {
+        Some(matches) => matches.numbers().get(row).copied(),
+        None => (row < rows).then(|| log.gone() + row as u64),
+    };
+    let row_of = |number: u64| match matches {
+        Some(matches) => matches.numbers().binary_search(&number).ok(),
+        None => number.checked_sub(log.gone()).and_then(|row| usize::try_from(row).ok()),
+    };
     let gone = view.removed.replace(removed).map_or(0, |before| removed.saturating_sub(before));
     if rows == 0 {
         let words = match view.filter.search.trim() {
@@ -75,19 +108,29 @@ pub(in crate::ui) fn trace_ui(
         empty_placeholder(ui, theme, &words, None);
         return;
     }
+    // The identifier must not depend on whether a frame is shown beside the list.
+    let keys = Id::unique("trace_keys");
+    let moved = step(ui, keys).and_then(|step| number_of(row_of(view.selected?)?.checked_add_signed(step)?));
+    view.selected = moved.or(view.selected);
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     let pitch = ROW + ui.spacing().item_spacing.y;
+    let is_pressed = ui.input(|input| input.pointer.primary_pressed());
     let mut table = TableBuilder::new(ui)
         .id_salt("trace")
         .auto_shrink(false)
+        .sense(Sense::click())
         // Otherwise, the last rows of a low panel would be below its end.
         .min_scrolled_height(0.0)
         .stick_to_bottom(true);
     if jumps_to_end {
         table = table.scroll_to_row(rows - 1, Some(Align::BOTTOM)).animate_scrolling(false);
+    } else if let Some(row) = moved.and_then(row_of) {
+        table = table.scroll_to_row(row, None).animate_scrolling(false);
     } else if view.is_behind && gone > 0 {
         table = table.vertical_scroll_offset((view.offset - gone as f32 * pitch).max(0.0));
     }
+    let selected = view.selected;
+    let mut clicked = None;
     let drawn = table
         .column(Column::exact(96.0))
         .column(Column::exact(76.0))
@@ -96,17 +139,39 @@ pub(in crate::ui) fn trace_ui(
         .column(Column::remainder().clip(true))
         .body(|body| {
             body.rows(ROW, rows, |mut row| {
-                let number = match matches {
-                    Some(matches) => matches.numbers().get(row.index()).copied(),
-                    None => Some(log.gone() + row.index() as u64),
-                };
+                let number = number_of(row.index());
                 let Some((number, line)) = number.and_then(|number| Some((number, log.line(number)?))) else { return };
                 let before = number.checked_sub(1).and_then(|before| log.line(before));
+                row.set_selected(selected == Some(number));
                 line_ui(&mut row, theme, log, line, before);
+                // While frames arrive, another one may be under the pointer at the release.
+                if is_pressed && row.response().contains_pointer() {
+                    clicked = Some(number);
+                }
             });
         });
+    if let Some(number) = clicked {
+        view.selected = (selected != Some(number)).then_some(number);
+    }
+    // A click takes the focus from any widget when the button is released.
+    let released = ui.input(|input| input.pointer.primary_released().then(|| input.pointer.interact_pos()).flatten());
+    if view.selected.is_some() && released.is_some_and(|place| drawn.inner_rect.contains(place)) {
+        ui.memory_mut(|memory| memory.request_focus(keys));
+    }
     view.offset = drawn.state.clamped_offset().y;
     view.is_behind = view.offset + drawn.inner_rect.height() < drawn.content_size.y - pitch / 2.0;
+}
+
+/// Returns by how many rows the arrow keys move the selection. They do so after a click on a row.
+fn step(ui: &Ui, keys: Id) -> Option<isize> {
+    ui.interact(Rect::NOTHING, keys, Sense::focusable_noninteractive());
+    if !ui.memory(|memory| memory.has_focus(keys)) {
+        return None;
+    }
+    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(keys, filter));
+    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as isize;
+    Some(pressed(Key::ArrowDown) - pressed(Key::ArrowUp)).filter(|step| *step != 0)
 }
 
 /// Draws search, filter, pause and save. Returns whether the newest frame is to be shown.
@@ -158,12 +223,7 @@ fn toolbar(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, act
 fn line_ui(row: &mut TableRow<'_, '_>, theme: &Theme, log: &TraceLog, line: &TraceLine, before: Option<&TraceLine>) {
     let palette = theme.palette;
     let arrow = if line.direction == Direction::Sent { "→" } else { "←" };
-    let colour = match (line.fault, line.direction) {
-        (Some(TraceFault::Broken), _) => palette.bad,
-        (Some(TraceFault::Reported), _) => palette.warn,
-        (None, Direction::Sent) => palette.muted,
-        (None, Direction::Received) => palette.text,
-    };
+    let colour = ink(theme, line);
     row.col(|ui| {
         let time = log.line_time(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
         ui.label(theme.monospace(time).color(palette.muted));
@@ -184,10 +244,22 @@ fn line_ui(row: &mut TableRow<'_, '_>, theme: &Theme, log: &TraceLog, line: &Tra
         ui.label(theme.monospace(arrow).color(palette.accent));
     });
     row.col(|ui| {
-        ui.label(theme.monospace(&line.bytes).color(colour));
+        let bytes = if line.header > 0 { format!("… {}", line.message()) } else { line.bytes.clone() };
+        ui.label(theme.monospace(bytes).color(colour));
     });
     let meaning = line.words(theme.language);
     row.col(|ui| {
         ui.label(RichText::new(&meaning).color(colour));
     });
+}
+
+/// Returns the colour of a frame by its fault and direction.
+fn ink(theme: &Theme, line: &TraceLine) -> Rgb {
+    let palette = theme.palette;
+    match (line.fault, line.direction) {
+        (Some(TraceFault::Broken), _) => palette.bad,
+        (Some(TraceFault::Reported), _) => palette.warn,
+        (None, Direction::Sent) => palette.muted,
+        (None, Direction::Received) => palette.text,
+    }
 }

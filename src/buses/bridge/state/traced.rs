@@ -16,8 +16,8 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
-            let meaning = message_text(&packet).into_iter().collect();
-            Some(Explained { meaning, fault: Some(TraceFault::Reported) })
+            let meaning: Vec<Text> = message_text(&packet).into_iter().collect();
+            Some(Explained { fault: Some(TraceFault::Reported), ..meaning.into() })
         }
         Ok(_) => None,
         Err(error) => Some(Explained::broken(plain(error))),

@@ -69,7 +69,7 @@ impl Meaning {
             Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
             Reply::Written(Written::Refused) => {
-                return Explained { meaning: vec![TEXTS.text("trace.refused")], fault: Some(TraceFault::Reported) };
+                return Explained { fault: Some(TraceFault::Reported), ..vec![TEXTS.text("trace.refused")].into() };
             }
             Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
             Reply::Position(word) => plain(format!("0x{:X}", word.word())),

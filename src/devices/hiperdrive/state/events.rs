@@ -169,7 +169,7 @@ impl SessionEvents for Unit {
     }
 
     fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
-        super::trace::meaning(frame)
+        self.decoder.explain(frame)
     }
 
     /// Processes the session events since the last call and refreshes the actions that the window must keep alive.

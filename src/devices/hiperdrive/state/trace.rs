@@ -1,4 +1,6 @@
-//! Meaning of frames in the trace: which parameter is read or written, and why a device refuses.
+//! Meaning of frames in the trace: which parameter is read or written with which value, and why a device refuses.
+
+use std::collections::VecDeque;
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -6,59 +8,127 @@ use crate::buses::ethernet_ip::protocol::{
     Command, EncapsulationStatus, Frame, GeneralStatus, LogicalKind, Reply, Request, Service,
 };
 use crate::devices::hiperdrive::procedures::Damage;
-use crate::devices::hiperdrive::protocol::ParameterNumber;
-use crate::devices::hiperdrive::state::TEXTS;
+use crate::devices::hiperdrive::protocol::{ParameterNumber, Value, ValueError};
 use crate::devices::hiperdrive::state::explain as explained;
+use crate::devices::hiperdrive::state::{TEXTS, words};
 use crate::link::{Direction, TraceEntry};
 
-pub(super) fn meaning(entry: &TraceEntry) -> Explained {
-    let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
-    let broken = |error| Explained::broken(explained::damage_text(&Damage::Packet(error)));
-    let frame = match Frame::parse(&bytes) {
-        Ok(frame) => frame,
-        Err(error) => return broken(error),
-    };
-    let name: Vec<Text> = frame.command.name().map(plain).into_iter().collect();
-    let is_reply = entry.direction == Direction::Received;
-    if is_reply && frame.status != EncapsulationStatus::OK {
-        return reported_fault(plain(frame.status));
+/// Decoder that explains frames. It remembers the requests without a reply, because a reply does not name the parameter.
+#[derive(Default)]
+pub(super) struct FrameDecoder {
+    /// Headers and messages of the latest requests, oldest first.
+    requests: VecDeque<(Frame, Request)>,
+}
+
+impl FrameDecoder {
+    /// Maximum number of remembered requests. The host sends the next request after the reply or its time-out.
+    const REMEMBERED: usize = 8;
+
+    pub(super) fn explain(&mut self, entry: &TraceEntry) -> Explained {
+        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+        let broken = |error| Explained::broken(explained::damage_text(&Damage::Packet(error)));
+        let frame = match Frame::parse(&bytes) {
+            Ok(frame) => frame,
+            Err(error) => return broken(error),
+        };
+        let name: Vec<Text> = frame.command.name().map(plain).into_iter().collect();
+        let is_reply = entry.direction == Direction::Received;
+        if is_reply && frame.status != EncapsulationStatus::OK {
+            return reported_fault(plain(frame.status));
+        }
+        if frame.command != Command::SEND_RR_DATA {
+            return name.into();
+        }
+        let body = match frame.body() {
+            Ok(body) => body,
+            Err(error) if is_reply => return broken(error),
+            Err(_) => return name.into(),
+        };
+        let Some(message) = body.message() else {
+            return if is_reply { Explained::broken(explained::damage_text(&Damage::Empty)) } else { name.into() };
+        };
+        let explained = match (is_reply, Request::parse(message), Reply::parse(message)) {
+            (false, Ok(request), _) => {
+                let meaning = request_texts(&request);
+                self.remember(frame, request);
+                meaning.into()
+            }
+            (false, Err(_), _) => name.into(),
+            (true, _, Ok(reply)) => reply_meaning(&reply, self.take_request(&frame).as_ref()),
+            (true, _, Err(error)) => broken(error),
+        };
+        // In front of the message are the headers of the frame and of its items.
+        let header = if bytes.ends_with(message) { bytes.len() - message.len() } else { 0 };
+        Explained { header, ..explained }
     }
-    if frame.command != Command::SEND_RR_DATA {
-        return name.into();
+
+    fn remember(&mut self, frame: Frame, request: Request) {
+        self.requests.truncate(Self::REMEMBERED - 1);
+        self.requests.push_front((frame, request));
     }
-    let body = match frame.body() {
-        Ok(body) => body,
-        Err(error) if is_reply => return broken(error),
-        Err(_) => return name.into(),
-    };
-    let Some(message) = body.message() else {
-        return if is_reply { Explained::broken(explained::damage_text(&Damage::Empty)) } else { name.into() };
-    };
-    if !is_reply {
-        return Request::parse(message).map_or(name, |request| vec![item_text(&request)]).into();
+
+    /// Returns the latest request that the frame answers, and forgets it.
+    fn take_request(&mut self, reply: &Frame) -> Option<Request> {
+        let index = self.requests.iter().position(|(request, _)| reply.answers(request))?;
+        self.requests.remove(index).map(|(_, request)| request)
     }
-    match Reply::parse(message) {
-        Ok(reply) if reply.status == GeneralStatus::OK => vec![TEXTS.text("hd_trace.done")].into(),
-        Ok(reply) => reported_fault(plain(reply.status)),
-        Err(error) => broken(error),
+}
+
+fn reply_meaning(reply: &Reply, request: Option<&Request>) -> Explained {
+    if reply.status != GeneralStatus::OK {
+        return reported_fault(plain(reply.status));
+    }
+    let read = request.filter(|request| request.service == Service::GET && reply.service == Service::GET);
+    match read.and_then(parameter_of).and_then(|number| value_texts(number, &reply.data)) {
+        Some(Ok(texts)) => texts.into(),
+        Some(Err(error)) => Explained::broken(explained::damage_text(&Damage::Value(error))),
+        None => vec![TEXTS.text("hd_trace.done")].into(),
     }
 }
 
 fn reported_fault(text: Text) -> Explained {
-    Explained { meaning: vec![text], fault: Some(TraceFault::Reported) }
+    Explained { fault: Some(TraceFault::Reported), ..vec![text].into() }
 }
 
-fn item_text(request: &Request) -> Text {
-    let attribute = request.path.number(LogicalKind::Attribute);
-    let number = request.class().zip(attribute).and_then(|(class, own)| ParameterNumber::from_attribute(class, own));
-    match number {
-        Some(number) => {
-            let is_set = request.service == Service::SET;
-            let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };
-            TEXTS.text(id).with("number", number).with_text("name", explained::parameter(number))
+fn parameter_of(request: &Request) -> Option<ParameterNumber> {
+    ParameterNumber::from_attribute(request.class()?, request.path.number(LogicalKind::Attribute)?)
+}
+
+fn request_texts(request: &Request) -> Vec<Text> {
+    let Some(number) = parameter_of(request) else {
+        return vec![plain(request.service.name(request.class()).unwrap_or_default())];
+    };
+    let is_set = request.service == Service::SET;
+    let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };
+    let heading = TEXTS.text(id).with("number", number).with_text("name", explained::parameter(number));
+    let value = is_set.then(|| value_texts(number, &request.data)?.ok()).flatten();
+    [vec![heading], value.unwrap_or_default()].concat()
+}
+
+/// Describes a transmitted value of a parameter. The result is `None` if the manual does not list the parameter.
+fn value_texts(number: ParameterNumber, data: &[u8]) -> Option<Result<Vec<Text>, ValueError>> {
+    let row = number.row()?;
+    let value = match row.kind.parse(data) {
+        Ok(value) => value,
+        Err(error) => return Some(Err(error)),
+    };
+    let meaning = match value {
+        Value::Number(tenths) if row.unit == "0.1 rpm" => {
+            Some(TEXTS.text("hd_entry.rpm").with_number("rpm", tenths as f64 / 10.0, 1))
         }
-        None => plain(request.service.name(request.class()).unwrap_or_default()),
+        Value::Number(value) => words::meaning(number, value),
+        Value::Text(_) => None,
+    };
+    // A meaning in whole units replaces a number of tenths.
+    if let Some(meaning) = meaning.as_ref().filter(|_| row.unit.starts_with("0.1 ")) {
+        return Some(Ok(vec![meaning.clone()]));
     }
+    let shown = words::value_text(number, &value);
+    let shown = match words::unit(row) {
+        Some(unit) => TEXTS.text("hd_entry.place").with("value", shown).with_text("unit", unit),
+        None => plain(shown),
+    };
+    Some(Ok([shown].into_iter().chain(meaning).collect()))
 }
 
 #[cfg(test)]
@@ -87,11 +157,55 @@ mod tests {
             ("no frame", "55 AA 55".to_owned(), Some(TraceFault::Broken)),
         ];
         for (label, text, fault) in cases {
-            let bytes = MaskedBytes::clear(&parse_hex(&text).unwrap());
-            let told = meaning(&TraceEntry { at: Moment::START, direction: Direction::Received, bytes });
-            let words: Vec<String> = told.meaning.iter().map(|text| text.words(Language::English)).collect();
+            let told = FrameDecoder::default().explain(&entry(Direction::Received, &text));
+            let words = words_of(&told);
             assert_eq!(told.fault, fault, "{label}: {words:?}");
             assert!(!words.concat().is_empty(), "{label}");
         }
+    }
+
+    fn entry(direction: Direction, hex: &str) -> TraceEntry {
+        let bytes = MaskedBytes::clear(&parse_hex(hex).unwrap());
+        TraceEntry { at: Moment::START, direction, bytes }
+    }
+
+    fn words_of(explained: &Explained) -> Vec<String> {
+        explained.meaning.iter().map(|text| text.words(Language::English)).collect()
+    }
+
+    /// A frame with this context around a message (reference 7 and 9).
+    fn around(context: u8, message: &str) -> String {
+        let length = parse_hex(message).unwrap().len();
+        format!(
+            "6F 00 {:02X} 00 78 56 34 12 00 00 00 00 {context:02X} 00 00 00 00 00 00 00 00 00 00 00 \
+             00 00 00 00 00 00 02 00 00 00 00 00 B2 00 {length:02X} 00 {message}",
+            16 + length
+        )
+    }
+
+    /// Messages of reference 9: get 107, set 158, and a reply that belongs to the request before the last one.
+    #[test]
+    fn a_reply_shows_the_value_of_its_own_request() {
+        let mut decoder = FrameDecoder::default();
+        let mut frame = |direction, context, message: &str| {
+            let told = decoder.explain(&entry(direction, &around(context, message)));
+            assert_eq!(told.header, 40, "{message}");
+            (words_of(&told), told.fault)
+        };
+        let (sent, received) = (Direction::Sent, Direction::Received);
+        let (words, _) = frame(sent, 1, "0E 03 20 65 24 01 30 6B");
+        assert!(words.concat().contains("parameter 107"), "{words:?}");
+        let (words, _) = frame(sent, 2, "10 03 20 65 24 01 30 9E 00 00 01 FE");
+        assert!(words[0].contains("parameter 158") && words[1].contains("-33488896"), "{words:?}");
+        assert_eq!(frame(received, 1, "8E 00 00 00 00 80 02 00"), (vec!["163840 steps".to_owned()], None));
+        assert_eq!(frame(received, 2, "90 00 00 00"), (vec!["done".to_owned()], None));
+        let (words, fault) = frame(received, 1, "8E 00 00 00 00 80 02 00");
+        assert_eq!((words, fault), (vec!["done".to_owned()], None), "the request has been answered already");
+        // Parameter 106 has a resolution of 0.1 rpm.
+        frame(sent, 3, "0E 03 20 65 24 01 30 6A");
+        assert_eq!(frame(received, 3, "8E 00 00 00 20 03").0, ["80.0 rpm"]);
+        frame(sent, 3, "0E 03 20 65 24 01 30 6B");
+        let (words, fault) = frame(received, 3, "8E 00 00 00 00 80");
+        assert_eq!(fault, Some(TraceFault::Broken), "a value of the wrong length: {words:?}");
     }
 }

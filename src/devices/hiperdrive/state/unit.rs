@@ -11,6 +11,7 @@ use super::record::Record;
 use super::remembered::ExchangedValues;
 use super::ruler::{PositionUnit, Ruler};
 use super::staged::{Mark, Staged};
+use super::trace::FrameDecoder;
 use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
 use crate::app::live_session::LiveSession;
@@ -68,6 +69,7 @@ pub struct Unit {
     pub(super) looks_at_errors: bool,
     /// Whether everything must be read again, because another master has changed the limits of a drive.
     pub(super) looks_at_all: bool,
+    pub(super) decoder: FrameDecoder,
 }
 
 impl Unit {
@@ -100,6 +102,7 @@ impl Unit {
             has_polled: false,
             looks_at_errors: false,
             looks_at_all: false,
+            decoder: FrameDecoder::default(),
         }
     }
 

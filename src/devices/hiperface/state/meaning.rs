@@ -46,9 +46,9 @@ impl Meaning {
         };
         // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
-        let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
+        let meaning: Vec<Text> = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(is_status_report).map(|_| TraceFault::Reported);
-        Explained { meaning, fault }
+        Explained { fault, ..meaning.into() }
     }
 }
 

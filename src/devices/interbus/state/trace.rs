@@ -39,7 +39,7 @@ impl Meaning {
         match fault(&self.requested, &bytes, self.order) {
             Some(Fault::Broken(damage)) => Explained::broken(explained::damage_text(damage)),
             Some(Fault::Refused(exception)) => {
-                Explained { meaning: vec![explained::exception_text(exception)], fault: Some(TraceFault::Reported) }
+                Explained { fault: Some(TraceFault::Reported), ..vec![explained::exception_text(exception)].into() }
             }
             None => self.received(&bytes),
         }
@@ -52,7 +52,7 @@ impl Meaning {
             Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
         };
-        Explained { meaning, fault: is_error.then_some(TraceFault::Reported) }
+        Explained { fault: is_error.then_some(TraceFault::Reported), ..meaning.into() }
     }
 
     fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
