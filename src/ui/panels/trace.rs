@@ -4,7 +4,7 @@
 
 mod detail;
 
-use egui::{Align, EventFilter, Id, Key, Modifiers, Rect, RichText, Sense, Ui, UiBuilder};
+use egui::{Align, EventFilter, Id, Key, Modifiers, Rangef, Rect, RichText, Sense, Ui, UiBuilder};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use crate::app::{Action, Rgb, SessionId, Studio, Text, TraceFault, TraceFilter, TraceLine, TraceLog, TraceMatches};
@@ -17,8 +17,13 @@ const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 /// Width of the search entry in points.
 const SEARCH: f32 = 200.0;
+/// Widths of the columns with the time and the gap, and of the arrow.
+const TIMES: [f32; 2] = [96.0, 76.0];
+const ARROW: f32 = 16.0;
+/// Share of the bytes in the remaining width.
+const BYTES: f32 = 0.48;
 /// Width of a selected frame beside the list in points.
-const DETAIL: f32 = 300.0;
+const DETAIL: f32 = 290.0;
 
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
@@ -114,7 +119,11 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     view.selected = moved.or(view.selected);
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     let pitch = ROW + ui.spacing().item_spacing.y;
-    let is_pressed = ui.input(|input| input.pointer.primary_pressed());
+    let layer = ui.layer_id();
+    let pressed = ui.input(|input| input.pointer.primary_pressed().then(|| input.pointer.interact_pos()).flatten());
+    let pressed = pressed.filter(|place| ui.ctx().layer_id_at(*place) == Some(layer));
+    // The bytes and the meaning share the rest.
+    let bytes = ((ui.available_width() - TIMES[0] - TIMES[1] - ARROW) * BYTES).max(0.0).floor();
     let mut table = TableBuilder::new(ui)
         .id_salt("trace")
         .auto_shrink(false)
@@ -132,10 +141,10 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
     let selected = view.selected;
     let mut clicked = None;
     let drawn = table
-        .column(Column::exact(96.0))
-        .column(Column::exact(76.0))
-        .column(Column::exact(16.0))
-        .column(Column::initial(330.0).at_least(120.0).resizable(true).clip(true))
+        .column(Column::exact(TIMES[0]))
+        .column(Column::exact(TIMES[1]))
+        .column(Column::exact(ARROW))
+        .column(Column::exact(bytes).clip(true))
         .column(Column::remainder().clip(true))
         .body(|body| {
             body.rows(ROW, rows, |mut row| {
@@ -143,15 +152,16 @@ fn rows_ui(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, jum
                 let Some((number, line)) = number.and_then(|number| Some((number, log.line(number)?))) else { return };
                 let before = number.checked_sub(1).and_then(|before| log.line(before));
                 row.set_selected(selected == Some(number));
-                line_ui(&mut row, theme, log, line, before);
-                // While frames arrive, another one may be under the pointer at the release.
-                if is_pressed && row.response().contains_pointer() {
+                let height = line_ui(&mut row, theme, log, line, before);
+                // While frames arrive, the row under the pointer is another one at the release. A row that has just
+                // appeared has no response yet.
+                if pressed.is_some_and(|place| height.contains(place.y)) {
                     clicked = Some(number);
                 }
             });
         });
-    if let Some(number) = clicked {
-        view.selected = (selected != Some(number)).then_some(number);
+    if let Some(number) = clicked.filter(|_| pressed.is_some_and(|place| drawn.inner_rect.contains(place))) {
+        view.selected = Some(number);
     }
     // A click takes the focus from any widget when the button is released.
     let released = ui.input(|input| input.pointer.primary_released().then(|| input.pointer.interact_pos()).flatten());
@@ -220,7 +230,14 @@ fn toolbar(ui: &mut Ui, theme: &Theme, view: &mut TraceView, log: &TraceLog, act
     jumps_to_end
 }
 
-fn line_ui(row: &mut TableRow<'_, '_>, theme: &Theme, log: &TraceLog, line: &TraceLine, before: Option<&TraceLine>) {
+/// Draws a frame. Returns the vertical range of the row.
+fn line_ui(
+    row: &mut TableRow<'_, '_>,
+    theme: &Theme,
+    log: &TraceLog,
+    line: &TraceLine,
+    before: Option<&TraceLine>,
+) -> Rangef {
     let palette = theme.palette;
     let arrow = if line.direction == Direction::Sent { "→" } else { "←" };
     let colour = ink(theme, line);
@@ -248,9 +265,12 @@ fn line_ui(row: &mut TableRow<'_, '_>, theme: &Theme, log: &TraceLog, line: &Tra
         ui.label(theme.monospace(bytes).color(colour));
     });
     let meaning = line.words(theme.language);
+    let mut height = Rangef::NOTHING;
     row.col(|ui| {
+        height = ui.max_rect().y_range();
         ui.label(RichText::new(&meaning).color(colour));
     });
+    height
 }
 
 /// Returns the colour of a frame by its fault and direction.
