@@ -5,6 +5,7 @@
 
 mod body;
 mod cause;
+mod changed_item;
 pub(crate) mod difference;
 mod document;
 mod error;
@@ -26,6 +27,7 @@ mod written;
 
 pub use body::{Body, Profile, ProfileBody, ProfileFormat, ProfileFormats};
 pub use cause::Cause;
+pub use changed_item::ChangedItem;
 pub use difference::{Comparison, Difference};
 pub use document::{ProfileDocument, SCHEMA};
 pub use error::{ProfileError, SyntaxErrorKind};

@@ -28,7 +28,8 @@ pub use files::{MAX_TEXT, overwrite_text, read_file, read_text, write_atomically
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
-    DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookErrorKind, Outcome, StatusEntry, WriteResult,
+    DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Intent, Logbook, LogbookError, LogbookErrorKind, Origin,
+    Outcome, WriteResult,
 };
 
 use crate::profile::Cause;

@@ -113,7 +113,7 @@ fn statuses_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
         for status in device.statuses() {
             ui.horizontal(|ui| {
                 ui.label(theme.monospace(time(status.at)));
-                ui.add(egui::Label::new(&status.codes).truncate());
+                ui.add(egui::Label::new(&status.description).truncate());
             });
         }
     });
@@ -134,8 +134,7 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
     ui.horizontal(|ui| {
         ui.label(theme.monospace(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
-        let cycles = write.conclusion.as_ref().map_or(write.planned_cycles, |end| end.cycles_spent);
-        let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", cycles);
+        let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", write.cycles());
         ui.label(theme.label(theme.words(&cycles)));
         ui.add(egui::Label::new(theme.monospace(&write.description)).truncate());
     });

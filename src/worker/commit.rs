@@ -13,9 +13,10 @@ use jiff::Timestamp;
 
 use super::{JobError, Progress};
 use crate::profile::{
-    Body, Confirmed, Consent, InterruptedWrite, Operation, OperationError, Plan, ProfileDocument, Write, WriteRecord,
+    Body, ChangedItem, Confirmed, Consent, InterruptedWrite, Operation, OperationError, Plan, ProfileDocument, Write,
+    WriteRecord,
 };
-use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
+use crate::store::{DeviceKey, EntryId, EntryKind, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
 /// A plan approved by the user, with the values on which it is based.
 #[derive(Clone, Debug)]
@@ -87,8 +88,11 @@ pub trait Planned {
     /// Returns the key that identifies the device in backups and the logbook.
     fn device(&self, is_virtual: bool) -> DeviceKey;
 
-    /// Returns a description of an operation's change for the logbook.
-    fn note(&self, op: &Self::Op) -> String;
+    /// Returns the items that an operation changes, for the logbook.
+    fn changed_items(&self, op: &Self::Op) -> Vec<ChangedItem>;
+
+    /// Returns the kind of the logbook entry.
+    fn entry_kind(&self) -> EntryKind;
 
     /// Returns the values before the change, as text from which they can be restored.
     fn before_image(&self) -> String;
@@ -151,8 +155,9 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     let (cost, planned) = (plan.write_cycles(), plan.ops.len());
     check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), *force_wear)?;
     let confirmed = Confirmed::confirm(plan, *consent, write).ok_or(NotBegun::OtherPlan)?.map_err(JobError::Device)?;
-    let items = plan.ops.iter().map(|op| prepared.note(op)).collect::<Vec<_>>().join(", ");
-    let intended = WriteIntent::note(store, &prepared.device(is_virtual), &items, cost, &prepared.before_image());
+    let items = plan.ops.iter().flat_map(|op| prepared.changed_items(op)).collect();
+    let intent = Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None };
+    let intended = WriteIntent::note(store, &prepared.device(is_virtual), intent, &prepared.before_image());
     let intended = intended.map_err(NotBegun::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
@@ -226,10 +231,11 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 
 impl WriteIntent {
     /// Saves the before-image and records the intended write in the logbook.
-    fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
+    fn note(store: &Store, device: &DeviceKey, intent: Intent, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
+        let intent = Intent { backup: Some(backup.clone()), ..intent };
         let intend = |mut logbook: Logbook| {
-            let id = logbook.intend(Timestamp::now(), device, items, cost, Some(&backup))?;
+            let id = logbook.intend(Timestamp::now(), device, &intent)?;
             Ok((logbook, id))
         };
         let entry = Logbook::open(&store.logbook_path()).and_then(intend);

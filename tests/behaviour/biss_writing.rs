@@ -1,7 +1,6 @@
 //! Writing into a foreign kit encoder, over its configuration pin and over an adapter.
 
-use encoder_studio::store::{DeviceKey, Logbook, Outcome};
-use jiff::Timestamp;
+use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
 
 use super::biss_profile::PROFILE;
@@ -266,19 +265,13 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
         serial_number: "1234567".to_owned(),
         is_virtual: true,
     };
-    let log = bench.path("data").join("encoder-studio").join("logbook.sqlite");
-    let wear_to = |cycles: u64| {
-        let mut logbook = Logbook::open(&log).unwrap();
-        let spent = cycles - logbook.write_cycles(&device).unwrap();
-        let id = logbook.intend(Timestamp::now(), &device, "long ago", spent, None).unwrap();
-        logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
-    };
+    let wear_to = |cycles: u64| bench.wear_to(&device, cycles);
     wear_to(798);
     write(&[]).assert_stderr(&["at least 800 of the 1000"]);
     wear_to(999);
     write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));
-    assert_eq!(Logbook::open(&log).unwrap().write_cycles(&device).unwrap(), 1001);
+    assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 1001);
 }
 
 /// Once in the reading and in three places of the writing.

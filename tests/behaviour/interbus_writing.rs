@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use encoder_studio::store::{DeviceKey, Logbook, Outcome};
-use jiff::Timestamp;
+use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, requested_frame};
@@ -271,13 +270,7 @@ fn the_stores_of_an_eeprom_are_counted() {
         serial_number: "4000".to_owned(),
         is_virtual: false,
     };
-    let log = bench.path("data").join("encoder-studio").join("logbook.sqlite");
-    let wear_to = |stores: u64| {
-        let mut logbook = Logbook::open(&log).unwrap();
-        let spent = stores - logbook.write_cycles(&device).unwrap();
-        let id = logbook.intend(Timestamp::now(), &device, "long ago", spent, None).unwrap();
-        logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
-    };
+    let wear_to = |stores: u64| bench.wear_to(&device, stores);
     wear_to(148);
     assert!(!write(&[]).err.contains("is limited"));
     let warned = write(&[]);
@@ -304,7 +297,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     // The same value again, since it was not written.
     let _ = write(&["--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(1));
-    assert_eq!(Logbook::open(&log).unwrap().write_cycles(&device).unwrap(), 450);
+    assert_eq!(bench.logbook().write_cycles(&device).unwrap(), 450);
 }
 
 /// At three points of the writing: the written values are reported, with the backup, within the time-out of a lost

@@ -8,6 +8,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use encoder_studio::profile::ChangedItem;
+use encoder_studio::store::{DeviceKey, EntryKind, Intent, Logbook, Outcome};
+use jiff::Timestamp;
+
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -50,6 +54,21 @@ impl Bench {
 
     pub(crate) fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// Opens the logbook of the program.
+    pub(crate) fn logbook(&self) -> Logbook {
+        Logbook::open(&self.path("data").join("encoder-studio").join("logbook.sqlite")).unwrap()
+    }
+
+    /// Adds an old write to the logbook, so that the device has this number of write cycles.
+    pub(crate) fn wear_to(&self, device: &DeviceKey, cycles: u64) {
+        let mut logbook = self.logbook();
+        let spent = cycles - logbook.write_cycles(device).unwrap();
+        let items = vec![ChangedItem::new("long ago", None, None)];
+        let intent = Intent { kind: EntryKind::Write, items, planned_cycles: spent, backup: None };
+        let id = logbook.intend(Timestamp::now(), device, &intent).unwrap();
+        logbook.record_outcome(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     }
 
     /// Returns the program, about to be started.

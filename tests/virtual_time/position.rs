@@ -55,7 +55,7 @@ fn the_previous_position_is_recorded() {
     };
     let entries = Logbook::open(&store.logbook_path()).unwrap().history(&key, 9).unwrap();
     assert_eq!(entries.len(), 1);
-    assert_eq!((entries[0].description.as_str(), entries[0].planned_cycles), ("position", 1));
+    assert_eq!((entries[0].description.as_str(), entries[0].planned_cycles), ("position: 918833 → 0", 1));
     assert_eq!(entries[0].conclusion.as_ref().unwrap().cycles_spent, 1);
 }
 

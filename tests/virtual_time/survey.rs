@@ -135,7 +135,9 @@ fn noted(desk: &Desk) -> Vec<String> {
         is_virtual: true,
     };
     match path.exists() {
-        true => Logbook::open(&path).unwrap().statuses(&key, 9).unwrap().into_iter().map(|own| own.codes).collect(),
+        true => {
+            Logbook::open(&path).unwrap().statuses(&key, 9).unwrap().into_iter().map(|own| own.description).collect()
+        }
         false => Vec::new(),
     }
 }

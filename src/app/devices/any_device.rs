@@ -14,7 +14,7 @@ use crate::app::session::{DeviceHistory, PendingOpen, Phase, Source};
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
 use crate::profile::ProfileDocument;
-use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
+use crate::store::{Backup, DeviceKey, Entry};
 
 impl AnyDevice {
     /// Returns the device as the type `M`, or `None` if it is of another kind.
@@ -81,7 +81,7 @@ impl AnyDevice {
     }
 
     /// Returns the status codes of this device in the logbook, newest first.
-    pub fn statuses(&self) -> &[StatusEntry] {
+    pub fn statuses(&self) -> &[Entry] {
         &self.state().statuses
     }
 

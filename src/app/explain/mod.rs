@@ -149,6 +149,11 @@ pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
+/// Describes why the logbook cannot be read.
+pub fn logbook_unreadable(why: &LogbookError) -> Text {
+    Text::new("backups.no_logbook").with_text("why", logbook_problem(why))
+}
+
 pub fn parity(parity: Parity) -> Text {
     Text::new(match parity {
         Parity::None => "parity.none",

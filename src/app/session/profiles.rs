@@ -8,7 +8,7 @@ use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, FileQuestion, Severity, Text, explain};
 use crate::profile::{Body, ProfileDocument};
-use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
+use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
 
 impl SessionState {
     pub(crate) fn suggested_file(&self) -> PathBuf {
@@ -92,11 +92,7 @@ impl SessionState {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
         self.cycles = listed.cycles;
         self.statuses = listed.statuses;
-        self.writes = Some(
-            listed
-                .writes
-                .map_err(|error| Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))),
-        );
+        self.writes = Some(listed.writes.map_err(|error| explain::logbook_unreadable(&error)));
     }
 }
 
@@ -107,7 +103,7 @@ pub struct DeviceHistory {
     /// Total number of write cycles, or `None` if the logbook does not contain it.
     pub cycles: Option<u64>,
     /// Status codes that were read, with the newest first. An error of the logbook is reported in `writes`.
-    pub statuses: Vec<StatusEntry>,
+    pub statuses: Vec<Entry>,
 }
 
 impl DeviceHistory {

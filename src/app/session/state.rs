@@ -8,7 +8,7 @@ use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
-use crate::store::{Backup, Entry, StatusEntry};
+use crate::store::{Backup, Entry};
 
 /// The part of a session that is the same for all kinds of devices: identity, source of the data, and connection.
 pub struct SessionState {
@@ -27,7 +27,7 @@ pub struct SessionState {
     /// Write cycles recorded in the logbook, or `None` if there are none or they have not been read.
     pub cycles: Option<u64>,
     /// Status codes in the logbook, with the newest first.
-    pub statuses: Vec<StatusEntry>,
+    pub statuses: Vec<Entry>,
     /// Whether nothing has been read since the link was opened.
     pub just_connected: bool,
     /// Whether live values start automatically once the device has been read and its line is idle.

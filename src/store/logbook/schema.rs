@@ -13,7 +13,7 @@ use crate::store::files::create_folder;
 
 /// Migrations from each schema to the next. Existing migrations must never change, because logbooks created by them
 /// exist.
-const STEPS: [&str; 2] = [
+pub(super) const STEPS: [&str; 3] = [
     "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
@@ -46,6 +46,53 @@ const STEPS: [&str; 2] = [
         codes          TEXT    NOT NULL
     ) STRICT;
     CREATE INDEX status_of_device ON status (kind, device_type, serial_number, is_virtual);
+",
+    // Rows of these tables are only ever added: a result is a row of its own, and `uid` identifies an event on every
+    // computer.
+    "
+    CREATE TABLE event (
+        id             INTEGER PRIMARY KEY,
+        uid            TEXT    NOT NULL UNIQUE,
+        at             TEXT    NOT NULL, -- RFC 3339, UTC
+        what           TEXT    NOT NULL,
+        kind           TEXT    NOT NULL,
+        device_type    TEXT    NOT NULL,
+        serial_number  TEXT    NOT NULL,
+        is_virtual     INTEGER NOT NULL CHECK (is_virtual IN (0, 1)),
+        description    TEXT    NOT NULL,
+        items          TEXT    NOT NULL DEFAULT '[]', -- JSON: a list of item, name, old, new
+        planned_cycles INTEGER NOT NULL DEFAULT 0 CHECK (planned_cycles >= 0),
+        backup         TEXT,
+        bench          TEXT    NOT NULL,
+        user           TEXT,
+        version        TEXT    NOT NULL
+    ) STRICT;
+    CREATE INDEX event_of_device ON event (kind, serial_number, device_type, is_virtual);
+    CREATE TABLE result (
+        event          TEXT    PRIMARY KEY REFERENCES event (uid),
+        at             TEXT    NOT NULL, -- RFC 3339, UTC
+        outcome        TEXT    NOT NULL CHECK (outcome IN ('done', 'failed', 'cancelled')),
+        failure        TEXT,             -- the reason, of 'failed' only
+        cycles_spent   INTEGER NOT NULL CHECK (cycles_spent >= 0),
+        CHECK ((outcome = 'failed') = (failure IS NOT NULL))
+    ) STRICT;
+    CREATE TEMP TABLE moved AS
+        SELECT lower(hex(randomblob(16))) AS uid, at, 'write' AS what, kind, device_type, serial_number, is_virtual,
+               what AS description, planned_cycles, backup, concluded_at, outcome, failure, cycles_spent
+        FROM entry
+        UNION ALL
+        SELECT lower(hex(randomblob(16))), at, 'status', kind, device_type, serial_number, is_virtual, codes,
+               0, NULL, NULL, NULL, NULL, NULL
+        FROM status;
+    INSERT INTO event (uid, at, what, kind, device_type, serial_number, is_virtual, description, planned_cycles, backup,
+                       bench, version)
+        SELECT uid, at, what, kind, device_type, serial_number, is_virtual, description, planned_cycles, backup, '', ''
+        FROM temp.moved ORDER BY at, rowid;
+    INSERT INTO result SELECT uid, concluded_at, outcome, failure, cycles_spent
+        FROM temp.moved WHERE concluded_at IS NOT NULL;
+    DROP TABLE temp.moved;
+    DROP TABLE entry;
+    DROP TABLE status;
 ",
 ];
 

@@ -1,8 +1,9 @@
 //! Tests of the logbook on a disk: counts, two windows, and every way in which its file can be unusable.
 
-use std::fs;
+use std::{fmt, fs};
 
 use super::*;
+use crate::profile::ChangedItem;
 use crate::store::{FileErrorKind, Store};
 
 fn at(second: i64) -> Timestamp {
@@ -25,6 +26,11 @@ fn place() -> (tempfile::TempDir, PathBuf) {
     (root, path)
 }
 
+fn intent(item: &str, planned_cycles: u64, backup: Option<&Path>) -> Intent {
+    let items = vec![ChangedItem::new(item, None, None)];
+    Intent { kind: EntryKind::Write, items, planned_cycles, backup: backup.map(Path::to_owned) }
+}
+
 fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookErrorKind {
     result.unwrap_err().problem
 }
@@ -42,13 +48,13 @@ fn cycles_add_up_for_each_device() {
     ];
     assert_eq!(logbook.write_cycles(&own), Ok(0));
     for (spent, outcome) in [(8, Outcome::Done), (3, Outcome::Failed("no reply".into())), (0, Outcome::Cancelled)] {
-        let id = logbook.intend(at(0), &own, "data field 1", 8, None).unwrap();
+        let id = logbook.intend(at(0), &own, &intent("data field 1", 8, None)).unwrap();
         logbook.record_outcome(id, at(1), outcome, spent).unwrap();
     }
     assert_eq!(logbook.write_cycles(&own), Ok(11));
     for other in &others {
         assert_eq!(logbook.write_cycles(other), Ok(0), "{other:?}");
-        logbook.intend(at(0), other, "x", 100, None).unwrap();
+        logbook.intend(at(0), other, &intent("x", 100, None)).unwrap();
     }
     assert_eq!(logbook.write_cycles(&own), Ok(11));
 }
@@ -57,7 +63,7 @@ fn cycles_add_up_for_each_device() {
 fn an_intent_without_conclusion_counts_as_planned() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.intend(at(0), &device("1"), "data field 1", 8, None).unwrap();
+    logbook.intend(at(0), &device("1"), &intent("data field 1", 8, None)).unwrap();
     // The program dies here.
     drop(logbook);
     let logbook = Logbook::open(&path).unwrap();
@@ -71,31 +77,27 @@ fn history_is_newest_first_and_complete() {
     let mut logbook = Logbook::open(&path).unwrap();
     let own = device("A/B ä\0");
     let backup = path.with_file_name("a backup.ron");
-    let first = logbook.intend(at(0), &own, "first", 1, Some(&backup)).unwrap();
-    let second = logbook.intend(at(5), &own, "second", 2, None).unwrap();
-    logbook.intend(at(6), &device("2"), "another", 1, None).unwrap();
+    let first = logbook.intend(at(0), &own, &intent("first", 1, Some(&backup))).unwrap();
+    let second = logbook.intend(at(5), &own, &intent("second", 2, None)).unwrap();
+    logbook.intend(at(6), &device("2"), &intent("another", 1, None)).unwrap();
     logbook.record_outcome(first, at(1), Outcome::Failed(String::new()), 1).unwrap();
 
     let history = logbook.history(&own, 10).unwrap();
     let conclusion = WriteResult { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
-    let expected = [
-        Entry {
-            id: second,
-            at: at(5),
-            description: "second".into(),
-            planned_cycles: 2,
-            backup: None,
-            conclusion: None,
-        },
-        Entry {
-            id: first,
-            at: at(0),
-            description: "first".into(),
-            planned_cycles: 1,
-            backup: Some(backup),
-            conclusion: Some(conclusion),
-        },
-    ];
+    let entry = |id, second, item: &str, planned_cycles| Entry {
+        id,
+        kind: EntryKind::Write,
+        at: at(second),
+        device: own.clone(),
+        description: item.to_owned(),
+        items: vec![ChangedItem::new(item, None, None)],
+        planned_cycles,
+        backup: None,
+        origin: Origin::of_this_process(),
+        conclusion: None,
+    };
+    let first = Entry { backup: Some(backup), conclusion: Some(conclusion), ..entry(first, 0, "first", 1) };
+    let expected = [entry(second, 5, "second", 2), first];
     assert_eq!(history, expected);
     assert_eq!(logbook.history(&own, 1).unwrap(), expected[..1]);
     assert_eq!(logbook.history(&own, 0), Ok(Vec::new()));
@@ -105,7 +107,7 @@ fn history_is_newest_first_and_complete() {
 fn an_entry_is_concluded_once() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    let id = logbook.intend(at(0), &device("1"), "x", 8, None).unwrap();
+    let id = logbook.intend(at(0), &device("1"), &intent("x", 8, None)).unwrap();
     logbook.record_outcome(id, at(1), Outcome::Done, 8).unwrap();
     let not_open = LogbookErrorKind::NotOpen { entry: id };
     assert_eq!(problem(logbook.record_outcome(id, at(2), Outcome::Cancelled, 0)), not_open);
@@ -118,7 +120,7 @@ fn an_absurd_count_does_not_break_the_sum() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     for _ in 0..3 {
-        logbook.intend(at(0), &device("1"), "x", u64::MAX, None).unwrap();
+        logbook.intend(at(0), &device("1"), &intent("x", u64::MAX, None)).unwrap();
     }
     assert_eq!(logbook.write_cycles(&device("1")), Ok(3 * u64::from(u32::MAX)));
 }
@@ -128,9 +130,9 @@ fn two_windows_share_a_logbook() {
     let (_root, path) = place();
     let mut first = Logbook::open(&path).unwrap();
     let mut second = Logbook::open(&path).unwrap();
-    let id = first.intend(at(0), &device("1"), "x", 8, None).unwrap();
+    let id = first.intend(at(0), &device("1"), &intent("x", 8, None)).unwrap();
     assert_eq!(second.write_cycles(&device("1")), Ok(8));
-    second.intend(at(0), &device("1"), "y", 1, None).unwrap();
+    second.intend(at(0), &device("1"), &intent("y", 1, None)).unwrap();
     second.record_outcome(id, at(1), Outcome::Done, 2).unwrap();
     assert_eq!(first.write_cycles(&device("1")), Ok(3));
 }
@@ -143,7 +145,7 @@ fn concurrent_writers_do_not_lose_entries() {
             scope.spawn(|| {
                 let mut logbook = Logbook::open(&path).unwrap();
                 for _ in 0..5 {
-                    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
+                    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
                 }
             });
         }
@@ -158,11 +160,11 @@ fn a_locked_logbook_is_reported() {
     let mut logbook = Logbook::open_with_timeout(&path, patience).unwrap();
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
-    assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookErrorKind::Locked);
+    assert_eq!(problem(logbook.intend(at(0), &device("1"), &intent("x", 1, None))), LogbookErrorKind::Locked);
     // Reading, and opening to read, do not wait.
     assert_eq!(Logbook::open_with_timeout(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
     other.execute_batch("ROLLBACK").unwrap();
-    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
+    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
 }
 
 #[test]
@@ -208,7 +210,7 @@ fn a_damaged_logbook_is_an_error_and_is_kept() {
     for (label, content) in cases {
         fs::write(&path, &content).unwrap();
         let result = Logbook::open(&path).and_then(|mut logbook| {
-            logbook.intend(at(0), &device("1"), "x", 1, None)?;
+            logbook.intend(at(0), &device("1"), &intent("x", 1, None))?;
             logbook.write_cycles(&device("1"))
         });
         assert!(
@@ -223,8 +225,8 @@ fn a_damaged_logbook_is_an_error_and_is_kept() {
 fn an_invalid_value_is_reported_as_damage() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
-    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
-    Connection::open(&path).unwrap().execute("UPDATE entry SET at = 'yesterday'", []).unwrap();
+    logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap();
+    Connection::open(&path).unwrap().execute("UPDATE event SET at = 'yesterday'", []).unwrap();
     assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookErrorKind::Damaged { .. }));
     assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
 }
@@ -238,4 +240,65 @@ fn a_logbook_without_a_folder_is_an_error() {
     fs::write(&file, "x").unwrap();
     let LogbookErrorKind::Folder(error) = problem(Logbook::open(&file.join("logbook.sqlite"))) else { panic!() };
     assert_eq!(error.problem, FileErrorKind::NotFolder);
+}
+
+/// A logbook of schema 2, made with these statements by version 0.1.
+#[test]
+fn an_older_logbook_keeps_its_entries() {
+    let (_root, path) = place();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let old = Connection::open(&path).unwrap();
+    for step in &schema::STEPS[..2] {
+        old.execute_batch(step).unwrap();
+    }
+    old.execute_batch(
+        "INSERT INTO entry VALUES (1, '2026-11-01T08:00:00Z', 'hiperface', '37h', '1', 0, 'field:1@3+2', 8, '/b.ron',
+                                   '2026-11-01T08:00:02Z', 'failed', 'no reply', 3);
+         INSERT INTO entry VALUES (2, '2026-11-03T08:00:00Z', 'hiperface', '37h', '1', 0, 'counter', 1, NULL,
+                                   NULL, NULL, NULL, NULL);
+         INSERT INTO status VALUES (1, '2026-11-02T08:00:00Z', 'hiperface', '37h', '1', 0, '08h, 1Eh');
+         PRAGMA user_version = 2;",
+    )
+    .unwrap();
+    drop(old);
+    let mut logbook = Logbook::open(&path).unwrap();
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(4));
+    let entries = logbook.entries(&EntryFilter::default(), 10).unwrap();
+    let told: Vec<_> = entries.iter().map(|entry| (entry.kind, entry.description.as_str(), entry.cycles())).collect();
+    let expected =
+        [(EntryKind::Write, "counter", 1), (EntryKind::Status, "08h, 1Eh", 0), (EntryKind::Write, "field:1@3+2", 3)];
+    assert_eq!(told, expected);
+    assert_eq!(entries[2].backup.as_deref(), Some(Path::new("/b.ron")));
+    assert_eq!(entries[2].origin, Origin::default());
+    let end = entries[2].conclusion.as_ref().unwrap();
+    assert_eq!(end.outcome, Outcome::Failed("no reply".to_owned()));
+    // The open intent can still be concluded, and new entries follow the old ones.
+    logbook.record_outcome(entries[0].id, at(0), Outcome::Done, 1).unwrap();
+    assert!(logbook.intend(at(0), &device("1"), &intent("x", 1, None)).unwrap() > entries[0].id);
+}
+
+#[test]
+fn entries_are_filtered_and_searched() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    logbook.intend(at(0), &device("GB1"), &intent("field:1", 1, None)).unwrap();
+    logbook.record_status(at(10), &device("GB2"), "08h overheated, 100 % of 5_0").unwrap();
+    let biss = DeviceKey { kind: "biss".into(), ..device("GB1") };
+    logbook.intend(at(20), &biss, &intent("0x6E", 1, None)).unwrap();
+    let found = |filter: EntryFilter| {
+        let entries = logbook.entries(&filter, 10).unwrap();
+        entries.into_iter().map(|entry| entry.at).collect::<Vec<_>>()
+    };
+    let all = EntryFilter::default();
+    assert_eq!(found(all.clone()), [at(20), at(10), at(0)]);
+    assert_eq!(found(EntryFilter { kind: Some("biss".into()), ..all.clone() }), [at(20)]);
+    assert_eq!(found(EntryFilter { serial_number: Some("GB1".into()), ..all.clone() }), [at(20), at(0)]);
+    assert_eq!(found(EntryFilter { since: Some(at(10)), ..all.clone() }), [at(20), at(10)]);
+    let search = |text: &str| found(EntryFilter { search: text.to_owned(), ..all.clone() });
+    assert_eq!(search("OVERHEATED"), [at(10)]);
+    assert_eq!((search("100 %"), search("5_0")), (vec![at(10)], vec![at(10)]), "no character has a special meaning");
+    assert_eq!(search("5%0"), []);
+    assert_eq!(search("gb2"), [at(10)]);
+    assert_eq!(logbook.statuses(&device("GB2"), 10).unwrap().len(), 1);
+    assert_eq!(logbook.history(&device("GB2"), 10).unwrap(), []);
 }

@@ -125,8 +125,12 @@ impl Planned for Prepared {
         device()
     }
 
-    fn note(&self, op: &Op) -> String {
-        op.0.to_string()
+    fn changed_items(&self, op: &Op) -> Vec<ChangedItem> {
+        vec![ChangedItem::new(op.0, None, None)]
+    }
+
+    fn entry_kind(&self) -> EntryKind {
+        EntryKind::Write
     }
 
     fn before_image(&self) -> String {

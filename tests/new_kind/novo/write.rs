@@ -1,7 +1,7 @@
 //! Writing a plan into a Novo encoder.
 
-use encoder_studio::profile::{Body, Confirmed, DeviceError, Write, Written};
-use encoder_studio::store::DeviceKey;
+use encoder_studio::profile::{Body, ChangedItem, Confirmed, DeviceError, Write, Written};
+use encoder_studio::store::{DeviceKey, EntryKind};
 use encoder_studio::worker::SessionContext;
 use encoder_studio::worker::commit::{PlanHead, Planned, backup_of};
 
@@ -57,8 +57,11 @@ impl Planned for Prepared {
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(self.serial, is_virtual)
     }
-    fn note(&self, op: &Op) -> String {
-        op.name().to_owned()
+    fn changed_items(&self, op: &Op) -> Vec<ChangedItem> {
+        vec![ChangedItem::new(op.name(), None, None)]
+    }
+    fn entry_kind(&self) -> EntryKind {
+        EntryKind::Write
     }
     fn before_image(&self) -> String {
         let (serial, values) = self.plan.base;

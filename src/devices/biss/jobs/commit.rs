@@ -4,8 +4,8 @@ use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WE
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWrite;
 use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
-use crate::profile::{Body, Unknown};
-use crate::store::DeviceKey;
+use crate::profile::{Body, ChangedItem, Unknown};
+use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{Progress, SessionContext};
 
@@ -51,8 +51,12 @@ impl Planned for Prepared {
         device_key(&self.identity, is_virtual)
     }
 
-    fn note(&self, op: &Op) -> String {
-        op.note(&self.identity.description)
+    fn changed_items(&self, op: &Op) -> Vec<ChangedItem> {
+        op.changed_items(&self.identity.description)
+    }
+
+    fn entry_kind(&self) -> EntryKind {
+        self.kind.entry_kind()
     }
 
     fn before_image(&self) -> String {

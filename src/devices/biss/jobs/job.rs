@@ -15,7 +15,7 @@ use crate::devices::biss::profile::{
     RestoreOptions,
 };
 use crate::devices::biss::protocol::{Area, DeviceMode, KIND, PositionFilter, PresetValue, RegisterAddress};
-use crate::store::{DeviceKey, StoreError};
+use crate::store::{DeviceKey, EntryKind, StoreError};
 use crate::worker::commit::{ApprovedPlan, wear};
 
 /// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
@@ -87,6 +87,18 @@ pub enum ChangeKind {
     Filter,
     /// Storing a preset value, setting the position to it, or both.
     Preset,
+}
+
+impl ChangeKind {
+    /// Returns the kind of the logbook entry.
+    pub const fn entry_kind(self) -> EntryKind {
+        match self {
+            ChangeKind::Restore => EntryKind::Restore,
+            ChangeKind::Bytes | ChangeKind::Filter => EntryKind::Write,
+            ChangeKind::Guided | ChangeKind::Calibration | ChangeKind::WiegandTest => EntryKind::Procedure,
+            ChangeKind::Preset => EntryKind::Preset,
+        }
+    }
 }
 
 impl Change {

@@ -1,50 +1,52 @@
-//! One-line summary of an operation for the logbook. It lists registers by address and name, with old and new values.
-//! It uses the terms of the manual in every language of the window.
+//! Changes of an operation for the logbook. Registers have an address and the name of the manual, in every language of
+//! the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
 use crate::devices::biss::protocol::{Description, PositionFilter, PresetValue};
+use crate::profile::ChangedItem;
 
 impl Op {
-    /// Returns a description of the changes with old and new values. If many registers change, only the first are
-    /// listed. The backup contains all of them.
-    pub fn note(&self, description: &Description) -> String {
-        match self {
+    /// Returns the changed items with their old and new values. Consecutive registers are one item.
+    pub fn changed_items(&self, description: &Description) -> Vec<ChangedItem> {
+        let byte = |byte: u8| format!("{byte:02X}");
+        vec![match self {
             Op::StoreData { area, registers } => {
-                let ranges = RegisterRange::runs(registers.iter().map(|change| change.address));
-                let shown = ranges.iter().take(RUNS).map(|range| run(*range, area.name.english(), registers));
-                let left = ranges.len().saturating_sub(RUNS);
-                let rest = (left > 0).then(|| format!("further runs: {left}"));
-                shown.chain(rest).collect::<Vec<_>>().join(", ")
+                let ranges = RegisterRange::runs(registers.iter().map(|change| change.address)).into_iter();
+                return ranges.map(|range| range_item(range, registers).named(area.name.english())).collect();
             }
-            Op::StorePreset { from, to } => format!("{} preset value: {} → {}", self.item(), place(*from), place(*to)),
-            Op::FirePreset { parts, value } => match parts {
-                PresetParts::Both => format!("position: → {}", place(*value)),
-                PresetParts::Singleturn => format!("position: → step {}", value.singleturn()),
-                PresetParts::Multiturn => format!("position: → turn {}", value.multiturn()),
-            },
-            Op::SelectFilter { from, to } => format!("{} filter: {} → {}", self.item(), filter(*from), filter(*to)),
-            Op::Calibrate | Op::WiegandTest { save: false } => self.item(),
-            Op::WiegandTest { save: true } => format!("{}: → result saved", self.item()),
+            Op::StorePreset { from, to } => {
+                ChangedItem::new(self.item(), Some(place(*from)), Some(place(*to))).named("preset value")
+            }
+            Op::FirePreset { parts, value } => ChangedItem::set(
+                "position",
+                match parts {
+                    PresetParts::Both => place(*value),
+                    PresetParts::Singleturn => format!("step {}", value.singleturn()),
+                    PresetParts::Multiturn => format!("turn {}", value.multiturn()),
+                },
+            ),
+            Op::SelectFilter { from, to } => {
+                let [old, new] = [from, to].map(|own| Some(filter(*own).to_owned()));
+                ChangedItem::new(self.item(), old, new).named("filter")
+            }
+            Op::Calibrate | Op::WiegandTest { save: false } => ChangedItem::new(self.item(), None, None),
+            Op::WiegandTest { save: true } => ChangedItem::set(self.item(), "result saved"),
             Op::WriteRegister { address, old, new, .. } => {
-                let name = description.at(*address).map(|register| format!(" {}", register.name)).unwrap_or_default();
-                let old = old.map(|old| format!(" {old:02X}")).unwrap_or_default();
-                format!("{address}{name}:{old} → {new:02X}")
+                let item = ChangedItem::new(address, old.map(byte), Some(byte(*new)));
+                match description.at(*address) {
+                    Some(register) => item.named(&register.name),
+                    None => item,
+                }
             }
-        }
+        }]
     }
 }
 
-/// Maximum number of ranges listed in a note.
-const RUNS: usize = 8;
-/// Maximum number of registers per range that are listed with their values.
-const VALUES: usize = 8;
-
-fn run(range: RegisterRange, name: &str, registers: &[RegisterChange]) -> String {
-    let own = registers.iter().filter(|change| range.contains(change.address)).take(VALUES);
+fn range_item(range: RegisterRange, registers: &[RegisterChange]) -> ChangedItem {
+    let own = registers.iter().filter(|change| range.contains(change.address));
     let (old, new): (Vec<u8>, Vec<u8>) = own.map(|change| (change.old, change.new)).unzip();
-    let more = if usize::from(range.count()) > VALUES { "…" } else { "" };
-    format!("{range} {name}: {}{more} → {}{more}", hex_compact(&old), hex_compact(&new))
+    ChangedItem::new(range, Some(hex_compact(&old)), Some(hex_compact(&new)))
 }
 
 fn place(value: PresetValue) -> String {
@@ -85,7 +87,7 @@ mod tests {
             ),
             (
                 Op::StoreData { area: area.clone(), registers: (0..9).map(|at| change(at, at)).collect() },
-                format!("0x24:0x00+9 {}: 0000000000000000… → 0001020304050607…", area.name),
+                format!("0x24:0x00+9 {}: 000000000000000000 → 000102030405060708", area.name),
             ),
             (
                 Op::StorePreset { from: zero, to: value },
@@ -104,7 +106,8 @@ mod tests {
             ),
         ];
         for (op, words) in cases {
-            assert_eq!(op.note(&kit), words);
+            let items = op.changed_items(&kit);
+            assert_eq!(items.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "), words);
         }
     }
 }

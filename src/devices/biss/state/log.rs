@@ -24,7 +24,9 @@ impl Encoder {
         let identity = &prepared.identity;
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
             // A run of consecutive registers is represented by the first one only.
-            Op::StoreData { .. } => vec![explain::plain(op.note(&identity.description))],
+            Op::StoreData { .. } => {
+                op.changed_items(&identity.description).iter().map(explain::plain).collect::<Vec<_>>()
+            }
             op => {
                 let OperationTexts { item, changes } = words::op(op, &identity.layout);
                 changes.into_iter().map(|change| operation(&item, change)).collect()

@@ -98,7 +98,10 @@ pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
                     Some(code) => (Json::Null, json!(code)),
                     None => (Json::Null, json!(0)),
                 },
-                Op::Network { .. } => (Json::Null, json!(op.note())),
+                Op::Network { .. } => {
+                    let changes = op.changed_items();
+                    (Json::Null, json!(changes.first().map(ToString::to_string)))
+                }
             };
             json!({"item": op.item(), "old": old, "new": new, "write_cycles": op.write_cycles()})
         })

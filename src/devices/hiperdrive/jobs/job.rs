@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
-use crate::store::DeviceKey;
+use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::wear;
 
 /// Save count above which the user is warned of memory wear. The value is an assumption, since the manual gives no
@@ -68,6 +68,18 @@ pub enum ChangeKind {
     Position,
     Service(Service),
     Network,
+}
+
+impl ChangeKind {
+    /// Returns the kind of the logbook entry.
+    pub const fn entry_kind(self) -> EntryKind {
+        match self {
+            ChangeKind::Restore => EntryKind::Restore,
+            ChangeKind::Edits | ChangeKind::Try | ChangeKind::Network => EntryKind::Write,
+            ChangeKind::Position => EntryKind::Preset,
+            ChangeKind::Service(_) => EntryKind::Procedure,
+        }
+    }
 }
 
 impl Change {

@@ -6,7 +6,7 @@ use super::{Image, Item, NetworkSettings};
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::protocol::drive_parameter::ACKNOWLEDGE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
-use crate::profile::{Operation, Plan};
+use crate::profile::{ChangedItem, Operation, Plan};
 
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
@@ -145,22 +145,30 @@ impl Op {
         }
     }
 
-    /// Returns the old and new values of the changes as one line for the logbook. The terms are those of the manual in
+    /// Returns the changed items with their old and new values, for the logbook. The terms are those of the manual in
     /// every window language.
-    pub fn note(&self) -> String {
-        match self {
-            Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),
-            Op::Write { number, old: None, new } => format!("{}: → {new}", Item(*number)),
-            Op::Service(service) => match service {
-                Service::Save => "47 = 1: saved".to_owned(),
-                Service::Recall => "47 = -2: own parameters of the device as saved last".to_owned(),
-                Service::Factory => "47 = -1: own parameters of the device from the factory, not saved".to_owned(),
-                Service::FactoryAll => "47 = -3: from the factory with the address by DHCP, saved".to_owned(),
-                Service::Reset => "47 = -4: presence test and reset of the drives".to_owned(),
-                Service::Acknowledge(drive) => format!("drive {}: fault acknowledged", drive.get()),
-            },
-            Op::Network { from, to } => format!("network: {} → {}", network_change_note(from), network_change_note(to)),
-        }
+    pub fn changed_items(&self) -> Vec<ChangedItem> {
+        let text = |value: &i64| value.to_string();
+        let name = |number: ParameterNumber| number.row().map(|row| row.name).unwrap_or_default();
+        let service = |code: i16, words: &str| {
+            ChangedItem::set(ParameterNumber::SAVE, format!("{code} ({words})")).named(name(ParameterNumber::SAVE))
+        };
+        vec![match self {
+            Op::Write { number, old, new } => {
+                ChangedItem::new(Item(*number), old.as_ref().map(text), Some(text(new))).named(name(*number))
+            }
+            Op::Service(Service::Save) => service(1, "saved"),
+            Op::Service(Service::Recall) => service(-2, "own parameters of the device as saved last"),
+            Op::Service(Service::Factory) => service(-1, "own parameters of the device from the factory, not saved"),
+            Op::Service(Service::FactoryAll) => service(-3, "from the factory with the address by DHCP, saved"),
+            Op::Service(Service::Reset) => service(-4, "presence test and reset of the drives"),
+            Op::Service(Service::Acknowledge(drive)) => {
+                ChangedItem::new(self.item(), None, None).named(format!("fault of drive {} acknowledged", drive.get()))
+            }
+            Op::Network { from, to } => {
+                ChangedItem::new("network", Some(network_change_note(from)), Some(network_change_note(to)))
+            }
+        }]
     }
 }
 

@@ -5,8 +5,8 @@ use crate::devices::hiperface::procedures::write::EncoderWrite;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
 use crate::devices::hiperface::profile::{Base, Op, Recorded, SingleValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
-use crate::profile::Body;
-use crate::store::DeviceKey;
+use crate::profile::{Body, ChangedItem};
+use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{Progress, SessionContext};
 
@@ -39,8 +39,15 @@ impl Planned for Prepared {
         device_key(&self.identity, is_virtual)
     }
 
-    fn note(&self, op: &Op) -> String {
-        op.item().to_string()
+    fn changed_items(&self, op: &Op) -> Vec<ChangedItem> {
+        vec![op.changed_item()]
+    }
+
+    fn entry_kind(&self) -> EntryKind {
+        match self.plan.ops.as_slice() {
+            [Op::SetPosition { .. }] => EntryKind::Preset,
+            _ => self.kind.entry_kind(),
+        }
     }
 
     fn before_image(&self) -> String {

@@ -15,6 +15,7 @@ use crate::devices::hiperface::profile::{
 use crate::devices::hiperface::protocol::{
     AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
+use crate::store::EntryKind;
 
 /// Number of persistent writes that an encoder endures. According to the manual, its counter, which is in the same
 /// EEPROM, can be incremented about a million times.
@@ -113,6 +114,16 @@ pub enum ChangeKind {
     Bytes,
     /// A single operation, which is done either completely or not at all.
     Single,
+}
+
+impl ChangeKind {
+    /// Returns the kind of the logbook entry.
+    pub const fn entry_kind(self) -> EntryKind {
+        match self {
+            ChangeKind::Restore => EntryKind::Restore,
+            ChangeKind::Bytes | ChangeKind::Single => EntryKind::Write,
+        }
+    }
 }
 
 impl Change {

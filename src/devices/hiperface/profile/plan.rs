@@ -2,8 +2,9 @@
 
 use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
+use crate::bits::hex_compact;
 use crate::devices::hiperface::protocol::{AccessCode, AccessCodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
-use crate::profile::{Operation, Plan};
+use crate::profile::{ChangedItem, Operation, Plan};
 
 /// Planned write to a HIPERFACE encoder.
 pub type HiperfacePlan = Plan<Base, Op>;
@@ -121,6 +122,24 @@ impl Op {
             Op::Configure { .. } => Item::Settings,
             Op::ClearCounter { .. } | Op::IncrementCounter { .. } => Item::Counter,
         })
+    }
+
+    /// Returns the changed item with its old and new value, for the logbook. A field status and line settings are bytes.
+    /// An access code has no value.
+    pub fn changed_item(&self) -> ChangedItem {
+        let byte = |byte: u8| Some(format!("{byte:02X}"));
+        let number = |number: u32| Some(number.to_string());
+        let (old, new) = match self {
+            Op::Define { from, to, .. } => (from.and_then(|from| byte(from.byte())), byte(to.byte())),
+            Op::Store { old, new, .. } => (old.as_deref().map(hex_compact), Some(hex_compact(new))),
+            Op::ChangeCode { .. } => (None, None),
+            Op::SetPosition { from, to, .. } => (number(*from), number(*to)),
+            Op::SetAddress { from, to } => (byte(*from), byte(to.byte())),
+            Op::Configure { from, to } => (byte(from.byte()), byte(to.byte())),
+            Op::ClearCounter { from } => (number(*from), number(0)),
+            Op::IncrementCounter { from } => (number(*from), number(from.saturating_add(1))),
+        };
+        ChangedItem::new(self.item(), old, new)
     }
 
     /// Returns the number of changes as in a comparison, in which each byte of a data field counts.

@@ -6,8 +6,8 @@ use super::{
 };
 use crate::devices::interbus::procedures::write::EncoderWrite;
 use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, Recorded};
-use crate::profile::Body;
-use crate::store::DeviceKey;
+use crate::profile::{Body, ChangedItem};
+use crate::store::{DeviceKey, EntryKind};
 use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
@@ -40,8 +40,12 @@ impl Planned for Prepared {
         device_key(&self.identity, is_virtual)
     }
 
-    fn note(&self, op: &Op) -> String {
-        op.note()
+    fn changed_items(&self, op: &Op) -> Vec<ChangedItem> {
+        op.changed_items()
+    }
+
+    fn entry_kind(&self) -> EntryKind {
+        self.kind.entry_kind()
     }
 
     fn before_image(&self) -> String {

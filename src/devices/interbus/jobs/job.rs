@@ -11,7 +11,7 @@ use crate::devices::interbus::profile::{
 use crate::devices::interbus::protocol::{
     GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOutNumber, StartupMode, Value, WindowShift,
 };
-use crate::store::DeviceKey;
+use crate::store::{DeviceKey, EntryKind};
 
 /// Number of stores from which the user is warned of wear. The EEPROM is designed for about 200 and at most 500. See
 /// reference 3.
@@ -87,6 +87,18 @@ pub enum ChangeKind {
     Edits,
     Preset,
     Default,
+}
+
+impl ChangeKind {
+    /// Returns the kind of the logbook entry.
+    pub const fn entry_kind(self) -> EntryKind {
+        match self {
+            ChangeKind::Restore => EntryKind::Restore,
+            ChangeKind::Edits => EntryKind::Write,
+            ChangeKind::Preset => EntryKind::Preset,
+            ChangeKind::Default => EntryKind::Procedure,
+        }
+    }
 }
 
 impl Change {

@@ -7,7 +7,8 @@ use jiff::Timestamp;
 
 use crate::devices::interbus::procedures::{Journal, ModeSwitch};
 use crate::devices::interbus::protocol::{KIND, StartupMode, Value};
-use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, Store};
+use crate::profile::ChangedItem;
+use crate::store::{DeviceKey, Drafts, EntryId, EntryKind, Intent, Logbook, LogbookError, Outcome, Store};
 
 use super::job::key_of;
 
@@ -41,7 +42,9 @@ impl Notes {
 
     fn intend(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
         let mut logbook = Logbook::open(&self.store.logbook_path())?;
-        let entry = logbook.intend(Timestamp::now(), &self.key(serial_number), WHAT, stores, None)?;
+        let items = vec![ChangedItem::new(WHAT, None, None)];
+        let intent = Intent { kind: EntryKind::Procedure, items, planned_cycles: stores, backup: None };
+        let entry = logbook.intend(Timestamp::now(), &self.key(serial_number), &intent)?;
         Ok((logbook, entry))
     }
 }

@@ -1,8 +1,9 @@
-//! Summary of an operation for the logbook, in one line with the old and new values. It uses the terms of the manual
-//! regardless of the language of the window.
+//! Changes of an operation for the logbook, with old and new values. They use the terms of the manual regardless of the
+//! language of the window.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;
+use crate::profile::ChangedItem;
 
 /// A single change within an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,14 +17,14 @@ pub struct ChangeStep {
 }
 
 impl Op {
-    /// Returns a single line with the old and new values of the changes.
-    pub fn note(&self) -> String {
+    /// Returns the changed items with their old and new values.
+    pub fn changed_items(&self) -> Vec<ChangedItem> {
         match self {
-            Op::FirePreset { value } => format!("position: → {value}"),
-            Op::Default => "default: all parameters as delivered".to_owned(),
+            Op::FirePreset { value } => vec![ChangedItem::set("position", value)],
+            Op::Default => vec![ChangedItem::set("default", "all parameters as delivered")],
             op => {
                 let steps = op.steps().into_iter();
-                steps.map(|step| format!("{}: {} → {}", step.name, step.from, step.to)).collect::<Vec<_>>().join(", ")
+                steps.map(|step| ChangedItem::new(step.name, Some(step.from), Some(step.to))).collect()
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Profiles for tests.
 
-use super::{Direction, Image, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
+use super::{Direction, Image, InterbusProfile, Item, ItemValue, Op, Parameters, ProfileIdentity, Recorded};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
 };
@@ -66,4 +66,9 @@ pub(super) fn profile(serial_number: &str) -> InterbusProfile {
         unknown: Default::default(),
     };
     InterbusProfile::of(identity(serial_number), image(), recorded)
+}
+
+/// Returns the changes of an operation as the logbook describes them.
+pub(super) fn note(op: &Op) -> String {
+    op.changed_items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

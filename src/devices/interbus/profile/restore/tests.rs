@@ -1,6 +1,6 @@
 //! What a restore writes, leaves and refuses; what a comparison names.
 
-use super::super::test_profiles::{edges, identity, image, profile, value, with};
+use super::super::test_profiles::{edges, identity, image, note, profile, value, with};
 use super::super::{Base, ItemValue, Op};
 use super::*;
 use crate::devices::interbus::protocol::{Flags, WindowShift};
@@ -15,7 +15,7 @@ fn device(serial_number: &str, items: &[(&str, ItemValue)]) -> DeviceState {
 }
 
 fn operations(restore: &Restore) -> Vec<String> {
-    restore.plan.ops.iter().map(Op::note).collect()
+    restore.plan.ops.iter().map(note).collect()
 }
 
 #[test]

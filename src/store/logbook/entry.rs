@@ -1,0 +1,171 @@
+//! Entries of the logbook.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+
+use crate::profile::ChangedItem;
+
+/// The device to which an entry belongs.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct DeviceKey {
+    /// Kind of device, such as `hiperface`.
+    pub kind: String,
+    /// Type of the device as written in its manual, such as `37h`. Serial numbers are unique only within a type.
+    pub device_type: String,
+    pub serial_number: String,
+    /// Whether the device is simulated. Simulated and real devices are counted separately.
+    pub is_virtual: bool,
+}
+
+impl DeviceKey {
+    pub fn of(kind: &str, device_type: &str, serial_number: &str, is_virtual: bool) -> Self {
+        let [kind, device_type, serial_number] = [kind, device_type, serial_number].map(str::to_owned);
+        DeviceKey { kind, device_type, serial_number, is_virtual }
+    }
+}
+
+/// Number of an entry in the logbook of this computer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EntryId(pub(super) i64);
+
+impl fmt::Display for EntryId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// What an entry reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EntryKind {
+    /// Status codes were read, which may have cleared them in the device.
+    Status,
+    /// Single values were written.
+    Write,
+    /// A profile or a backup was restored.
+    Restore,
+    /// The position was set, or a preset was stored or fired.
+    Preset,
+    /// A procedure or a service of the device was carried out, such as a calibration.
+    Procedure,
+}
+
+impl EntryKind {
+    pub const ALL: [EntryKind; 5] =
+        [EntryKind::Status, EntryKind::Write, EntryKind::Restore, EntryKind::Preset, EntryKind::Procedure];
+
+    /// Returns the word in the file and on the command line.
+    pub const fn word(self) -> &'static str {
+        match self {
+            EntryKind::Status => "status",
+            EntryKind::Write => "write",
+            EntryKind::Restore => "restore",
+            EntryKind::Preset => "preset",
+            EntryKind::Procedure => "procedure",
+        }
+    }
+
+    pub(super) fn parse(word: &str) -> Option<Self> {
+        EntryKind::ALL.into_iter().find(|kind| kind.word() == word)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Done,
+    Failed(String),
+    Cancelled,
+}
+
+impl Outcome {
+    /// Returns the word in the file and on the command line.
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Outcome::Done => "done",
+            Outcome::Failed(_) => "failed",
+            Outcome::Cancelled => "cancelled",
+        }
+    }
+}
+
+/// Computer, user and program version of an entry.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origin {
+    /// Name of the computer. It is empty in entries of versions before 0.2.
+    pub bench: String,
+    /// Name of the user, if known.
+    pub user: Option<String>,
+    /// Version of the program. It is empty in entries of versions before 0.2.
+    pub version: String,
+}
+
+impl Origin {
+    /// Returns the origin of the entries that this process makes.
+    pub fn of_this_process() -> Self {
+        Origin {
+            bench: whoami::hostname().unwrap_or_default(),
+            user: whoami::username().ok().filter(|name| !name.is_empty()),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+}
+
+/// A write that is about to begin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Intent {
+    pub kind: EntryKind,
+    pub items: Vec<ChangedItem>,
+    pub planned_cycles: u64,
+    /// Path of the backup taken before the write.
+    pub backup: Option<PathBuf>,
+}
+
+/// An entry of the logbook with the result of the write, if it has one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Identifier of the entry. Later entries have greater identifiers.
+    pub id: EntryId,
+    pub kind: EntryKind,
+    /// Time of the event. For a write, this is the time directly before its first byte.
+    pub at: Timestamp,
+    pub device: DeviceKey,
+    /// Description. For a write, it contains the changed items.
+    pub description: String,
+    /// Changed items. The list is empty in entries of versions before 0.2.
+    pub items: Vec<ChangedItem>,
+    pub planned_cycles: u64,
+    /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.
+    pub backup: Option<PathBuf>,
+    pub origin: Origin,
+    /// Result of the write. `None` means that the write is still running or that the program died during the write.
+    pub conclusion: Option<WriteResult>,
+}
+
+impl Entry {
+    /// Returns the write cycles spent. A write without a result counts with its planned cycles, because the program may
+    /// have died after the last byte.
+    pub fn cycles(&self) -> u64 {
+        self.conclusion.as_ref().map_or(self.planned_cycles, |end| end.cycles_spent)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WriteResult {
+    pub at: Timestamp,
+    pub outcome: Outcome,
+    /// Number of write cycles spent. A write that failed half-way counts as well.
+    pub cycles_spent: u64,
+}
+
+/// Selection of entries.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EntryFilter {
+    /// Kind of device.
+    pub kind: Option<String>,
+    pub serial_number: Option<String>,
+    /// Time of the oldest entry.
+    pub since: Option<Timestamp>,
+    /// Text contained in the description, the device, the user or the bench. Upper and lower case of ASCII are equal.
+    pub search: String,
+}

@@ -1,0 +1,105 @@
+//! Reading of the logbook.
+
+use std::path::PathBuf;
+
+use rusqlite::types::Type;
+use rusqlite::{Connection, Params, Row, named_params};
+
+use super::entry::{DeviceKey, Entry, EntryFilter, EntryId, EntryKind, Origin, Outcome, WriteResult};
+use super::schema;
+use crate::profile::ChangedItem;
+
+const COLUMNS: &str = "id, event.at AS at, what, kind, device_type, serial_number, is_virtual, description, items,
+    planned_cycles, backup, bench, user, version, result.at AS concluded_at, outcome, failure, cycles_spent
+    FROM event LEFT JOIN result ON result.event = event.uid";
+
+/// Returns the last `limit` entries that match the filter, newest first.
+pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    // `instr` takes any character as it is, unlike LIKE.
+    let condition = "(:kind IS NULL OR kind = :kind)
+        AND (:serial_number IS NULL OR serial_number = :serial_number)
+        AND (:since IS NULL OR event.at >= :since)
+        AND (:search = '' OR instr(lower(description || char(10) || kind || char(10) || device_type || char(10)
+            || serial_number || char(10) || coalesce(user, '') || char(10) || bench), lower(:search)))";
+    let parameters = named_params! {
+        ":kind": filter.kind,
+        ":serial_number": filter.serial_number,
+        ":since": filter.since.map(|since| since.to_string()),
+        ":search": filter.search.trim(),
+        ":limit": limit,
+    };
+    select(database, condition, ":limit", parameters)
+}
+
+pub(super) fn writes(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    of_device(database, device, "what <> 'status'", limit)
+}
+
+pub(super) fn statuses(database: &Connection, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    of_device(database, device, "what = 'status'", limit)
+}
+
+fn of_device(database: &Connection, device: &DeviceKey, which: &str, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+    let condition = format!("kind = ?1 AND serial_number = ?2 AND device_type = ?3 AND is_virtual = ?4 AND {which}");
+    let key = (&device.kind, &device.serial_number, &device.device_type, device.is_virtual, limit);
+    select(database, &condition, "?5", key)
+}
+
+fn select(
+    database: &Connection,
+    condition: &str,
+    limit: &str,
+    parameters: impl Params,
+) -> rusqlite::Result<Vec<Entry>> {
+    let sql = format!("SELECT {COLUMNS} WHERE {condition} ORDER BY id DESC LIMIT {limit}");
+    database.prepare(&sql)?.query_map(parameters, read_entry)?.collect()
+}
+
+/// Returns the items as JSON.
+pub(super) fn items_json(items: &[ChangedItem]) -> String {
+    // Strings and options always have a JSON form.
+    serde_json::to_string(items).unwrap_or_else(|_| "[]".to_owned())
+}
+
+fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
+    Ok(Entry {
+        id: EntryId(row.get("id")?),
+        kind: row.get("what").and_then(|word: String| {
+            EntryKind::parse(&word).ok_or_else(|| invalid(format!("{word:?} is not a kind of entry").into()))
+        })?,
+        at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
+        device: DeviceKey {
+            kind: row.get("kind")?,
+            device_type: row.get("device_type")?,
+            serial_number: row.get("serial_number")?,
+            is_virtual: row.get("is_virtual")?,
+        },
+        description: row.get("description")?,
+        items: row
+            .get("items")
+            .and_then(|text: String| serde_json::from_str(&text).map_err(|error| invalid(Box::new(error))))?,
+        planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
+        backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
+        origin: Origin { bench: row.get("bench")?, user: row.get("user")?, version: row.get("version")? },
+        conclusion: read_conclusion(row)?,
+    })
+}
+
+fn invalid(why: Box<dyn std::error::Error + Send + Sync>) -> rusqlite::Error {
+    rusqlite::Error::FromSqlConversionFailure(0, Type::Text, why)
+}
+
+fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<WriteResult>> {
+    let Some(at) = row.get::<_, Option<String>>("concluded_at")? else { return Ok(None) };
+    let outcome = match row.get::<_, String>("outcome")?.as_str() {
+        "done" => Outcome::Done,
+        "cancelled" => Outcome::Cancelled,
+        // The schema allows no other word.
+        _ => Outcome::Failed(row.get::<_, Option<String>>("failure")?.unwrap_or_default()),
+    };
+    Ok(Some(WriteResult {
+        at: schema::parse_time(&at)?,
+        outcome,
+        cycles_spent: row.get("cycles_spent").and_then(schema::parse_cycles)?,
+    }))
+}
