@@ -7,6 +7,7 @@ mod decode;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use jiff::Timestamp;
 
 pub use act::ActionArgs;
 pub(super) use build::{Arguments, ParsedCommand, parse_arguments};
@@ -93,6 +94,8 @@ pub enum Command {
     Do(ActionArgs),
     /// Explain captured bytes without a device.
     Decode(DecodeArgs),
+    /// Print the logbook, newest first: what was written to which device, and the status codes that were read.
+    Log(LogArgs),
     /// Serve a virtual device on a pseudo-terminal or a TCP port.
     Simulate(SimulateArgs),
 }
@@ -216,6 +219,25 @@ pub struct ConsentArgs {
     /// Write even if the device is worn or its write cycles are unknown.
     #[arg(long)]
     pub force_wear: bool,
+}
+
+#[derive(Args)]
+pub struct LogArgs {
+    /// Only this kind of device.
+    #[arg(long)]
+    pub(super) device: Option<String>,
+    /// Only this serial number.
+    #[arg(long, value_name = "SN")]
+    pub(super) serial_number: Option<String>,
+    /// Only entries since a date, such as 2026-11-27, or a time, such as 2026-11-27T14:30:00+01:00.
+    #[arg(long, value_name = "DATE", value_parser = super::log::parse_date)]
+    pub(super) since: Option<Timestamp>,
+    /// Only entries that contain this text.
+    #[arg(long, value_name = "TEXT")]
+    pub(super) search: Option<String>,
+    /// Maximum number of entries.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub(super) limit: u32,
 }
 
 #[derive(Args)]

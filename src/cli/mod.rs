@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod commands;
 pub(crate) mod consent;
 pub(crate) mod decode;
+mod log;
 pub(crate) mod number;
 pub(crate) mod output;
 pub mod plan;
@@ -146,6 +147,7 @@ fn call(common: &CommonArgs, called: ParsedCommand, output: &Output) -> Result {
 fn dispatch(common: &CommonArgs, command: &Command, output: &Output) -> Result {
     let (id, chosen, own) = match command {
         Command::Ports => return ports::ports(output),
+        Command::Log(log) => return log::log(output, log),
         Command::Diff(diff) => return profiles::diff(common, output, diff),
         Command::Verify(verify) => return profiles::verify(common, output, &verify.file),
         Command::Restore(restore) => return profiles::restore(common, output, restore),

@@ -38,6 +38,10 @@ impl Output {
         Output { json: false, formats: self.formats, commands: self.commands }
     }
 
+    pub(super) fn is_json(&self) -> bool {
+        self.json
+    }
+
     pub(super) fn formats(&self) -> ProfileFormats {
         self.formats
     }

@@ -18,6 +18,7 @@ mod cli_bad_input;
 mod cli_codes;
 mod cli_consent;
 mod cli_faults;
+mod cli_log;
 mod cli_offline;
 mod cli_ports;
 mod cli_position;

@@ -58,6 +58,9 @@ pub(crate) fn command(commands: Commands) -> clap::Command {
     let extended = CommandId::ALL
         .into_iter()
         .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| extended(command, id, commands)));
+    // The entries are about devices, so the names are those of a command for any device.
+    let names = names(CommandId::Identify, commands);
+    let extended = extended.mut_subcommand("log", |log| log.mut_arg("device", |device| device.value_parser(names)));
     extended.subcommands(commands.own().map(|own| own.command()))
 }
 

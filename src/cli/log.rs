@@ -1,0 +1,111 @@
+//! `log`: the logbook of this computer.
+
+use jiff::Timestamp;
+use jiff::civil::Date;
+use jiff::tz::TimeZone;
+use serde_json::{Value as Json, json};
+
+use super::args::LogArgs;
+use super::output::{Output, count};
+use super::runner::failed;
+use super::{Done, Failure, Result};
+use crate::app::explain;
+use crate::store::{Entry, EntryFilter, Logbook, Outcome, Store};
+
+/// Parses a time with its offset, or a date, which begins at midnight of the system's time zone.
+pub(super) fn parse_date(text: &str) -> std::result::Result<Timestamp, String> {
+    let midnight = |date: Date| Some(date.to_zoned(TimeZone::system()).ok()?.timestamp());
+    let date = || text.parse().ok().and_then(midnight);
+    text.parse().ok().or_else(date).ok_or_else(|| "enter a date such as 2026-11-27".to_owned())
+}
+
+pub(super) fn log(output: &Output, arguments: &LogArgs) -> Result {
+    let LogArgs { device, serial_number, since, search, limit } = arguments;
+    let filter = EntryFilter {
+        kind: device.clone(),
+        serial_number: serial_number.clone(),
+        since: *since,
+        search: search.clone().unwrap_or_default(),
+    };
+    let entries = entries(&filter, *limit)?;
+    if entries.is_empty() && !output.is_json() {
+        output.print("no entries\n")?;
+    }
+    for entry in &entries {
+        output.show(&entry_json(entry), &entry_text(entry))?;
+    }
+    Ok(Done::Well)
+}
+
+fn entries(filter: &EntryFilter, limit: u32) -> std::result::Result<Vec<Entry>, Failure> {
+    let path = Store::for_user().map_err(|error| failed(&explain::store(&error)))?.logbook_path();
+    if matches!(path.try_exists(), Ok(false)) {
+        return Ok(Vec::new());
+    }
+    let entries = Logbook::open(&path).and_then(|logbook| logbook.entries(filter, limit));
+    entries.map_err(|error| failed(&explain::logbook_unreadable(&error)))
+}
+
+fn entry_json(entry: &Entry) -> Json {
+    let items: Vec<Json> = entry
+        .items
+        .iter()
+        .map(|item| json!({"item": item.item, "name": item.name, "old": item.old, "new": item.new}))
+        .collect();
+    let outcome = entry.conclusion.as_ref().map(|end| &end.outcome);
+    let failure = match outcome {
+        Some(Outcome::Failed(why)) => Some(why),
+        _ => None,
+    };
+    json!({
+        "entry": entry.id.to_string(),
+        "time": entry.at.to_string(),
+        "device": entry.device.kind,
+        "type": entry.device.device_type,
+        "serial_number": entry.device.serial_number,
+        "virtual": entry.device.is_virtual,
+        "what": entry.kind.word(),
+        "text": entry.description,
+        "items": items,
+        "result": outcome.map(Outcome::word),
+        "failure": failure,
+        "write_cycles": entry.cycles(),
+        "user": entry.origin.user,
+        "bench": entry.origin.bench,
+        "version": entry.origin.version,
+        "backup": entry.backup,
+    })
+}
+
+fn entry_text(entry: &Entry) -> String {
+    let time = entry.at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
+    let device = &entry.device;
+    let virtual_mark = if device.is_virtual { " (virtual)" } else { "" };
+    let mut text = format!(
+        "{time}  {} {} {}{virtual_mark}: {}",
+        device.kind,
+        device.device_type,
+        device.serial_number,
+        entry.kind.word()
+    );
+    if entry.planned_cycles > 0 || entry.conclusion.is_some() {
+        let result = match entry.conclusion.as_ref().map(|end| &end.outcome) {
+            Some(Outcome::Failed(why)) => format!("failed: {why}"),
+            Some(outcome) => outcome.word().to_owned(),
+            None => "without a result".to_owned(),
+        };
+        let cycles = count(usize::try_from(entry.cycles()).unwrap_or(usize::MAX), "write cycle");
+        text.push_str(&format!(", {result}, {cycles}"));
+    }
+    text.push('\n');
+    if entry.items.is_empty() {
+        text.push_str(&format!("    {}\n", entry.description));
+    }
+    for item in &entry.items {
+        text.push_str(&format!("    {item}\n"));
+    }
+    if let Some(backup) = &entry.backup {
+        text.push_str(&format!("    backup: {}\n", backup.display()));
+    }
+    text
+}
