@@ -42,6 +42,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
         viewport: egui::ViewportBuilder::default()
             .with_title("encoder-studio")
             .with_app_id("encoder-studio")
+            .with_icon(icon())
             .with_inner_size([width as f32, height as f32])
             .with_min_inner_size([880.0, 500.0])
             .with_drag_and_drop(true),
@@ -67,6 +68,11 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
         log.wait();
     }
     result
+}
+
+/// Returns the icon of the window. Wayland takes it from the desktop entry of the same name as the app id instead.
+fn icon() -> egui::IconData {
+    eframe::icon_data::from_png_bytes(ICON).unwrap_or_default()
 }
 
 /// The application window, run by eframe.
@@ -99,6 +105,7 @@ impl eframe::App for StudioApp {
     }
 }
 
+const ICON: &[u8] = include_bytes!("../../assets/icon/64.png");
 const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
                           encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
                           find, decode, analyse, simulate, ports (see encoder-studio help).";
