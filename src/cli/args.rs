@@ -1,7 +1,7 @@
 //! Command line arguments for any kind of device.
 
 mod act;
-pub(crate) mod build;
+mod build;
 mod decode;
 
 use std::path::PathBuf;
@@ -10,6 +10,7 @@ use clap::{Args, Parser, Subcommand};
 use jiff::Timestamp;
 
 pub use act::ActionArgs;
+pub use build::command;
 pub(super) use build::{Arguments, ParsedCommand, parse_arguments};
 pub use decode::DecodeArgs;
 pub(crate) use decode::{Direction, DirectionOption};

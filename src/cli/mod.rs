@@ -24,7 +24,7 @@ use args::{Arguments, ParsedCommand};
 
 pub use args::{
     ActionArgs, Command, CommonArgs, ConsentArgs, DecodeArgs, FindArgs, Position, Read, Restore, SaveArgs,
-    SimulateArgs, Status, Write,
+    SimulateArgs, Status, Write, command,
 };
 pub use commands::{CliCommand, CommandId, Commands, DeviceCommands, KindOptions, ProfileCommands, ProtocolDecoder};
 pub use consent::{check_wear, confirm_plan, require_consent};

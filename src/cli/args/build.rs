@@ -48,7 +48,8 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
     Ok(Arguments { common, profile, command })
 }
 
-pub(crate) fn command(commands: Commands) -> clap::Command {
+/// Returns the command line with all commands and options, as the program parses it and its manual describes it.
+pub fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Cli::command(), |front, option| {
         // Several kinds of device may have the same option.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());

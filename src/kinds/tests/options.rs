@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use clap::Arg;
 
-use crate::cli::args::build::command;
+use crate::cli::command;
 use crate::kinds::program;
 
 /// Commands, options and their values without descriptions, on which scripts rely. With `ENCODER_STUDIO_RECORD=1` the
