@@ -2,4 +2,4 @@
 # Prints the version of Cargo.toml, the only place where it is written.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-cargo pkgid --locked --offline | sed 's/.*[#@]//'
+cargo pkgid --locked | sed 's/.*[#@]//'

@@ -74,6 +74,13 @@ for profile in $(find profiles -name '*.ron') Cargo.toml assets/theme.ron; do
 done
 passed "profiles recognised by their content"
 
+completed=$(inside bash -O extglob -c '
+    . /usr/share/bash-completion/completions/encoder-studio
+    COMP_WORDS=(encoder-studio read h) COMP_CWORD=2
+    $(complete -p encoder-studio | sed "s/.*-F \([^ ]*\).*/\1/") encoder-studio h read
+    echo "${COMPREPLY[*]}"')
+[ "$completed" = "hiperface hiperdrive" ] || fail "bash completes: $completed"
+
 "${user[@]}" encoder-studio --version
 "${user[@]}" encoder-studio simulate hiperface --listen 127.0.0.1:0 >"$bare/home/ready" &
 processes+=($!)
