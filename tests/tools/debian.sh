@@ -5,6 +5,8 @@
 #
 #   tests/tools/debian.sh PACKAGE        as root; needs debootstrap, Xvfb and Python 3
 set -euo pipefail
+# debootstrap is in /usr/sbin, which is not in every PATH.
+PATH=$PATH:/usr/sbin
 package=$(realpath "${1:?usage: debian.sh PACKAGE}")
 cd "$(dirname "$0")/../.."
 
