@@ -179,7 +179,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 }
 
 fn read_firmware(text: &str) -> Option<Firmware> {
-    let numbers: Vec<u8> = text.split('.').map(|number| number.parse().ok()).collect::<Option<_>>()?;
+    let numbers: Vec<u8> = text.split('.').map(|number| number.parse::<u8>().ok()).collect::<Option<_>>()?;
     match numbers.as_slice() {
         [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
         _ => None,

@@ -70,7 +70,7 @@ fn within(text: &str, range: RangeInclusive<f64>) -> Option<f64> {
 }
 
 fn firmware(text: &str) -> Option<Firmware> {
-    let numbers: Vec<u8> = text.split('.').map(str::parse).collect::<Result<_, _>>().ok()?;
+    let numbers: Vec<u8> = text.split('.').map(str::parse::<u8>).collect::<Result<_, _>>().ok()?;
     match numbers.as_slice() {
         [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
         _ => None,
