@@ -38,6 +38,20 @@ impl Clock for RealClock {
     }
 }
 
+/// Measures the step of the timer: how long the shortest sleep takes. Windows before version 10 (1803) wakes a thread
+/// only at ticks that are up to 15.6 ms apart.
+pub fn measure_timer_step(clock: &dyn Clock) -> Duration {
+    const SHORT: Duration = Duration::from_millis(1);
+    let sleep = || {
+        let began = clock.now();
+        clock.sleep_until(began + SHORT);
+        clock.now().since(began)
+    };
+    // The first sleep may begin just before a tick. Of the others, the least counts: a busy computer makes some longer.
+    sleep();
+    (0..4).map(|_| sleep()).min().unwrap_or_default()
+}
+
 /// A clock that advances only while a thread waits on it. Waiting an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
@@ -58,6 +72,30 @@ impl Clock for VirtualClock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A clock whose sleeps end at ticks of 15.625 ms.
+    #[derive(Default)]
+    struct Ticking(VirtualClock);
+
+    impl Clock for Ticking {
+        fn now(&self) -> Moment {
+            self.0.now()
+        }
+
+        fn sleep_until(&self, moment: Moment) {
+            let tick = 15_625_000;
+            let ticks = moment.since_start().as_nanos().div_ceil(tick);
+            self.0.sleep_until(Moment::from_elapsed(Duration::from_nanos(u64::try_from(ticks * tick).unwrap())));
+        }
+    }
+
+    #[test]
+    fn the_step_of_a_timer_is_measured() {
+        assert_eq!(measure_timer_step(&VirtualClock::default()), Duration::from_millis(1));
+        let ticking = Ticking::default();
+        ticking.0.sleep_until(Moment::from_elapsed(Duration::from_micros(14_000)));
+        assert_eq!(measure_timer_step(&ticking), Duration::from_micros(15_625));
+    }
 
     #[test]
     fn virtual_time_only_moves_forward() {

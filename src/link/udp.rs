@@ -6,13 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
+use if_addrs::{IfAddr, Ifv4Addr};
 
 use super::{BroadcastChannel, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
-/// Maximum accepted packet length in bytes. Process data are much shorter.
-const LONGEST: usize = 1500;
+/// Length of the longest datagram in bytes. A longer one than the buffer would be cut on Linux, and be an error on Windows.
+const LONGEST: usize = 65_535;
 /// Maximum number of received packets waiting to be read. Further packets are dropped.
 const WAITING: usize = 64;
 /// Maximum time until a receiver thread notices that its channel has been dropped.
@@ -113,7 +114,7 @@ impl UdpChannel {
         let thread = std::thread::Builder::new().name("cyclic packets".to_owned());
         let started = thread.spawn(move || {
             wake_before_others();
-            let mut buffer = [0; LONGEST];
+            let mut buffer = vec![0; LONGEST];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {
                     // Packets from other senders are dropped, and so are packets that the queue cannot hold.
@@ -165,7 +166,12 @@ impl DatagramChannel for UdpChannel {
     }
 
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError> {
-        match self.heard.recv_timeout(until.since(self.clock.now())) {
+        let received = if cfg!(windows) {
+            sleep_for_packet(&self.heard, until, &*self.clock)
+        } else {
+            self.heard.recv_timeout(until.since(self.clock.now()))
+        };
+        match received {
             Ok(packet) => {
                 *into = packet;
                 Ok(true)
@@ -173,6 +179,24 @@ impl DatagramChannel for UdpChannel {
             Err(RecvTimeoutError::Timeout) => Ok(false),
             Err(RecvTimeoutError::Disconnected) => Err(LinkError::new(&self.name, LinkErrorKind::Lost)),
         }
+    }
+}
+
+/// Waits for a packet in short sleeps. On Windows a thread that waits for a channel wakes at the next tick of the system
+/// timer, up to 15.6 ms late, while a sleep uses a timer of high resolution.
+fn sleep_for_packet(heard: &Receiver<Vec<u8>>, until: Moment, clock: &dyn Clock) -> Result<Vec<u8>, RecvTimeoutError> {
+    const SHORT: Duration = Duration::from_millis(1);
+    loop {
+        match heard.try_recv() {
+            Ok(packet) => return Ok(packet),
+            Err(TryRecvError::Disconnected) => return Err(RecvTimeoutError::Disconnected),
+            Err(TryRecvError::Empty) => {}
+        }
+        let now = clock.now();
+        if now >= until {
+            return Err(RecvTimeoutError::Timeout);
+        }
+        clock.sleep_until(until.min(now + SHORT));
     }
 }
 
@@ -217,25 +241,16 @@ impl UdpBroadcast {
 
 /// Returns the broadcast addresses of the directly connected networks, or an empty list if they are unknown.
 fn local_networks() -> Vec<Ipv4Addr> {
-    std::fs::read_to_string("/proc/net/route").map(|table| broadcast_addresses(&table)).unwrap_or_default()
+    let interfaces = if_addrs::get_if_addrs().unwrap_or_default();
+    let addresses = interfaces.into_iter().filter(|own| !own.is_loopback() && !own.is_p2p());
+    addresses.filter_map(|own| if let IfAddr::V4(own) = own.addr { broadcast_address(&own) } else { None }).collect()
 }
 
-/// Returns the broadcast addresses in Linux's routing table. The second column is the destination, the third the
-/// gateway, and the eighth the mask.
-fn broadcast_addresses(table: &str) -> Vec<Ipv4Addr> {
-    let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
-    let mut found = Vec::new();
-    for line in table.lines().skip(1) {
-        let fields: Vec<&str> = line.split_whitespace().collect();
-        let &[_, network, "00000000", _, _, _, _, mask, ..] = fields.as_slice() else { continue };
-        let (Some(network), Some(mask)) = (address(network), address(mask)) else { continue };
-        // A network of one address contains no other device. Mask 0 would yield 255.255.255.255, which is always
-        // included.
-        if mask != 0 && mask != u32::MAX {
-            found.push(Ipv4Addr::from(network | !mask));
-        }
-    }
-    found
+/// Returns the address that all devices of a network listen to, or `None` if the network contains no other device.
+fn broadcast_address(own: &Ifv4Addr) -> Option<Ipv4Addr> {
+    let mask = own.netmask.to_bits();
+    // Mask 0 would yield 255.255.255.255, which is always included.
+    (mask != 0 && mask != u32::MAX).then(|| Ipv4Addr::from_bits(own.ip.to_bits() | !mask))
 }
 
 impl BroadcastChannel for UdpBroadcast {
@@ -255,7 +270,7 @@ impl BroadcastChannel for UdpBroadcast {
     }
 
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
-        let mut buffer = [0; LONGEST];
+        let mut buffer = vec![0; LONGEST];
         loop {
             let left = until.since(self.clock.now());
             if left.is_zero() {
@@ -346,12 +361,37 @@ mod tests {
     }
 
     #[test]
-    fn networks_are_read_from_the_routing_table() {
-        let table = "Iface\tDestination\tGateway \tFlags\tRefCnt\tUse\tMetric\tMask\t\tMTU\tWindow\tIRTT\n\
-            eth0\t00000000\t0101A8C0\t0003\t0\t0\t100\t00000000\t0\t0\t0\n\
-            eth0\t0001A8C0\t00000000\t0001\t0\t0\t100\t00FFFFFF\t0\t0\t0\n\
-            eth1\t0000100A\t00000000\t0001\t0\t0\t101\t0000F0FF\t0\t0\t0\n\
-            tun0\t0100070A\t00000000\t0005\t0\t0\t50\tFFFFFFFF\t0\t0\t0\nbroken\n";
-        assert_eq!(broadcast_addresses(table), [Ipv4Addr::new(192, 168, 1, 255), Ipv4Addr::new(10, 31, 255, 255)]);
+    fn a_network_is_asked_at_its_last_address() {
+        let of = |ip: [u8; 4], mask: [u8; 4]| {
+            broadcast_address(&Ifv4Addr { ip: ip.into(), netmask: mask.into(), prefixlen: 0, broadcast: None })
+        };
+        assert_eq!(of([192, 168, 1, 7], [255, 255, 255, 0]), Some(Ipv4Addr::new(192, 168, 1, 255)));
+        assert_eq!(of([10, 17, 3, 4], [255, 240, 0, 0]), Some(Ipv4Addr::new(10, 31, 255, 255)));
+        assert_eq!(of([10, 7, 0, 1], [255, 255, 255, 255]), None);
+        assert_eq!(of([10, 7, 0, 1], [0, 0, 0, 0]), None);
+    }
+
+    #[test]
+    fn long_datagrams_are_received_whole() {
+        let (target, mut packets, clock) = pair();
+        let long = vec![7; 9000];
+        target.send_to(&long, ("127.0.0.1", packets.port())).unwrap();
+        let mut heard = Vec::new();
+        assert!(packets.receive(clock.now() + Duration::from_secs(5), &mut heard).unwrap());
+        assert_eq!(heard, long);
+    }
+
+    #[test]
+    fn a_wait_in_short_sleeps_ends_with_a_packet_or_at_its_end() {
+        let (sender, heard) = bounded(1);
+        let clock = RealClock::start();
+        let until = clock.now() + Duration::from_millis(5);
+        assert_eq!(sleep_for_packet(&heard, until, &clock), Err(RecvTimeoutError::Timeout));
+        assert!(clock.now() >= until);
+        sender.send(b"in".to_vec()).unwrap();
+        assert_eq!(sleep_for_packet(&heard, until, &clock), Ok(b"in".to_vec()), "also when the time is over");
+        drop(sender);
+        let later = clock.now() + Duration::from_secs(5);
+        assert_eq!(sleep_for_packet(&heard, later, &clock), Err(RecvTimeoutError::Disconnected));
     }
 }
