@@ -22,14 +22,14 @@ mod url;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-pub use clock::{Clock, RealClock, VirtualClock};
+pub use clock::{Clock, RealClock, VirtualClock, measure_timer_step};
 pub use datagram::{BroadcastChannel, DatagramChannel, DatagramPort};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
 pub use realtime_priority::wake_before_others;
 pub use replay::ReplayLink;
 pub use replies::ReplyTimes;
-pub use serial::{PortInfo, SerialLink, ports};
+pub use serial::{PORT_EXAMPLE, PortInfo, SerialLink, ports};
 pub use sim::{SimLink, SimPort};
 pub use tcp::TcpLink;
 pub use trace::{

@@ -10,6 +10,23 @@ use serialport::{ClearBuffer, SerialPort, SerialPortBuilder, SerialPortType};
 use super::{ByteLink, Clock, LinkError, LinkErrorKind};
 use crate::units::{CharacterFormat, Moment, Parity};
 
+/// Example of a port and of links to it.
+pub struct PortExample {
+    /// Name of the port.
+    pub port: &'static str,
+    /// Link to a device at the port.
+    pub serial: &'static str,
+    /// Link to an adapter at the port.
+    pub bridge: &'static str,
+}
+
+/// Example for entries, with a name as this system gives it.
+pub const PORT_EXAMPLE: PortExample = if cfg!(windows) {
+    PortExample { port: "COM3", serial: "serial:COM3", bridge: "bridge:COM3" }
+} else {
+    PortExample { port: "/dev/ttyUSB0", serial: "serial:/dev/ttyUSB0", bridge: "bridge:/dev/ttyUSB0" }
+};
+
 /// A serial port of this computer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortInfo {
@@ -44,8 +61,14 @@ pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
             PortInfo { path: port.port_name, description, serial_number }
         })
         .collect();
-    ports.sort_by(|a, b| a.path.cmp(&b.path));
+    ports.sort_by(|a, b| number_last(&a.path).cmp(&number_last(&b.path)));
     Ok(ports)
+}
+
+/// Splits the name of a port before its number, so that `COM3` comes before `COM10`.
+fn number_last(path: &str) -> (&str, u64, &str) {
+    let name = path.trim_end_matches(|c: char| c.is_ascii_digit());
+    (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)
 }
 
 /// An open serial port.
@@ -242,10 +265,18 @@ mod platform {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[test]
+    fn ports_are_ordered_by_their_number() {
+        let mut ports = ["COM10", "/dev/ttyUSB10", "COM3", "/dev/ttyUSB2", "/dev/ttyS0", "COM"];
+        ports.sort_by_key(|path| number_last(path));
+        assert_eq!(ports, ["/dev/ttyS0", "/dev/ttyUSB2", "/dev/ttyUSB10", "COM", "COM3", "COM10"]);
+    }
+
+    #[cfg(unix)]
     #[test]
     fn every_open_failure_has_a_distinct_kind() {
         let error = |kind| serialport::Error::new(kind, "words of the system");

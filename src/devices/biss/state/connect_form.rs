@@ -16,7 +16,7 @@ use crate::devices::biss::procedures::{
 };
 use crate::devices::biss::sim;
 use crate::kinds::attachable_kinds;
-use crate::link::{LinkScheme, LinkUrl};
+use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE};
 use crate::parameter::{Entry, Parameters as _, Values, chosen};
 use crate::units::Parity;
 
@@ -123,7 +123,7 @@ impl FormModel for BissForm {
     }
 
     fn example(&self) -> &'static str {
-        if self.uses_bus() { "bridge:/dev/ttyUSB0" } else { "serial:/dev/ttyUSB0" }
+        if self.uses_bus() { PORT_EXAMPLE.bridge } else { PORT_EXAMPLE.serial }
     }
 }
 

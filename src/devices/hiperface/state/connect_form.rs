@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::forms::with_address_range;
-use crate::link::{LinkScheme, LinkUrl, UrlError};
+use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE, UrlError};
 use crate::parameter::{Entry, Parameters as _, Values as _, chosen};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -109,7 +109,7 @@ impl FormModel for LinkForm {
     }
 
     fn example(&self) -> &'static str {
-        "serial:/dev/ttyUSB0"
+        PORT_EXAMPLE.serial
     }
 }
 

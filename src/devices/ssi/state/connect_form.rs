@@ -10,7 +10,7 @@ use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::sim::Settings;
 use crate::kinds::attachable_kinds;
-use crate::link::{LinkScheme, LinkUrl};
+use crate::link::{LinkScheme, LinkUrl, PORT_EXAMPLE};
 use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl FormModel for SsiForm {
     }
 
     fn example(&self) -> &'static str {
-        "bridge:/dev/ttyUSB0"
+        PORT_EXAMPLE.bridge
     }
 }
 

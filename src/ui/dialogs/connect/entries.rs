@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::connect::{ConnectAction as Connect, ConnectDialog as Dialog, Typed};
 use crate::app::{Action, explain};
-use crate::link::Echo;
+use crate::link::{Echo, PORT_EXAMPLE};
 use crate::parameter::Entry;
 use crate::ui::controls::{choice, disclosure, entry, icon_button, label_width, name, paragraph, text_entry};
 use crate::ui::{Theme, icons};
@@ -12,7 +12,7 @@ use crate::units::Parity;
 
 pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut String, actions: &mut Vec<Action>) {
     entry(ui, theme, &theme.say("connect.port"), |ui| {
-        text_entry(ui, port, 300.0, &theme.say("connect.port"), "/dev/ttyUSB0");
+        text_entry(ui, port, 300.0, &theme.say("connect.port"), PORT_EXAMPLE.port);
         if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &theme.say("connect.list_ports")).clicked() {
             actions.push(Action::Connect(Connect::ListPorts));
         }
