@@ -35,6 +35,7 @@ pub(crate) mod recorded;
 pub mod recorder;
 mod recording;
 mod remembering;
+mod remote;
 pub mod review;
 pub(crate) mod services;
 pub mod session;

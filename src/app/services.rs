@@ -12,6 +12,7 @@ use super::file_question::FileQuestion;
 use super::given::Given;
 use super::kinds::KindRegistry;
 use super::notices::{Notice, NoticeLog, Severity};
+use super::remote::is_remote_session;
 use super::shutdown::{ClosingSession, GracePeriods};
 use super::studio::SessionId;
 use super::tasks::{TaskRunner, Wake};
@@ -30,6 +31,8 @@ pub struct StudioEnvironment {
     /// Folders that relative paths refer to.
     pub folders: BaseFolders,
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
+    /// Whether the window is operated over a remote desktop.
+    pub is_remote: Arc<dyn Fn() -> bool + Send + Sync>,
     /// Maximum waiting times when sessions or the window are closed.
     pub patience: GracePeriods,
 }
@@ -43,6 +46,7 @@ impl StudioEnvironment {
             ports: Arc::new(crate::link::ports),
             folders: BaseFolders::for_current_user(),
             now: Arc::new(Zoned::now),
+            is_remote: Arc::new(is_remote_session),
             patience: GracePeriods::default(),
         }
     }
@@ -111,6 +115,10 @@ impl Services {
             drafts_on_their_way: 0,
             shared: HashMap::new(),
         }
+    }
+
+    pub(crate) fn is_remote(&self) -> bool {
+        (self.world.is_remote)()
     }
 
     pub(crate) fn now(&self) -> Zoned {

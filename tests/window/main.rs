@@ -25,6 +25,7 @@ mod hiperdrive_jog;
 mod hiperdrive_keys;
 mod hiperdrive_motion;
 mod hiperdrive_recording;
+mod hiperdrive_remote;
 mod hiperdrive_rules;
 mod hiperdrive_stop;
 mod interbus;

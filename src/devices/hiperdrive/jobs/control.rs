@@ -2,6 +2,7 @@
 //! parameters read last.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use super::commit::commit as carry_through;
 use super::rules_refresh::RulesRefresh;
@@ -12,7 +13,7 @@ use crate::devices::hiperdrive::procedures::{
     DriveLimits, Error, GROUPS, Identity, MotionLimitParameters, Survey, Temperature, TemperatureReading, identify,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterNumber, PkwError, Value};
-use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
+use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind, measure_timer_step};
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
@@ -117,6 +118,9 @@ impl Hiperdrive {
         if self.control.open.is_some() {
             return Err(Error::InControl);
         }
+        if cfg!(windows) {
+            check_timer(measure_timer_step(&*self.control.clock), self.station.link.interval)?;
+        }
         let identity = identify(&mut self.master(context), progress)?;
         self.control.rules_refresh = RulesRefresh::default();
         identity.drives.iter().for_each(|drive| self.control.motion.invalidate_limits(drive.number));
@@ -217,5 +221,30 @@ impl Hiperdrive {
             tracing::warn!("{why}");
         }
         ended
+    }
+}
+
+/// Checks that packets can be sent at an interval. With half of it as the step, a packet is late by half an interval at
+/// most, and the target waits for several.
+fn check_timer(step: Duration, interval: Duration) -> Result<(), Error> {
+    let milliseconds = |time: Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
+    if step > interval / 2 {
+        return Err(Error::CoarseTimer { asked_ms: milliseconds(interval), step_ms: milliseconds(step) });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_needs_a_fine_timer() {
+        let check =
+            |step_us, interval_ms| check_timer(Duration::from_micros(step_us), Duration::from_millis(interval_ms));
+        assert_eq!(check(1_100, 5), Ok(()));
+        assert_eq!(check(2_501, 5), Err(Error::CoarseTimer { asked_ms: 5, step_ms: 2 }));
+        assert_eq!(check(15_625, 10), Err(Error::CoarseTimer { asked_ms: 10, step_ms: 15 }));
+        assert_eq!(check(15_625, 40), Ok(()));
     }
 }

@@ -137,6 +137,9 @@ pub enum Error {
         asked_ms: u64,
         got_ms: u64,
     },
+    /// The timer of this computer is too coarse to send at the requested interval. A drive could not be stopped in time.
+    #[error("the timer of this computer has steps of {step_ms} ms, too coarse for an interval of {asked_ms} ms")]
+    CoarseTimer { asked_ms: u64, step_ms: u64 },
     #[error("the cyclic connection is open")]
     InControl,
     /// The link has no cyclic connection, for example because it is a recording.

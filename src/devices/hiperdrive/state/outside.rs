@@ -61,14 +61,14 @@ impl Unit {
 
     /// Returns whether this direction is blocked but can be enabled for one press.
     pub fn can_enable_outward(&self, drive: DriveNumber, direction: Direction) -> bool {
-        self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
+        self.may_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
     pub(super) fn enable_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_enable_outward(drive, direction) {
             return self.moves.free(drive, direction);
         }
-        let why = self.may_move(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
+        let why = self.may_move_until_stopped(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 

@@ -72,12 +72,21 @@ impl Unit {
         }
     }
 
+    /// Checks whether a drive may be moved until the user stops it: by a jog or a run.
+    ///
+    /// # Errors
+    /// Returns the reason if the drive may not be moved in this way.
+    pub fn may_move_until_stopped(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.may_move(drive)?;
+        if self.moves.is_remote() { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
+    }
+
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
     /// Returns the reason if the drive may not do so.
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
-        self.may_move(drive)?;
+        self.may_move_until_stopped(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
@@ -109,6 +118,7 @@ impl Unit {
         self.check_may_end_motion(drive, request)?;
         match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
+            MotionRequest::Run { .. } | MotionRequest::Jog { .. } => self.may_move_until_stopped(drive)?,
             _ if request.moves() => self.may_move(drive)?,
             _ => self.check_controllable()?,
         }

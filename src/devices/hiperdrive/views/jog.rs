@@ -27,7 +27,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         let own = (unit.moves.jog_effort(drive), unit.moves.running_jog_effort(drive), drafts);
         let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
         let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
-        let allowed = effort.and(unit.may_move(drive));
+        let allowed = effort.and(unit.may_move_until_stopped(drive));
         jog_buttons_ui(ui, theme, unit, allowed.is_ok(), actions);
         jog_buttons_note_ui(ui, theme, unit, allowed.as_ref().err());
     });
@@ -75,7 +75,7 @@ fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<
     let width = ui.available_width();
     let font = FontId::proportional(theme.sizes.body);
     let height = |words| ui.painter().layout(words, font.clone(), colour.into(), width).size().y;
-    let fixed = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear", "hd_refused.not_taken"];
+    let fixed = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear", "hd_refused.not_taken", "hd_refused.remote"];
     let room = fixed.into_iter().map(|id| height(say(theme, id))).fold(0.0, f32::max);
     let words = match why_not {
         Some(why) => RichText::new(theme.words(why)).color(theme.palette.warn),

@@ -241,6 +241,7 @@ fn to_position_ui(
 /// Draws the controls for a run at a speed, to the end of the range or, for experts, without end.
 fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
+    let allowed = &allowed.clone().and(unit.may_move_until_stopped(unit.drive()));
     let mut expert = unit.moves.allows_endless_run(unit.drive());
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
     ui.horizontal_wrapped(|ui| {

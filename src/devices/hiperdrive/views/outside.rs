@@ -54,7 +54,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         };
         paragraph(ui, theme.caption(say(theme, words)));
         // The buttons stay after a press, so the widgets below them do not move under the pointer.
-        let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
+        let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move_until_stopped(drive) };
         ui.horizontal_wrapped(|ui| {
             for way in ways {
                 let free = match way {

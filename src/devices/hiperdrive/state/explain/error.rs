@@ -42,6 +42,9 @@ pub fn device(error: &Error) -> Text {
         Error::TooSlow { asked_ms, got_ms } => {
             TEXTS.text("hd_said.too_slow").with("asked", asked_ms).with("got", got_ms)
         }
+        Error::CoarseTimer { asked_ms, step_ms } => {
+            TEXTS.text("hd_said.coarse_timer").with("asked", asked_ms).with("step", step_ms)
+        }
         Error::InControl => TEXTS.text("hd_said.in_control"),
         Error::NoCyclic => TEXTS.text("hd_said.no_cyclic"),
         Error::Unknown(number) => TEXTS.text("hd_said.unknown").with("number", number),

@@ -1,0 +1,78 @@
+//! A window that is operated over a remote desktop: motion that lasts until it is stopped ends and does not begin.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use encoder_studio::app::{Action, Studio, StudioEnvironment, connect};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
+
+use crate::hiperdrive::{ONE, act, drive, unit, until_read};
+use crate::hiperdrive_acts::{drive_until, hold_pad_until, warned};
+use crate::screen::Screen;
+use crate::support::{Desk, Outside};
+use crate::tabs::Tabs as _;
+
+const PRESS: Motor = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
+
+/// Returns a studio that is told by the flag whether it is operated remotely.
+fn studio(outside: &Outside, remote: &Arc<AtomicBool>) -> Studio {
+    let remote = remote.clone();
+    let is_remote = Arc::new(move || remote.load(Ordering::SeqCst));
+    Studio::new(StudioEnvironment { is_remote, ..outside.world() }, Arc::new(|| {}))
+}
+
+#[test]
+fn a_jog_ends_when_the_session_becomes_remote() {
+    let remote = Arc::new(AtomicBool::default());
+    let outside = Outside::new("");
+    let mut desk = Desk { studio: studio(&outside, &remote), outside };
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
+    desk.open("sim:");
+    until_read(&mut desk);
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    hold_pad_until(&mut desk, PRESS, "it moves", |_| {}, |desk| unit(desk).state(ONE) == Some(State::Moving));
+
+    remote.store(true, Ordering::SeqCst);
+    desk.studio.poll();
+    assert!(!unit(&desk).moves.is_held(), "at once");
+    drive(&mut desk, Motor::JogHold);
+    desk.until("it stands", |studio| !studio.moves());
+
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    for motor in [PRESS, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd }] {
+        drive(&mut desk, motor);
+        assert_eq!(unit(&desk).may_move_until_stopped(ONE).unwrap_err().id(), "hd_refused.remote");
+        assert!(warned(&desk).contains(&"hd_refused.remote") && !unit(&desk).moves.is_motion_active());
+    }
+    // A move ends by itself.
+    let moves = |studio: &Studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving);
+    drive_until(&mut desk, |_| Motor::Move { target: 30_000_000 }, "it moves", moves);
+
+    remote.store(false, Ordering::SeqCst);
+    desk.until("it may be jogged", |studio| studio.hiperdrive().unwrap().may_move_until_stopped(ONE).is_ok());
+}
+
+#[test]
+fn the_panel_says_why_the_jog_is_locked() {
+    let (outside, remote) = (Outside::new(""), Arc::new(AtomicBool::new(true)));
+    let studio = studio(&outside, &remote);
+    let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
+    screen.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
+    screen.act(Action::Connect(connect::ConnectAction::Open));
+    screen.act(Action::Connect(connect::ConnectAction::Use("sim:".to_owned())));
+    screen.act(Action::Connect(connect::ConnectAction::Connect));
+    screen.until("it is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
+    });
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::device(id, Hiperdrive::Take));
+    screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    screen.steps();
+    assert!(!screen.is_enabled("hd_jog.up") && !screen.is_enabled("hd_jog.down"));
+    assert!(screen.shows(&screen.say("hd_refused.remote")));
+    remote.store(false, Ordering::SeqCst);
+    screen.steps();
+    assert!(screen.is_enabled("hd_jog.up") && !screen.shows(&screen.say("hd_refused.remote")));
+}
