@@ -57,7 +57,17 @@ pub(super) fn processor_time() -> Option<Duration> {
 
 /// Returns the processor time that all threads of the program have used. Returns `None` if the system does not report
 /// it.
-#[cfg(not(unix))]
+#[cfg(windows)]
+pub(super) fn processor_time() -> Option<Duration> {
+    let (_, _, kernel, user) = winsafe::HPROCESS::GetCurrentProcess().GetProcessTimes().ok()?;
+    // Counts of 100 ns.
+    let counts = u64::from(kernel).checked_add(u64::from(user))?;
+    Some(Duration::from_nanos(counts.checked_mul(100)?))
+}
+
+/// Returns the processor time that all threads of the program have used. Returns `None` if the system does not report
+/// it.
+#[cfg(not(any(unix, windows)))]
 pub(super) fn processor_time() -> Option<Duration> {
     None
 }

@@ -23,6 +23,7 @@ mod navigation;
 pub mod page;
 pub(crate) mod panels;
 pub mod plot;
+mod renderer;
 mod review;
 mod run;
 pub(crate) mod status_line;

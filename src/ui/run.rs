@@ -5,6 +5,7 @@ use std::thread;
 use std::time::Instant;
 
 use super::live_pace::processor_time;
+use super::renderer::renderers;
 use super::{TabViews, Window, end, install_fonts};
 use crate::app::{KindRegistry, Studio, StudioEnvironment, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
@@ -15,6 +16,10 @@ use crate::store::{LogFile, Store};
 /// # Errors
 /// Returns a one-line reason if the window could not be opened.
 pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String> {
+    open(start, kinds, tabs).inspect_err(|why| show_without_terminal(why))
+}
+
+fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
@@ -38,7 +43,7 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);
-    let options = eframe::NativeOptions {
+    let options = |renderer| eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("encoder-studio")
             .with_app_id("encoder-studio")
@@ -46,24 +51,29 @@ pub fn run(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), Stri
             .with_inner_size([width as f32, height as f32])
             .with_min_inner_size([880.0, 500.0])
             .with_drag_and_drop(true),
-        renderer: eframe::Renderer::Glow,
+        renderer,
         ..eframe::NativeOptions::default()
     };
-    let result = eframe::run_native(
-        "encoder-studio",
-        options,
-        Box::new(move |cc| {
+    // A renderer that fails leaves them to the next one.
+    let mut parts = Some((studio, look, tabs));
+    let mut result = Err(NOT_OPENED.to_owned());
+    for renderer in renderers() {
+        let create: eframe::AppCreator<'_> = Box::new(|cc| {
+            let (studio, look, tabs) = parts.take().ok_or("the window exists already")?;
             install_fonts(&cc.egui_ctx);
             let _ = context.set(cc.egui_ctx.clone());
             let window = Window::new(studio, look, tabs).with_processor_time(processor_time);
             Ok(Box::new(StudioApp { window, began: Some(began) }))
-        }),
-    );
-    let result = result.map_err(|error| {
-        // The library's messages are for programmers and contain paths of the build computer.
-        tracing::error!("{error}");
-        NOT_OPENED.to_owned()
-    });
+        });
+        match eframe::run_native("encoder-studio", options(renderer), create) {
+            Ok(()) => result = Ok(()),
+            // The library's messages are for programmers and contain paths of the build computer.
+            Err(error) => tracing::error!("{renderer}: {error}"),
+        }
+        if parts.is_none() {
+            break;
+        }
+    }
     if let Ok(log) = log {
         log.wait();
     }
@@ -109,8 +119,26 @@ const ICON: &[u8] = include_bytes!("../../assets/icon/64.png");
 const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
                           encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
                           find, decode, analyse, simulate, ports (see encoder-studio help).";
+#[cfg(windows)]
+const NOT_OPENED: &str = "The window cannot be opened: neither OpenGL 2 nor Direct3D 12 can draw it (the log file says \
+                          more). Install the driver of the graphics card; without a window: encoder-studio help.";
+#[cfg(not(windows))]
 const NOT_OPENED: &str = "The window cannot be opened: the display does not answer, or a run-time package is missing (the \
                           README lists them; the log file says more). Without a window: encoder-studio help.";
+
+/// Shows a message in a box of the system if there is no terminal for it: the program was started from the start menu.
+#[cfg(windows)]
+fn show_without_terminal(message: &str) {
+    use std::os::windows::io::AsRawHandle as _;
+    if std::io::stderr().as_raw_handle().is_null() {
+        let dialog = rfd::MessageDialog::new().set_level(rfd::MessageLevel::Error);
+        dialog.set_title("encoder-studio").set_description(message).show();
+    }
+}
+
+/// Other systems have no box without a window; their desktops keep the message in a log.
+#[cfg(not(windows))]
+const fn show_without_terminal(_message: &str) {}
 
 fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

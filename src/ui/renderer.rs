@@ -1,0 +1,40 @@
+//! The renderers of the window. They are tried in their order until one opens it.
+//!
+//! OpenGL 2 exists wherever a graphics card has a driver, and on Linux also without a card. Windows without such a driver,
+//! as on remote desktops and in virtual machines, has only OpenGL 1.1; Direct3D 12 draws there in software.
+
+use eframe::Renderer;
+
+/// Environment variable that selects a renderer, for a computer on which one opens the window but does not draw well.
+const SELECTED: &str = "ENCODER_STUDIO_RENDERER";
+
+/// Names of the renderers in [`SELECTED`].
+const NAMES: &[(&str, Renderer)] = &[
+    ("opengl", Renderer::Glow),
+    #[cfg(windows)]
+    ("direct3d", Renderer::Wgpu),
+];
+
+/// Returns the renderers to be tried: the one that the user has selected, or else all.
+pub(super) fn renderers() -> Vec<Renderer> {
+    renderers_for(std::env::var(SELECTED).ok().as_deref())
+}
+
+/// With another word, such as `none`, no renderer is left.
+fn renderers_for(selected: Option<&str>) -> Vec<Renderer> {
+    let is_wanted = |name: &str| selected.is_none_or(|selected| selected.eq_ignore_ascii_case(name));
+    NAMES.iter().filter(|(name, _)| is_wanted(name)).map(|(_, renderer)| *renderer).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_selected_renderer_is_the_only_one() {
+        assert_eq!(renderers_for(None).first(), Some(&Renderer::Glow));
+        assert_eq!(renderers_for(None).len(), NAMES.len());
+        assert_eq!(renderers_for(Some("OpenGL")), [Renderer::Glow]);
+        assert!(renderers_for(Some("none")).is_empty());
+    }
+}
