@@ -71,6 +71,9 @@ fn number_last(path: &str) -> (&str, u64, &str) {
     (name, path.strip_prefix(name).and_then(|number| number.parse().ok()).unwrap_or(0), path)
 }
 
+/// Shortest time-out of a read. Windows takes less than a millisecond as no time-out, and waits until the buffer is full.
+const SHORTEST_TIMEOUT: Duration = if cfg!(windows) { Duration::from_millis(1) } else { Duration::ZERO };
+
 /// An open serial port.
 pub struct SerialLink {
     port: Box<dyn SerialPort>,
@@ -146,7 +149,7 @@ impl ByteLink for SerialLink {
         let mut buffer = [0; 512];
         loop {
             let left = until.since(self.clock.now());
-            self.port.set_timeout(left).map_err(|error| self.lost(&error.into()))?;
+            self.port.set_timeout(left.max(SHORTEST_TIMEOUT)).map_err(|error| self.lost(&error.into()))?;
             match self.port.read(&mut buffer) {
                 Ok(0) => return Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
                 Ok(count) => {
