@@ -175,7 +175,7 @@ impl SessionEvents for Unit {
     /// Processes the session events since the last call and refreshes the actions that the window must keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
-        self.moves.set_remote(services.is_remote());
+        self.set_remote(services.is_remote());
         self.moves.send_heartbeat();
         self.handle_limit_change();
         for (drive, before) in before {

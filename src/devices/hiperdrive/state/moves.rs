@@ -38,8 +38,6 @@ pub struct DriveMotion {
     limits_changed: BTreeSet<DriveNumber>,
     /// Whether the cyclic connection has been opened since the last query.
     taken: bool,
-    /// Whether the window is operated over a remote desktop, where a release may arrive late.
-    remote: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +75,6 @@ impl Default for DriveMotion {
             looked: Moment::START,
             limits_changed: BTreeSet::new(),
             taken: false,
-            remote: false,
         }
     }
 }
@@ -114,18 +111,6 @@ impl DriveMotion {
         for drive in std::mem::take(&mut self.experts) {
             self.set_endless_allowed(drive, false);
         }
-    }
-
-    /// Sets whether the window is operated over a remote desktop. Motion that lasts until it is stopped ends there.
-    pub(super) fn set_remote(&mut self, remote: bool) {
-        self.remote = remote;
-        if remote {
-            self.let_go();
-        }
-    }
-
-    pub(super) const fn is_remote(&self) -> bool {
-        self.remote
     }
 
     /// Fetches the state of the drives and refreshes the actions that frames keep alive. This function must be called

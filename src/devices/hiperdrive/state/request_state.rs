@@ -72,13 +72,21 @@ impl Unit {
         }
     }
 
+    /// Sets whether the window is operated over a remote desktop. Motion that lasts until it is stopped ends there.
+    pub(super) fn set_remote(&mut self, is_remote: bool) {
+        self.is_remote = is_remote;
+        if is_remote {
+            self.moves.let_go();
+        }
+    }
+
     /// Checks whether a drive may be moved until the user stops it: by a jog or a run.
     ///
     /// # Errors
     /// Returns the reason if the drive may not be moved in this way.
     pub fn may_move_until_stopped(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
-        if self.moves.is_remote() { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
+        if self.is_remote { Err(TEXTS.text("hd_refused.remote")) } else { Ok(()) }
     }
 
     /// Checks whether a drive may run past its limits.

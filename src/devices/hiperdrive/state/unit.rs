@@ -70,6 +70,8 @@ pub struct Unit {
     /// Whether everything must be read again, because another master has changed the limits of a drive.
     pub(super) looks_at_all: bool,
     pub(super) decoder: FrameDecoder,
+    /// Whether the window is operated over a remote desktop, where the release of a button may arrive late.
+    pub(super) is_remote: bool,
 }
 
 impl Unit {
@@ -103,6 +105,7 @@ impl Unit {
             looks_at_errors: false,
             looks_at_all: false,
             decoder: FrameDecoder::default(),
+            is_remote: false,
         }
     }
 
