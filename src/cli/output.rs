@@ -58,7 +58,7 @@ impl Output {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::NobodyReads),
+            Err(error) if is_closed_pipe(&error) => Err(Failure::NobodyReads),
             Err(error) => Err(Failure::Failed(vec![format!("Could not print the result: {error}.")])),
         }
     }
@@ -79,6 +79,12 @@ impl Output {
     pub fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
     }
+}
+
+/// Returns whether the reader of a pipe has closed it. Windows has several codes for that, and the library knows all but
+/// one of them: 233, "no process is on the other end of the pipe".
+fn is_closed_pipe(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
 
 /// Returns a number with its noun, such as `1 data field` or `3 data fields`.
