@@ -4,7 +4,7 @@
 #
 #   tests/tools/windows.sh FOLDER     with the files that tools/windows/release.sh has made
 #
-# Needs the Debian packages wine64, gcc-mingw-w64-x86-64, xvfb, xdotool and imagemagick.
+# Needs the Debian packages wine64, gcc-mingw-w64-x86-64, mesa-vulkan-drivers, xvfb, xdotool, imagemagick and unzip.
 set -euo pipefail
 dist=$(realpath "${1:?usage: windows.sh FOLDER}")
 cd "$(dirname "$0")/../.."
@@ -14,7 +14,7 @@ msi=$(ls "$dist"/encoder-studio-*-windows-x86_64.msi)
 zip=$(ls "$dist"/encoder-studio-*-windows-x86_64.zip)
 
 home=$(mktemp -d)
-export WINEPREFIX=$home/prefix WINEARCH=win64 WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml="
+export WINEPREFIX=$home/prefix WINEARCH=win64 WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe=d"
 export XDG_RUNTIME_DIR=$home LIBGL_ALWAYS_SOFTWARE=1
 processes=()
 finish() {
@@ -125,7 +125,8 @@ window() { # window [VARIABLE=VALUE]: opens the window as the start menu does, a
     passed "window of $size drawn in $colours colours ${1-}"
 }
 window
-window ENCODER_STUDIO_RENDERER=direct3d
+# The Direct3D 12 of Wine 8 loses its device, so the second renderer draws with Vulkan here, which Mesa has in software.
+window ENCODER_STUDIO_RENDERER=direct3d WGPU_BACKEND=vulkan
 found=0
 ENCODER_STUDIO_RENDERER=none run "$installed/encoder-studio-window.exe" 2>"$home/err" || found=$?
 { [ "$found" = 1 ] && grep -q "cannot be opened" "$home/err"; } || fail "Without a renderer: status $found, $(cat "$home/err")"
@@ -134,6 +135,8 @@ passed "no renderer: a message and status 1"
 data=$(find "$WINEPREFIX/drive_c/users" -path '*AppData/Roaming/encoder-studio' -type d)
 [ -n "$(find "$data" -name 'settings*')" ] || fail "The settings are not in $data."
 kept=$(find "$data" -type f | sort)
+# A program that is running is not removed: the virtual devices end first.
+kill "${processes[@]:1}" 2>/dev/null || true
 run "$installed/uninstall.exe" /S
 # It goes on as a copy of itself.
 for _ in $(seq 50); do [ -e "$installed" ] && sleep 0.2; done
