@@ -61,7 +61,7 @@ impl Baud {
     }
 
     /// Returns the time that a number of bits takes on the line.
-    pub fn time_of_bits(self, bits: u64) -> Duration {
+    pub fn duration_of_bits(self, bits: u64) -> Duration {
         Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
     }
 }
@@ -127,7 +127,7 @@ impl CharacterFormat {
     /// Returns the duration of one character on the line. A character counts as 11 bits for any parity, as in the
     /// manuals.
     pub fn character_time(self) -> Duration {
-        self.baud.time_of_bits(11)
+        self.baud.duration_of_bits(11)
     }
 }
 
@@ -152,8 +152,8 @@ mod tests {
 
     #[test]
     fn bit_durations_are_computed() {
-        assert_eq!(Baud::B9600.time_of_bits(44), Duration::from_nanos(4_583_333));
-        assert_eq!(Baud::new(600).unwrap().time_of_bits(11), Duration::from_nanos(18_333_333));
+        assert_eq!(Baud::B9600.duration_of_bits(44), Duration::from_nanos(4_583_333));
+        assert_eq!(Baud::new(600).unwrap().duration_of_bits(11), Duration::from_nanos(18_333_333));
         assert_eq!(Baud::new(0), None);
     }
 

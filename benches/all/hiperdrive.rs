@@ -18,7 +18,7 @@ use encoder_studio::buses::ethernet_ip::protocol::{
 use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionIntent, MotionRequest, Permit, SpeedTorque};
-use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, MotionLimitParameters, Opened};
+use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, MotionLimitParameters, OpenedConnection};
 use encoder_studio::devices::hiperdrive::protocol::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutputImage, Topology, Variant,
 };
@@ -30,10 +30,10 @@ const LAYOUT: Layout = Layout { topology: Topology::Adapter, pkw: true, order: B
 const TO_TARGET: u32 = 0x0002_0001;
 const TO_ORIGINATOR: u32 = 0x0003_0001;
 
-fn opened(port: u16) -> Opened {
+fn opened(port: u16) -> OpenedConnection {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: EPath::assemblies(104, 100, 101) };
-    Opened {
+    OpenedConnection {
         to_target_id: TO_TARGET,
         to_originator_id: TO_ORIGINATOR,
         to_target_interval: INTERVAL,
@@ -234,10 +234,10 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
             way.refresh();
             sleep(Duration::from_millis(7).min(held.saturating_duration_since(Instant::now())));
         }
-        let moved = target.words.try_iter().last().is_some_and(|(_, word)| !word.is_standing());
+        let moved = target.words.try_iter().last().is_some_and(|(_, word)| !word.is_at_rest());
         let released = Instant::now();
         way.intend(MotionRequest::Stop);
-        let stands = target.words.iter().find(|(at, word)| *at >= released && word.is_standing()).unwrap();
+        let stands = target.words.iter().find(|(at, word)| *at >= released && word.is_at_rest()).unwrap();
         assert!(moved, "the jog has not begun");
         took.push((stands.0 - released).as_secs_f64() * 1e3);
         sleep(Duration::from_millis(200));

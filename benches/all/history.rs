@@ -294,7 +294,7 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
             Kind::Real => Part::real(&reals[column]),
             Kind::Whole => Part::whole(&wholes[column]),
         };
-        let parts: Vec<Part<'_>> = (0..columns).map(|column| part(column).flagged(&flags)).collect();
+        let parts: Vec<Part<'_>> = (0..columns).map(|column| part(column).with_flags(&flags)).collect();
         history.append(&times(number * BATCH, BATCH), &parts).unwrap();
     }
     history

@@ -104,7 +104,7 @@ fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, f
     let flags: Vec<Flags> =
         (first..first + count).map(|at| if at % 4000 == 7 { Flags::WARNING } else { Flags::NONE }).collect();
     let flags: &[Flags] = if flagged { &flags } else { &[] };
-    let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values).flagged(flags)).collect();
+    let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values).with_flags(flags)).collect();
     recorder.append(group, &times, &parts).unwrap();
 }
 

@@ -86,7 +86,7 @@ impl OctantTable {
 
     /// Returns the largest error of linear interpolation between two nodes, in radians. It is h²/8 · 3√3/8 for nodes at
     /// a distance h.
-    pub fn largest_error_rad(&self) -> f64 {
+    pub fn max_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)
     }
@@ -143,7 +143,7 @@ mod tests {
         for (intervals, error, fraction) in [(16, 3.17e-4, 19_830.0), (32, 7.93e-5, 79_255.0), (64, 1.98e-5, 317_064.0)]
         {
             let table = OctantTable::new(intervals);
-            let largest = table.largest_error_rad();
+            let largest = table.max_error_rad();
             assert!((largest / error - 1.0).abs() < 3e-3, "{intervals}");
             assert!((TAU / largest / fraction - 1.0).abs() < 3e-3, "{intervals}: {}", TAU / largest);
             for step in 0..20_000 {

@@ -40,7 +40,7 @@ impl UnwrappedAngle {
     }
 
     /// Returns the angle advanced to the given voltages, by less than half a period.
-    fn moved_to(self, sine: f64, cosine: f64) -> Self {
+    fn advanced_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quadrant_of(sine, cosine) - quadrant_of(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
             3 => -1,
@@ -106,7 +106,7 @@ impl AnglePath {
         }
     }
 
-    fn go_to(&mut self, here: UnwrappedAngle) {
+    fn extend_to(&mut self, here: UnwrappedAngle) {
         self.here = here;
         self.high = if here.is_ahead_of(&self.high) { here } else { self.high };
         self.low = if self.low.is_ahead_of(&here) { here } else { self.low };
@@ -132,17 +132,17 @@ impl AnglePath {
 
     /// Starts a new section at an angle that was reached by an unknown path.
     fn begin_at(&mut self, here: UnwrappedAngle) {
-        self.end_stretch();
+        self.end_section();
         (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
         self.direction = Direction::Unknown;
     }
 
     fn ended(mut self) -> Self {
-        self.end_stretch();
+        self.end_section();
         self
     }
 
-    fn end_stretch(&mut self) {
+    fn end_section(&mut self) {
         self.update_extremes();
         self.path += (self.here.periods() - self.turned.periods()).abs();
         self.travel += self.here.periods() - self.begun.periods();
@@ -218,13 +218,13 @@ impl Coverage {
                     let (y, x) = correction.apply(*y, *x);
                     let off = (y * y + x * x).sqrt() - ellipse.amplitude_v;
                     sum += off * off;
-                    here = here.moved_to(y, x);
+                    here = here.advanced_to(y, x);
                     octants |=
                         1 << (((here.quarters & 3) as u32) << 1 | u32::from((y.abs() > x.abs()) ^ (y * x < 0.0)));
                     if std::mem::take(&mut begins) {
                         way.begin_at(here);
                     }
-                    way.go_to(here);
+                    way.extend_to(here);
                 }
                 squares += sum;
                 count += ys.len().min(xs.len());

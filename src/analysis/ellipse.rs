@@ -131,13 +131,13 @@ impl Ellipse {
         if moments.count() < LEAST_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
         }
-        let around_mean = moments.moved_to_mean();
-        check_not_flat(&around_mean)?;
+        let around_mean = moments.central_moments();
+        ensure_nonzero_area(&around_mean)?;
         let mut moments = around_mean;
         let mut found = solve(&moments)?;
         for _ in 1..ROUNDS {
             // After a poor start the centre may be outside. The fit around the mean is kept then.
-            let moved = moments.moved_by(found.offset_cosine_v, found.offset_sine_v);
+            let moved = moments.translated(found.offset_cosine_v, found.offset_sine_v);
             let Ok(better) = solve(&moved) else { break };
             (moments, found) = (moved, better);
         }
@@ -213,7 +213,7 @@ impl EllipseCorrection {
 ///
 /// # Errors
 /// Returns the reason for the rejection.
-fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
+fn ensure_nonzero_area(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
     // Relative to the level, because a constant 2.5 V still varies by a few units in the last place.

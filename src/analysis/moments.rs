@@ -119,14 +119,14 @@ impl Moments {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    pub(super) fn moved_to_mean(&self) -> Moments {
+    pub(super) fn central_moments(&self) -> Moments {
         let count = self.sum(0, 0).max(1.0);
-        self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
+        self.translated(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
     /// Returns the moments with the origin moved to (x, y), in the unit of the scale. The binomial theorem expands (x −
     /// a)ⁱ·(y − b)ʲ.
-    pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
+    pub(super) fn translated(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],
             [1.0, 1.0, 0.0, 0.0, 0.0],

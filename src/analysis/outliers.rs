@@ -85,7 +85,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         }
         stretches = found;
         let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
-        match fit_without(sine, cosine, &stretches, scale) {
+        match fit_excluding(sine, cosine, &stretches, scale) {
             Ok(better) => ellipse = better,
             Err(_) => return OutlierResult::Nothing,
         }
@@ -116,7 +116,7 @@ pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<It
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end)
 }
 
-fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: Scale) -> Result<Ellipse, FitError> {
+fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: Scale) -> Result<Ellipse, FitError> {
     let mut moments = Moments::new(scale);
     for part in kept(sine.len().min(cosine.len()), left_out) {
         moments.add(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;

@@ -113,7 +113,7 @@ pub enum Done {
         exists: bool,
     },
     /// The attempt to open a link for a session has succeeded or failed.
-    Opened(Attempt),
+    OpenedConnection(Attempt),
     /// A search in the connection form of a tab has a result. See [`Done::finder`].
     Finder(Tab, Payload),
     /// A task that belongs to no session has ended. Contains the function that handles its result.
@@ -178,7 +178,7 @@ pub struct Attempt {
 }
 
 /// A session on its thread, with the ring buffer for its trace.
-pub struct Opened<D: Kind> {
+pub struct OpenedConnection<D: Kind> {
     pub(super) worker: Worker<D>,
     /// Handle of the session that stays outside its thread.
     pub(crate) aside: D::SessionHandle,
@@ -193,14 +193,14 @@ pub struct Opened<D: Kind> {
 /// An opened session on its thread, for any kind of device.
 pub trait OpenedSession: Any + Send {
     /// Closes a session that is no longer needed.
-    fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services);
+    fn close_unused(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
-impl<D: Kind> OpenedSession for Opened<D> {
-    fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services) {
-        let Opened { worker, url, turn, .. } = *self;
+impl<D: Kind> OpenedSession for OpenedConnection<D> {
+    fn close_unused(self: Box<Self>, session: SessionId, services: &mut Services) {
+        let OpenedConnection { worker, url, turn, .. } = *self;
         let about = services.world.kinds.display_link(&url);
         services.leave(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));
     }

@@ -46,15 +46,15 @@ impl DriveStopHandles {
     /// Maximum time for stopping the drives and closing the connections. The program then ends in any case.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stopper: WorkerStopHandle) {
+    pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stop_handle: WorkerStopHandle) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_orphaned());
         // `begin` takes the same lock, so one of the two functions always releases the session.
         if self.has_begun() {
             brake.leave();
-            stopper.stop();
+            stop_handle.stop();
         }
-        sessions.push((brake, stopper));
+        sessions.push((brake, stop_handle));
     }
 
     pub fn begin(&self) {
@@ -62,7 +62,7 @@ impl DriveStopHandles {
         let sessions = self.sessions();
         sessions.iter().for_each(|(brake, _)| brake.leave());
         // This ends the jobs and wakes waiting threads.
-        sessions.iter().for_each(|(_, stopper)| stopper.stop());
+        sessions.iter().for_each(|(_, stop_handle)| stop_handle.stop());
     }
 
     pub fn has_begun(&self) -> bool {

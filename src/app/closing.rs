@@ -89,7 +89,7 @@ impl Studio {
     }
 
     /// Handles a request of the system to end the program. Edits are kept as drafts, and no questions are asked.
-    pub(super) fn quit_without_asking(&mut self) {
+    pub(super) fn force_quit(&mut self) {
         self.question = None;
         self.stop();
         self.begin_closing();

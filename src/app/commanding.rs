@@ -77,7 +77,7 @@ impl Studio {
         let mut device = self.devices.remove(at);
         let mut context = ActionContext::new(&mut self.services, &self.devices);
         let done = device.act(action, &mut context);
-        let next = context.into_next();
+        let next = context.into_requests();
         self.devices.insert(at, device);
         self.report_wrong_kind(done, id);
         for command in next {

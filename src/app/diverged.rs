@@ -158,7 +158,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn show_divergence(&mut self, diverged: ProfileConflict) {
+    pub(super) fn show_conflict(&mut self, diverged: ProfileConflict) {
         self.with_device(diverged.session(), |device, _| device.mark_save_waiting());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
             self.show(tab, diverged.session());

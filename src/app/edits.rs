@@ -116,7 +116,7 @@ impl<B: EditBase> PendingEdits for Edits<B> {
         self.revert_matching(|_| true)
     }
 
-    fn forget_steps(&mut self) {
+    fn clear_undo_steps(&mut self) {
         self.history.forget();
     }
 }

@@ -179,7 +179,7 @@ impl HoldState {
 
     /// Returns whether the button has the keyboard focus but no key has been seen up yet. The first press is then
     /// ignored.
-    pub fn waits_for_release(&self) -> bool {
+    pub fn is_waiting_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);
         has_keyboard && !armed && self.holder.is_none()

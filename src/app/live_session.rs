@@ -6,7 +6,7 @@ use std::time::Duration;
 use jiff::Zoned;
 
 use super::Text;
-use super::action::Opened;
+use super::action::OpenedConnection;
 use super::session::Kind;
 use crate::link::TraceEntry;
 use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker, WorkerStopHandle};
@@ -37,8 +37,8 @@ pub struct JobProgress {
 }
 
 impl<D: Kind> LiveSession<D> {
-    pub(crate) fn new(opened: Opened<D>) -> Self {
-        let Opened { worker, trace, is_virtual, .. } = opened;
+    pub(crate) fn new(opened: OpenedConnection<D>) -> Self {
+        let OpenedConnection { worker, trace, is_virtual, .. } = opened;
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
@@ -107,7 +107,7 @@ impl<D: Kind> LiveSession<D> {
     /// Returns whether the thread has ended although the session was not released, and all of its events have been
     /// received.
     pub(crate) fn is_dead(&self) -> bool {
-        self.worker.is_ended() && self.worker.events().is_empty()
+        self.worker.is_finished() && self.worker.events().is_empty()
     }
 
     /// Returns the samples since the previous call, and the number of dropped samples.
@@ -121,8 +121,8 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Returns a handle that stops the running job from any thread.
-    pub(crate) fn stopper(&self) -> WorkerStopHandle {
-        self.worker.stopper()
+    pub(crate) fn stop_handle(&self) -> WorkerStopHandle {
+        self.worker.stop_handle()
     }
 
     /// Returns the worker. It must be closed where waiting for its end blocks nothing.

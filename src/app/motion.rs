@@ -54,7 +54,7 @@ impl Studio {
 
     /// Ends a jog or run whose panel is no longer visible. Another tab or device, a dialog or a question can hide
     /// it.
-    pub(super) fn end_invisible_motion(&mut self) {
+    pub(super) fn stop_hidden_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
         let tab = self.settings.tab;

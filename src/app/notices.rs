@@ -101,7 +101,7 @@ impl NoticeLog {
     /// Removes an error about a file from the window, because the file has now been read or written.
     pub(crate) fn remove_file_notices(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
-            notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
+            notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.refers_to(path))
         };
         self.standing.take_if(|notice| is_it(notice));
     }

@@ -3,7 +3,7 @@
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use super::action::{Action, Attempt, Done, OpenFailure, Opened};
+use super::action::{Action, Attempt, Done, OpenFailure, OpenedConnection};
 use super::given::LinkOpener;
 use super::question::{Question, Then};
 use super::services::{JobState, Services, StudioEnvironment};
@@ -104,7 +104,7 @@ impl Studio {
     ///
     /// # Errors
     /// Returns the session that is writing.
-    pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
+    pub(super) fn release_connection(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
             held && matches!(device.source(), Source::Link(own) if is_same_connection(own, url))
@@ -150,8 +150,8 @@ impl Studio {
 
     /// Starts an attempt to open a link for a session. Results of earlier attempts are then ignored.
     fn start_open_attempt(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
-        let attempt = self.new_number();
-        self.free_wire_of_tools(&url);
+        let attempt = self.next_number();
+        self.release_tool_connections(&url);
         let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) else { return };
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         let over = device.open(url, attempt, earlier, &mut self.services);
@@ -161,11 +161,11 @@ impl Studio {
 
     pub(super) fn opened(&mut self, done: Attempt) {
         let Attempt { session, attempt, result } = done;
-        let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
+        let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_current_attempt(attempt);
         let Some(device) = self.devices.iter_mut().find(own) else {
             if let Ok(opened) = result {
                 // The session was closed, or a newer attempt was started.
-                opened.close_unneeded(session, &mut self.services);
+                opened.close_unused(session, &mut self.services);
             }
             return;
         };
@@ -178,7 +178,7 @@ impl Studio {
                 self.report_wrong_kind(taken, session);
             }
             Err(failed) => {
-                let why = device.open_failed(&failed);
+                let why = device.open_failure_text(&failed);
                 device.connection_lost(why, &mut self.services);
             }
         }
@@ -193,7 +193,7 @@ impl Services {
         url: LinkUrl,
         earlier: Option<Receiver<()>>,
         prepare: impl FnOnce(&mut Session<D>) + Send + 'static,
-        done: impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailure>>) -> Done + Send + 'static,
+        done: impl FnOnce(Result<Box<OpenedConnection<D>>, Box<OpenFailure>>) -> Done + Send + 'static,
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.world.clone(), self.tasks.wake());
@@ -217,7 +217,7 @@ fn open<D: Kind>(
     prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,
     turn: Sender<()>,
-) -> Result<Box<Opened<D>>, Box<OpenFailure>> {
+) -> Result<Box<OpenedConnection<D>>, Box<OpenFailure>> {
     let began = (world.now)();
     let mut session = world
         .given
@@ -233,7 +233,9 @@ fn open<D: Kind>(
         ring.push(entry.clone());
     });
     match Worker::spawn(session, wake) {
-        Ok(worker) => Ok(Box::new(Opened { worker, aside, trace, is_virtual, began, url: url.clone(), turn })),
+        Ok(worker) => {
+            Ok(Box::new(OpenedConnection { worker, aside, trace, is_virtual, began, url: url.clone(), turn }))
+        }
         Err(error) => Err(Box::new(OpenFailure::Thread(error.to_string()))),
     }
 }

@@ -22,11 +22,11 @@ pub trait PendingEdits {
     fn revert(&mut self) -> bool;
 
     /// Discards the undo steps, because the edits have been written or saved.
-    fn forget_steps(&mut self);
+    fn clear_undo_steps(&mut self);
 }
 
 /// Edits that are stored as a complete copy of the values, with their undo steps.
-pub(crate) trait SteppedEdits {
+pub(crate) trait SnapshotEdits {
     type Values: Clone + PartialEq;
 
     fn differences_count(&self) -> usize;
@@ -42,7 +42,7 @@ pub(crate) trait SteppedEdits {
 /// The original values, the edited values and the undo steps.
 pub(crate) type EditHistoryParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
 
-impl<S: SteppedEdits> PendingEdits for S {
+impl<S: SnapshotEdits> PendingEdits for S {
     fn count(&self) -> usize {
         self.differences_count()
     }
@@ -71,7 +71,7 @@ impl<S: SteppedEdits> PendingEdits for S {
         self.parts().is_some_and(|(base, wanted, history)| history.step(wanted, base.clone()))
     }
 
-    fn forget_steps(&mut self) {
+    fn clear_undo_steps(&mut self) {
         if let Some((_, _, history)) = self.parts() {
             history.forget();
         }

@@ -59,7 +59,7 @@ impl KeyStates {
 
     /// Records that another key was pressed. The system repeats only the key pressed last, so a later press of a key in
     /// an unknown state is not a repetition.
-    pub fn note_other_key_press(&mut self, now: f64) {
+    pub fn record_other_key_press(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
             if *own == KeyState::Nothing {
@@ -202,13 +202,13 @@ mod tests {
     #[test]
     fn another_key_ends_the_repeats_of_an_unknown_key() {
         let mut keys = KeyStates::default();
-        keys.note_other_key_press(1.0);
+        keys.record_other_key_press(1.0);
         assert!(!keys.press(Enter), "at once");
         keys.forget();
-        keys.note_other_key_press(1.0);
+        keys.record_other_key_press(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(keys.press(Enter));
-        keys.note_other_key_press(1.2);
+        keys.record_other_key_press(1.2);
         pictures(&mut keys, 1.2, 0.05, 2);
         assert!(!keys.press(Enter), "it is known to be down");
     }

@@ -19,7 +19,7 @@ pub struct Review<K: Reviewable> {
     pub force_wear: bool,
     pub is_for_another: bool,
     /// Whether the change was made for another type of device.
-    pub is_for_another_type: bool,
+    pub is_for_other_type: bool,
     pub(crate) change: K::Change,
     /// The relevant permits, and whether they are granted.
     permits: Vec<PermitToggle>,
@@ -43,7 +43,7 @@ pub enum ReviewState<K: Reviewable> {
 }
 
 impl<K: Reviewable> Review<K> {
-    pub(crate) fn new(mut change: K::Change, is_for_another: bool, is_for_another_type: bool) -> Self {
+    pub(crate) fn new(mut change: K::Change, is_for_another: bool, is_for_other_type: bool) -> Self {
         let own = |permit| K::permitted(&mut change, permit).map(|own| PermitToggle { permit, is_on: *own });
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
@@ -52,7 +52,7 @@ impl<K: Reviewable> Review<K> {
             state: ReviewState::Planning,
             force_wear: false,
             is_for_another,
-            is_for_another_type,
+            is_for_other_type,
             change,
             permits,
         }
@@ -102,7 +102,7 @@ impl<K: Reviewable> Review<K> {
     fn permit_toggles(&self) -> Vec<PermitToggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
-            Permit::OtherType => self.is_for_another_type,
+            Permit::TypeMismatch => self.is_for_other_type,
             Permit::Mounting => self.prepared().is_some_and(K::skips_mounting_values),
             Permit::Recreate => true,
             // This permit is offered as a question.

@@ -54,30 +54,30 @@ pub(super) struct ClosingSession {
 
 pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the connection is free.
-    fn is_ended(&self) -> bool;
+    fn is_finished(&self) -> bool;
 
     /// Waits for the end, for at most `patience`. Returns whether it has been reached.
     fn wait(&self, patience: Duration) -> bool;
 
-    fn job_endings(&self) -> Vec<JobCompletion>;
+    fn job_completions(&self) -> Vec<JobCompletion>;
 }
 
 impl<D: Kind> ClosingWorker for Ending<D> {
-    fn is_ended(&self) -> bool {
-        Ending::is_ended(self)
+    fn is_finished(&self) -> bool {
+        Ending::is_finished(self)
     }
 
     fn wait(&self, patience: Duration) -> bool {
         Ending::wait(self, patience)
     }
 
-    fn job_endings(&self) -> Vec<JobCompletion> {
-        self.events().try_iter().filter_map(|event| D::job_endings(&event)).collect()
+    fn job_completions(&self) -> Vec<JobCompletion> {
+        self.events().try_iter().filter_map(|event| D::job_completions(&event)).collect()
     }
 }
 
 impl ClosingWorker for End {
-    fn is_ended(&self) -> bool {
+    fn is_finished(&self) -> bool {
         self.has_ended()
     }
 
@@ -85,7 +85,7 @@ impl ClosingWorker for End {
         End::wait(self, patience)
     }
 
-    fn job_endings(&self) -> Vec<JobCompletion> {
+    fn job_completions(&self) -> Vec<JobCompletion> {
         Vec::new()
     }
 }
@@ -126,8 +126,8 @@ impl Services {
         let mut endings = Vec::new();
         self.closing_sessions.retain_mut(|closing| {
             // The order matters: a thread that has ended reports nothing more.
-            let ended = closing.ending.is_ended();
-            for end in closing.ending.job_endings() {
+            let ended = closing.ending.is_finished();
+            for end in closing.ending.job_completions() {
                 if closing.info.write == Some(end.job) {
                     closing.info.write = None;
                     endings.push((closing.info.session, closing.info.about.clone(), end));

@@ -28,7 +28,7 @@ impl StopPresses {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
 
-    pub fn goes_down(&mut self, now: f64) {
+    pub fn press_began(&mut self, now: f64) {
         self.pressed = Some(now);
     }
 
@@ -57,7 +57,7 @@ mod tests {
     fn a_click_counts_from_the_button_press() {
         let mut presses = StopPresses::default();
         presses.register_stop_press(true, 10.0, 10.0);
-        presses.goes_down(10.25);
+        presses.press_began(10.25);
         // Released long after.
         let pressed = presses.press_time(true, 12.0);
         assert_eq!(pressed, 10.25);

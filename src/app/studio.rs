@@ -101,7 +101,7 @@ impl Studio {
             Action::LetGo => self.release_jogs(),
             Action::Escape => self.press_escape(),
             Action::Close => self.close(),
-            Action::Quit => self.quit_without_asking(),
+            Action::Quit => self.force_quit(),
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.apply_connect_action(action),
@@ -149,7 +149,7 @@ impl Studio {
                 self.services.notify(Severity::Error, vec![text], None);
             }
         }
-        self.end_invisible_motion();
+        self.stop_hidden_motion();
         self.write_if_changed();
     }
 
@@ -173,7 +173,7 @@ impl Studio {
         self.feed_exports();
         self.remember_drives();
         self.refresh_settings();
-        self.end_invisible_motion();
+        self.stop_hidden_motion();
         self.write_if_changed();
     }
 
@@ -295,7 +295,7 @@ impl Studio {
         SessionId(self.next_id)
     }
 
-    pub(crate) fn new_number(&mut self) -> u32 {
+    pub(crate) fn next_number(&mut self) -> u32 {
         self.next_id += 1;
         self.next_id
     }
@@ -308,7 +308,7 @@ impl Studio {
 
     fn done(&mut self, done: Done) {
         match done {
-            Done::Opened(attempt) => self.opened(attempt),
+            Done::OpenedConnection(attempt) => self.opened(attempt),
             Done::Device(id, done) => self.finish_device_action(id, done),
             Done::Finder(tab, done) => self.handle_finder_result(tab, done),
             Done::Shared(with) => with(&mut self.services, &mut self.devices),
@@ -333,7 +333,7 @@ impl Studio {
             Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
                 device.written(*saving, file, result, services);
             }),
-            Done::Diverged(diverged) => self.show_divergence(*diverged),
+            Done::Diverged(diverged) => self.show_conflict(*diverged),
             Done::WouldLose(saving, lost) => self.confirm_loss(*saving, &lost),
             Done::SettingsRead(read) => self.settings_store.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => {

@@ -127,7 +127,7 @@ impl Text {
         self
     }
 
-    pub(super) fn is_about(&self, path: &Path) -> bool {
+    pub(super) fn refers_to(&self, path: &Path) -> bool {
         let name = path.display().to_string();
         let is_it = |(argument, value): &(&str, TextArgument)| {
             *argument == "path" && matches!(value, TextArgument::Words(words) if *words == name)

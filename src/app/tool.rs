@@ -58,7 +58,7 @@ pub trait Tool: Any {
     fn follow(&mut self, source: &mut dyn SineCosineSource);
 
     /// Releases a connection, because it is needed elsewhere.
-    fn free_wire(&mut self, url: &LinkUrl, services: &mut Services);
+    fn release_connection(&mut self, url: &LinkUrl, services: &mut Services);
 
     /// Returns whether the tool can open the given file.
     fn takes(&self, path: &Path) -> bool;
@@ -104,8 +104,8 @@ impl ToolContext<'_> {
     ///
     /// # Errors
     /// Returns the session that is writing.
-    pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
-        self.studio.free_wire(url, why)
+    pub fn release_connection(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
+        self.studio.release_connection(url, why)
     }
 
     /// Adds a link to those used before.
@@ -156,9 +156,9 @@ impl Studio {
     }
 
     /// Makes all tools release a connection that is needed elsewhere.
-    pub(super) fn free_wire_of_tools(&mut self, url: &LinkUrl) {
+    pub(super) fn release_tool_connections(&mut self, url: &LinkUrl) {
         for (_, tool) in &mut self.tools {
-            tool.free_wire(url, &mut self.services);
+            tool.release_connection(url, &mut self.services);
         }
     }
 }

@@ -31,22 +31,22 @@ pub enum TraceFault {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Explained {
+pub struct FrameExplanation {
     /// Number of bytes at the beginning that only transport the message.
     pub header: usize,
     pub meaning: Vec<Text>,
     pub fault: Option<TraceFault>,
 }
 
-impl Explained {
+impl FrameExplanation {
     pub fn broken(why: Text) -> Self {
-        Explained { meaning: vec![why], fault: Some(TraceFault::Broken), ..Explained::default() }
+        FrameExplanation { meaning: vec![why], fault: Some(TraceFault::Broken), ..FrameExplanation::default() }
     }
 }
 
-impl From<Vec<Text>> for Explained {
+impl From<Vec<Text>> for FrameExplanation {
     fn from(meaning: Vec<Text>) -> Self {
-        Explained { meaning, ..Explained::default() }
+        FrameExplanation { meaning, ..FrameExplanation::default() }
     }
 }
 
@@ -148,9 +148,9 @@ impl TraceLog {
     const MOST: usize = 16 << 20;
 
     /// Adds frames with their explanations. `dropped` frames arrived too fast to be included.
-    pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
+    pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, FrameExplanation)>, dropped: u64) {
         self.dropped += dropped;
-        for (entry, Explained { header, meaning, fault }) in entries {
+        for (entry, FrameExplanation { header, meaning, fault }) in entries {
             let bytes = entry.bytes.to_string();
             let line = TraceLine { at: entry.at, direction: entry.direction, bytes, header, meaning, fault };
             self.size += line.size();
@@ -233,14 +233,14 @@ mod tests {
             frames.iter().cloned().map(|(millis, direction, bytes, meaning, fault)| {
                 let at = Moment::from_elapsed(Duration::from_millis(millis));
                 let bytes: MaskedBytes = bytes.parse().unwrap();
-                (TraceEntry { at, direction, bytes }, Explained { header: 0, meaning: vec![meaning], fault })
+                (TraceEntry { at, direction, bytes }, FrameExplanation { header: 0, meaning: vec![meaning], fault })
             }),
             0,
         );
         log
     }
 
-    fn three() -> TraceLog {
+    fn three_frame_log() -> TraceLog {
         log(&[
             (31, Direction::Sent, "40 42 02", Text::new("trace.position"), None),
             (47, Direction::Received, "40 42 00 0e", Text::new("trace.taken"), None),
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn frames_are_found_by_bytes_meaning_and_fault() {
-        let log = three();
+        let log = three_frame_log();
         assert_eq!(matching(&log, "", false, 3), [0, 1, 2]);
         assert_eq!(matching(&log, " 42 00 0E ", false, 3), [1], "upper and lower case are equal");
         assert_eq!(matching(&log, "READ POS", false, 3), [0]);
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_changed_filter_compares_all_frames_again() {
-        let log = three();
+        let log = three_frame_log();
         let mut matches = TraceMatches::default();
         let mut update = |search: &str, end| {
             let filter = TraceFilter { search: search.to_owned(), faults_only: false };
@@ -299,7 +299,7 @@ mod tests {
     /// The file of the window is the same as one written by the command line, and `replay:` reads it.
     #[test]
     fn a_saved_log_is_a_trace_file() {
-        let text = three().file_content();
+        let text = three_frame_log().file_content();
         let expected = "# encoder-studio trace 1\n0.031000 > 40 42 02\n0.047000 < 40 42 00 0E\n0.090000 < FF **\n";
         assert_eq!(text, expected);
         assert_eq!(read_trace(&text).unwrap().len(), 3);

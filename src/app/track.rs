@@ -182,9 +182,9 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
         let flags = &columns.flags;
         let parts = [
-            Part::whole(&columns.steps).flagged(flags),
-            Part::real(&columns.speed).flagged(flags),
-            Part::real(&columns.acceleration).flagged(flags),
+            Part::whole(&columns.steps).with_flags(flags),
+            Part::real(&columns.speed).with_flags(flags),
+            Part::real(&columns.acceleration).with_flags(flags),
         ];
         // This cannot fail, because the times are in order and none is before the newest one.
         let _ = self.recorder.append(self.positions, &columns.times, &parts);
@@ -200,11 +200,11 @@ impl<W: Watchable> DeviceRecorder<W> {
         let Some(word) = sighting.position else {
             // The frame is damaged. The positions on both sides of it may still be joined.
             if let Some(follower) = &mut self.follower {
-                follower.note_missing_sample();
+                follower.record_missing_sample();
             }
             return columns.push(time, self.last, MotionRates::default(), Flags::BAD);
         };
-        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.is_joined_to_last(time, self.apart)) {
+        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.is_contiguous_with_last(time, self.apart)) {
             self.reset_tracking();
         }
         self.last = word;
@@ -280,7 +280,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         let part = if what.is_whole() { Part::whole(&whole) } else { Part::real(&real) };
         // This cannot fail. The samples of a value arrive in the order of time, and the clock of a later session starts
         // after the last position.
-        let _ = self.recorder.append(group, &[time], &[part.flagged(&flags)]);
+        let _ = self.recorder.append(group, &[time], &[part.with_flags(&flags)]);
     }
 
     /// Returns the number of samples that arrived too fast to be recorded.
@@ -325,7 +325,7 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     /// Sets the meaning of the positions that follow. Positions with another meaning stay in lines that end here.
     fn observe(&mut self, meaning: &Meaning) {
-        if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
+        if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_location(meaning)) {
             if own.meaning != *meaning {
                 own.meaning = meaning.clone();
                 let lines = self.lines.into_iter().zip(meaning.scales.clone());
@@ -374,7 +374,7 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     pub fn gap(&mut self) {
-        self.recorder.break_all_groups();
+        self.recorder.mark_gap_in_all_groups();
         self.reset_tracking();
     }
 

@@ -9,7 +9,7 @@ use super::runner::{JobFailure, Runs};
 use super::{Failure, Result};
 use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, Planned};
-use crate::worker::{self, NotBegun};
+use crate::worker::{self, NotStarted};
 
 /// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is refused before
 /// anything is opened.
@@ -48,7 +48,7 @@ pub fn confirm_plan<P: Planned>(
 pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
-    D::Error: From<NotBegun>,
+    D::Error: From<NotStarted>,
 {
     let cost = prepared.plan().write_cycles();
     worker::check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), consent.force_wear)

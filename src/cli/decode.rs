@@ -7,7 +7,7 @@ use super::output::Output;
 use super::{Done, Failure, Result};
 use crate::bits::parse_hex;
 
-pub(crate) struct Explained {
+pub(crate) struct FrameExplanation {
     /// Captured frame in readable form.
     pub(crate) shown: String,
     pub(crate) compact: String,
@@ -17,11 +17,11 @@ pub(crate) struct Explained {
 }
 
 /// Prints the meaning of frames. If a frame is invalid, the command fails after all frames have been printed.
-pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
+pub(crate) fn show(output: &Output, frames: &[FrameExplanation]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
     let mut broken = Vec::new();
-    for Explained { shown, compact, meaning, more } in frames {
+    for FrameExplanation { shown, compact, meaning, more } in frames {
         let (valid, lines) = match meaning {
             Ok(lines) => {
                 text.push_str(&format!("{shown}\n"));

@@ -45,7 +45,7 @@ pub enum Done {
     /// The command found no errors and no differences. The exit status is 0.
     Well,
     /// `diff` or `verify` has found differences. The exit status is 3.
-    Differs,
+    ValueDifference,
 }
 
 #[derive(Debug)]
@@ -123,7 +123,7 @@ fn usage_error(message: &str) -> Failure {
 fn end(result: Result) -> u8 {
     match result {
         Ok(Done::Well) | Err(Failure::NobodyReads) => 0,
-        Ok(Done::Differs) => 3,
+        Ok(Done::ValueDifference) => 3,
         Err(Failure::Failed(lines)) => {
             for (at, line) in lines.iter().enumerate() {
                 output::say(&format!("{}{line}\n", if at == 0 { "error: " } else { "" }));

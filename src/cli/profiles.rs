@@ -25,7 +25,7 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
 }
 
 /// Reads a profile that is to be written to a device. All parts of its schema must be known.
-pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
+pub(crate) fn load_profile_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?
         .known()
         .map_err(|error| failed(&explain::profile(path, &error, KindRegistry::NONE)))?;
@@ -86,7 +86,7 @@ pub(super) fn verify(common: &CommonArgs, output: &Output, file: &Path) -> Resul
 }
 
 pub(super) fn restore(common: &CommonArgs, output: &Output, restore: &Restore) -> Result {
-    let profile = load_to_write(output, &restore.file)?;
+    let profile = load_profile_to_write(output, &restore.file)?;
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
@@ -166,7 +166,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     let verdict =
         if equal { format!("equal ({compared} compared)\n") } else { format!("different ({compared} compared)\n") };
     output.show(&json, &(lines.text() + &verdict))?;
-    Ok(if equal { Done::Well } else { Done::Differs })
+    Ok(if equal { Done::Well } else { Done::ValueDifference })
 }
 
 /// Items that a restore leaves unchanged.
@@ -230,7 +230,7 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
 }
 
 /// Prints the result of writing an item. `operations` were executed, and `changes` has the old and new values.
-pub(crate) fn show_changed(
+pub(crate) fn show_changes(
     output: &Output,
     item: &str,
     operations: &[Json],

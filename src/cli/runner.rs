@@ -121,7 +121,7 @@ impl<D: Runs> Runner<D> {
         let patience = SlowReplyNotice::begin(D::reply_times(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("Could not start a thread: {error}.")]))?;
-        let stopper = worker.stopper();
+        let stop_handle = worker.stop_handle();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
         let interrupt = D::interrupt(&kept);
@@ -131,7 +131,7 @@ impl<D: Runs> Runner<D> {
             if again {
                 std::process::exit(130);
             }
-            stopper.stop();
+            stop_handle.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
         Ok(Runner { worker, interrupted, patience, remarks: Vec::new(), kept })

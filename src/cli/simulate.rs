@@ -208,7 +208,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
         Some(own) => {
             let (listener, socket, at) = datagrams::bind_tcp_and_udp(address).map_err(cannot)?;
             device.simulated.on_listening(at);
-            (listener, Some(datagrams::Served::new(socket, own, device.clock.clone())))
+            (listener, Some(datagrams::ServedDevice::new(socket, own, device.clock.clone())))
         }
         None => (TcpListener::bind(address).map_err(cannot)?, None),
     };

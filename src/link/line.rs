@@ -237,7 +237,7 @@ impl<'a> SerialLine<'a> {
             self.skip_bytes(&late);
         }
         self.wait_for_silence(state, quiet)?;
-        state.extend_allowance(lateness);
+        state.raise_margin(lateness);
         Ok(())
     }
 

@@ -26,7 +26,7 @@ pub use clock::{Clock, RealClock, VirtualClock, measure_timer_step};
 pub use datagram::{BroadcastChannel, DatagramChannel, DatagramPort};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
-pub use realtime_priority::wake_before_others;
+pub use realtime_priority::request_realtime_priority;
 pub use replay::ReplayLink;
 pub use replies::ReplyTimes;
 pub use serial::{PORT_EXAMPLE, PortInfo, SerialLink, ports};

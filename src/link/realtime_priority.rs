@@ -5,7 +5,7 @@ use thread_priority::{Error, ThreadPriority};
 
 /// Requests real-time priority for the calling thread until it ends. Returns whether the system granted the request. On
 /// Linux, the user needs the `rtprio` permission.
-pub fn wake_before_others() -> bool {
+pub fn request_realtime_priority() -> bool {
     let asked = ask();
     if let Err(error) = &asked {
         tracing::debug!("a thread of the cyclic connection is an ordinary one: {error}");

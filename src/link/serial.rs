@@ -43,7 +43,7 @@ pub struct PortInfo {
 /// # Errors
 /// Returns an error if the system does not list its ports.
 pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
-    if !platform::lists_ports() {
+    if !platform::can_list_ports() {
         return Ok(Vec::new());
     }
     let found = serialport::available_ports()
@@ -111,14 +111,14 @@ impl SerialLink {
             .timeout(Duration::from_millis(10));
         let port = lines(builder).open().map_err(|error| LinkError::new(path, open_error_kind(path, &error)))?;
         let link = SerialLink { port, target: path.to_owned(), clock };
-        link.warn_of_parity(format);
+        link.warn_if_parity_differs(format);
         // Bytes from before the opening belong to no reply. If they cannot be cleared, they damage the first frame,
         // which is then requested again.
         let _ = link.port.clear(ClearBuffer::Input);
         Ok(link)
     }
 
-    fn warn_of_parity(&self, format: CharacterFormat) {
+    fn warn_if_parity_differs(&self, format: CharacterFormat) {
         if let Ok(actual) = self.port.parity()
             && actual != parity(format.parity)
         {
@@ -172,7 +172,7 @@ impl ByteLink for SerialLink {
             .port
             .set_baud_rate(format.baud.bits_per_second())
             .and_then(|()| self.port.set_parity(parity(format.parity)));
-        self.warn_of_parity(format);
+        self.warn_if_parity_differs(format);
         set.map_err(|_| LinkError::new(&self.target, LinkErrorKind::Format(format.to_string())))
     }
 
@@ -214,7 +214,7 @@ mod platform {
     use super::LinkErrorKind;
 
     /// Returns whether `serialport` can list ports. The crate reads this folder without checking that it exists.
-    pub(super) fn lists_ports() -> bool {
+    pub(super) fn can_list_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
 
@@ -250,7 +250,7 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    pub(super) fn lists_ports() -> bool {
+    pub(super) fn can_list_ports() -> bool {
         true
     }
 

@@ -9,7 +9,9 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 use if_addrs::{IfAddr, Ifv4Addr};
 
-use super::{BroadcastChannel, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
+use super::{
+    BroadcastChannel, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, request_realtime_priority,
+};
 use crate::units::Moment;
 
 /// Length of the longest datagram in bytes. A longer one than the buffer would be cut on Linux, and be an error on Windows.
@@ -113,7 +115,7 @@ impl UdpChannel {
         let (hears, sender, from) = (deaf.clone(), self.sender.clone(), *self.target.ip());
         let thread = std::thread::Builder::new().name("cyclic packets".to_owned());
         let started = thread.spawn(move || {
-            wake_before_others();
+            request_realtime_priority();
             let mut buffer = vec![0; LONGEST];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {

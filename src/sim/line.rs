@@ -136,7 +136,7 @@ pub(crate) trait VirtualLine: Send {
     fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
     /// Transmits bytes of the host from `start` on. Returns the time at which the last byte has been sent.
-    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
+    fn transmit_from_host(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.
     fn supply_power(&mut self, now: Moment);
@@ -157,7 +157,7 @@ impl<L: VirtualLine> ByteDevice for L {
         let taken = bytes.get(..self.wires_mut().room()).unwrap_or(bytes);
         if !taken.is_empty() {
             let start = self.wires().now.max(self.wires().host_done);
-            let end = self.host_sends(start, taken);
+            let end = self.transmit_from_host(start, taken);
             let wires = self.wires_mut();
             wires.host_done = end;
             wires.sending.push_back((end, taken.len()));

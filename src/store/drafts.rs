@@ -47,7 +47,7 @@ impl Drafts {
         }
     }
 
-    pub fn has_any(&self, device: &str) -> bool {
+    pub fn has_drafts(&self, device: &str) -> bool {
         fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
     }
 

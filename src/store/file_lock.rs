@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn appended(text: Result<String, FileError>, more: &str) -> Result<(Option<String>, usize), FileError> {
+    fn append_text(text: Result<String, FileError>, more: &str) -> Result<(Option<String>, usize), FileError> {
         let text = text.or_else(|error| match error.problem {
             FileErrorKind::NotFound => Ok(String::new()),
             _ => Err(error),
@@ -109,7 +109,7 @@ mod tests {
                 let path = path.clone();
                 thread::spawn(move || {
                     for _ in 0..25 {
-                        update_text(&path, |text| appended(text, "x")).unwrap();
+                        update_text(&path, |text| append_text(text, "x")).unwrap();
                     }
                 })
             })
@@ -127,11 +127,11 @@ mod tests {
         fs::write(&path, "old").unwrap();
         let lock = FileLock::try_lock_at(&lock_path(&path)).unwrap();
         assert!(lock.is_some() && FileLock::try_lock_at(&lock_path(&path)).unwrap().is_none());
-        let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
+        let error = update_text(&path, |text| append_text(text, "x")).unwrap_err();
         assert_eq!((&error.path, error.problem), (&path, FileErrorKind::InUse));
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         drop(lock);
-        assert_eq!(update_text(&path, |text| appended(text, "x")), Ok(3));
+        assert_eq!(update_text(&path, |text| append_text(text, "x")), Ok(3));
     }
 
     #[test]
@@ -139,7 +139,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::create_dir_all(lock_path(&path)).unwrap();
-        let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
+        let error = update_text(&path, |text| append_text(text, "x")).unwrap_err();
         assert_eq!((error.path, error.problem), (path, FileErrorKind::IsFolder));
     }
 

@@ -32,7 +32,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
         return write_directly(path, content)
             .map_err(|error| FileErrorKind::from(error).of(FileOperation::Write, path));
     }
-    write_with(path, |file| file.write_all(content))
+    write_atomically_with(path, |file| file.write_all(content))
 }
 
 /// Writes a text like [`write_atomically`], but preserves an existing byte order mark.
@@ -51,7 +51,10 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
 ///
 /// # Errors
 /// Returns the errors of [`write_atomically`] and of `write`, and an error for a device or a pipe.
-pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+pub fn write_atomically_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
     let failed = |problem: FileErrorKind| problem.of(FileOperation::Write, path);
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileErrorKind::IsFolder)),
@@ -96,7 +99,7 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 /// Returns an error if the folder cannot be created, and the errors of [`write_atomically`].
-pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
+pub fn create_folder_and_write(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
     }
@@ -187,7 +190,7 @@ fn write_temp_file(
     let mut builder = tempfile::Builder::new();
     builder.prefix(leftovers::PREFIX).suffix(leftovers::SUFFIX);
     if permissions.is_none() {
-        platform::with_usual_permissions(&mut builder);
+        platform::set_default_permissions(&mut builder);
     }
     let mut file = builder.tempfile_in(folder)?;
     write(&mut file)?;
@@ -207,7 +210,7 @@ mod platform {
 
     /// Gives a new file the usual permissions, subject to the umask. Otherwise, a temporary file is private to its
     /// owner.
-    pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
+    pub(super) fn set_default_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }
 
@@ -228,7 +231,7 @@ mod platform {
     use std::io;
     use std::path::Path;
 
-    pub(super) fn with_usual_permissions(_: &mut tempfile::Builder<'_, '_>) {}
+    pub(super) fn set_default_permissions(_: &mut tempfile::Builder<'_, '_>) {}
 
     pub(super) fn flush_folder(_: &Path) -> io::Result<()> {
         Ok(())

@@ -200,12 +200,12 @@ mod tests {
     }
 
     /// A simulated disk that hangs until it is released.
-    struct Hanging {
+    struct HangingDisk {
         lock: Receiver<()>,
         written: Arc<Mutex<Vec<u8>>>,
     }
 
-    impl Write for Hanging {
+    impl Write for HangingDisk {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             let _ = self.lock.recv();
             self.written.lock().unwrap().extend(bytes);
@@ -224,7 +224,7 @@ mod tests {
         let log = LogFile::spawn_writer(
             {
                 let written = written.clone();
-                move || Ok(Hanging { lock, written })
+                move || Ok(HangingDisk { lock, written })
             },
             2,
         )

@@ -24,7 +24,9 @@ pub use device_files::read_folder;
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileErrorKind, FileOperation};
 pub use file_lock::update_text;
-pub use files::{MAX_TEXT, overwrite_text, read_file, read_text, write_atomically, write_in_folder, write_with};
+pub use files::{
+    MAX_TEXT, create_folder_and_write, overwrite_text, read_file, read_text, write_atomically, write_atomically_with,
+};
 pub use folders::BaseFolders;
 pub use log_file::LogFile;
 pub use logbook::{
@@ -86,7 +88,7 @@ impl Store {
     }
 
     /// Returns the device modes that must be restored after a job, one text per device.
-    pub fn excursions(&self) -> Drafts {
+    pub fn pending_mode_restores(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }
 

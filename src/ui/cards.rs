@@ -11,11 +11,11 @@ use crate::app::Text;
 const LOW: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
-    card_with(ui, theme, title, |_| {}, content)
+    card_with_trailing(ui, theme, title, |_| {}, content)
 }
 
 /// Draws a card with a heading. `aside` draws to the right of the heading.
-pub(crate) fn card_with<R>(
+pub(crate) fn card_with_trailing<R>(
     ui: &mut Ui,
     theme: &Theme,
     title: impl Into<Text>,
@@ -53,11 +53,11 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
 /// Draws a card with reference information. In a low window, the card shows only its heading at first. A click opens
 /// it, and it then stays open until the program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
-    folding_card_with(ui, theme, title, |_| {}, content);
+    folding_card_with_trailing(ui, theme, title, |_| {}, content);
 }
 
 /// Draws a [`folding_card`]. While the card is open, `aside` draws to the right of the heading.
-pub(crate) fn folding_card_with(
+pub(crate) fn folding_card_with_trailing(
     ui: &mut Ui,
     theme: &Theme,
     title: impl Into<Text>,
@@ -66,7 +66,7 @@ pub(crate) fn folding_card_with(
 ) {
     let title = title.into();
     if ui.ctx().content_rect().height() >= LOW {
-        return card_with(ui, theme, title, aside, content);
+        return card_with_trailing(ui, theme, title, aside, content);
     }
     let heading = theme.words(&title);
     let id = Id::unique("folding_card").with(title.id());

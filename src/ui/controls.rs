@@ -5,7 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub use super::cards::card;
-pub(crate) use super::cards::{card_with, disclosure, folding_card, folding_card_with};
+pub(crate) use super::cards::{card_with_trailing, disclosure, folding_card, folding_card_with_trailing};
 pub use super::entries::{committed_entry, text_entry};
 pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
 pub(crate) use super::label_column::label_width;

@@ -39,7 +39,7 @@ impl Docks {
     /// Loads the stored layout. Uses the default layout if none is stored.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
-        Docks { tree: tree.unwrap_or_else(first_layout), edited: false, alone: None, with_plot: LIVE }
+        Docks { tree: tree.unwrap_or_else(default_layout), edited: false, alone: None, with_plot: LIVE }
     }
 
     /// Returns the serialized layout if it has changed since the last call.
@@ -48,7 +48,7 @@ impl Docks {
     }
 
     pub(super) fn reset(&mut self) {
-        self.tree = first_layout();
+        self.tree = default_layout();
         self.edited = true;
     }
 
@@ -109,7 +109,7 @@ impl Docks {
     /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
     /// panel is left out.
     fn collect_lower_tiles(&self, tile: TileId, lower: &mut Vec<TileId>) {
-        if self.is_lower(tile) {
+        if self.is_in_lower_dock(tile) {
             lower.push(tile);
         } else if let Some(Container::Linear(_) | Container::Grid(_)) = self.tree.tiles.get_container(tile) {
             let children = self.tree.tiles.get_container(tile).map(Container::children_vec).unwrap_or_default();
@@ -117,10 +117,10 @@ impl Docks {
         }
     }
 
-    fn is_lower(&self, tile: TileId) -> bool {
+    fn is_in_lower_dock(&self, tile: TileId) -> bool {
         match self.tree.tiles.get(tile) {
             Some(Tile::Pane(pane)) => Pane::LOWER.contains(pane),
-            Some(Tile::Container(container)) => container.children().all(|child| self.is_lower(*child)),
+            Some(Tile::Container(container)) => container.children().all(|child| self.is_in_lower_dock(*child)),
             None => false,
         }
     }
@@ -134,7 +134,7 @@ fn is_complete(tree: &Tree<Pane>) -> bool {
     })
 }
 
-fn first_layout() -> Tree<Pane> {
+fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let workspace = tiles.insert_pane(Pane::Workspace);
     let live = tiles.insert_pane(Pane::Live);

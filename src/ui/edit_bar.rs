@@ -45,7 +45,7 @@ pub fn edit_bar_ui(
                 if primary_button(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                     actions.push(Action::Save(device.id()));
                 }
-                write_into_ui(ui, theme, studio, device, actions);
+                write_targets_ui(ui, theme, studio, device, actions);
             } else {
                 let word = theme.say("memory.review");
                 let write = primary_button(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
@@ -84,7 +84,7 @@ fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
 }
 
 /// Draws the list of connected devices of the matching kind. The profile can be written to them.
-fn write_into_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn write_targets_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     let word = theme.say("memory.write_into");

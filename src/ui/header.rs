@@ -4,7 +4,7 @@ use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, connection_dot, enabled_button, icon_button, name};
 use super::page::apart;
-use super::stop_debounce::{goes_down, press_time, register_stop_press};
+use super::stop_debounce::{press_began, press_time, register_stop_press};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
@@ -48,7 +48,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window, only icons are drawn, with their texts as tooltips. The STOP button of double width takes
     // more space.
-    let narrow = ui.ctx().content_rect().width() < if shows_wide_stop(studio) { 1240.0 } else { 1100.0 };
+    let narrow = ui.ctx().content_rect().width() < if shows_stop_overlay(studio) { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = theme.say(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
@@ -218,7 +218,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 /// Draws the STOP button. It ends every running job and every motion in all sessions. Its width doubles while a drive
 /// moves. While this window moves a drive, the button acts on press instead of release and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    let (moves, by_hand) = (shows_wide_stop(studio), studio.is_turned_by_hand());
+    let (moves, by_hand) = (shows_stop_overlay(studio), studio.is_turned_by_hand());
     let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are no reason for an alarm.
     let is_alarming = moves || studio.is_working() || studio.has_control();
@@ -239,7 +239,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let width = if moves { STOP * 2.0 } else { STOP };
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
     ui.data_mut(|data| data.insert_temp(stop_button_id(), response.rect.min));
-    let pressed = goes_down(ui, &response);
+    let pressed = press_began(ui, &response);
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
         // The display of a drive continues while the drive is stopped. All other running jobs continue too.
@@ -249,13 +249,13 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
 }
 
 /// Returns whether a drive is moving that can be stopped from here.
-fn shows_wide_stop(studio: &Studio) -> bool {
+fn shows_stop_overlay(studio: &Studio) -> bool {
     studio.moves() && studio.can_stop_motion()
 }
 
 /// Draws the STOP button in its usual place while a drive moves. It is on top of anything that covers the window.
 pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    if !shows_wide_stop(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
+    if !shows_stop_overlay(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
     }
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_button_id())) else { return };

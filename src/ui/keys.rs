@@ -5,7 +5,7 @@
 use egui::{Context, Event, Key};
 
 use super::stop_debounce;
-use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
+use super::widgets::{has_hold_button_focus, is_hold_button_held};
 use crate::app::{KeyStates, PressKey};
 
 pub(super) struct KeyboardFilter {
@@ -27,7 +27,7 @@ impl KeyboardFilter {
             self.fresh.forget();
         }
         self.asked = asks;
-        let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_keyboard(ctx));
+        let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_focus(ctx));
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
         // Enter completes a text entry and presses no button there.
         let typing = ctx.text_edit_focused();
@@ -52,7 +52,7 @@ impl KeyboardFilter {
                     Some(own) => fresh.press(own),
                     None => {
                         if !asks {
-                            fresh.note_other_key_press(now);
+                            fresh.record_other_key_press(now);
                         }
                         if !typing {
                             fresh.doubt(now);

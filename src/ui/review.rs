@@ -84,7 +84,7 @@ fn content_ui(
             operations_ui(ui, theme, (&sheet.lines, room), Some(*done));
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
-            redo_ui(ui, theme, sheet);
+            setup_notice_ui(ui, theme, sheet);
             let stopping = device.running().is_some_and(|running| running.stopping);
             right_aligned(ui, |ui| {
                 let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
@@ -102,7 +102,7 @@ fn content_ui(
                 ui.label(RichText::new(icons::CHECK_CIRCLE).size(theme.sizes.section).color(theme.palette.good));
                 ui.label(theme.words(verified));
             });
-            redo_ui(ui, theme, sheet);
+            setup_notice_ui(ui, theme, sheet);
             if let Some(backup) = backup {
                 row(ui, theme, &theme.say("review.backup"), theme.monospace(backup.display().to_string()));
             }
@@ -128,7 +128,7 @@ fn content_ui(
                     ui.add(egui::Label::new(theme.words(text)).wrap().selectable(true));
                 });
             }
-            redo_ui(ui, theme, sheet);
+            setup_notice_ui(ui, theme, sheet);
             options_ui(ui, theme, device, sheet, actions);
             buttons_ui(ui, theme, device, actions, "review.close", |_, _| {});
         }
@@ -245,7 +245,7 @@ const HEADS: f32 = 56.0;
 
 fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let palette = theme.palette;
-    redo_ui(ui, theme, sheet);
+    setup_notice_ui(ui, theme, sheet);
     for text in &sheet.warnings {
         remark_ui(ui, icons::WARNING, palette.warn, &theme.words(text));
     }
@@ -258,7 +258,7 @@ fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
 }
 
 /// Draws a red notice above the operations, listing the values that must be set up again.
-fn redo_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
+fn setup_notice_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;
     ui.horizontal_top(|ui| {

@@ -21,19 +21,19 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
 }
 
 /// Returns whether the pointer is pressed on a stop button in this frame.
-pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
+pub(crate) fn press_began(ui: &Ui, response: &Response) -> bool {
     let is_press = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if is_press {
         let now = ui.input(|input| input.time);
-        with(ui.ctx(), |presses| presses.goes_down(now));
+        with(ui.ctx(), |presses| presses.press_began(now));
     }
     is_press
 }
 
 /// Returns the start time of the stop button press that counts in this frame.
-pub(crate) fn press_time(ui: &Ui, goes_down: bool) -> f64 {
+pub(crate) fn press_time(ui: &Ui, press_began: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
-    with(ui.ctx(), |presses| presses.press_time(goes_down || released, now))
+    with(ui.ctx(), |presses| presses.press_time(press_began || released, now))
 }
 
 /// Returns whether Esc is newly pressed in this frame. Repeats of a held key do not count.

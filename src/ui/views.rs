@@ -62,7 +62,7 @@ impl Views {
         self.tabs.pages(tab).get(page).copied()
     }
 
-    pub(super) fn forget_closed(&mut self, studio: &Studio) {
+    pub(super) fn remove_closed_sessions(&mut self, studio: &Studio) {
         self.sessions.retain(|id, _| studio.device(*id).is_some());
     }
 }

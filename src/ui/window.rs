@@ -13,7 +13,7 @@ use super::keys::KeyboardFilter;
 use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
 use super::page::apart;
-use super::widgets::{HoldSurroundings, surround_hold_buttons};
+use super::widgets::{HoldButtonContext, set_hold_button_context};
 use super::{Theme, Views, header, review, status_line, stop_debounce};
 use crate::app::{Action, AnyDevice, Studio, ThemeData};
 
@@ -76,7 +76,7 @@ impl Window {
         self.studio.poll();
         let mut actions = Vec::new();
         let theme = Theme::new(self.look, self.studio.settings.theme, self.studio.settings.language);
-        self.take_input(&ctx, &theme, &mut actions);
+        self.handle_input(&ctx, &theme, &mut actions);
         let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
             theme.apply_to(&ctx);
@@ -84,7 +84,7 @@ impl Window {
         self.draw_panels(ui, &theme, &mut actions);
         self.dialogs(&ctx, &theme, &mut actions);
         header::stop_overlay_ui(&ctx, &theme, &self.studio, &mut actions);
-        self.take_escape(&ctx, in_use, &mut actions);
+        self.handle_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
             // The effect of the actions must be drawn.
             ctx.request_repaint();
@@ -98,7 +98,7 @@ impl Window {
         if let Some(question) = self.studio.take_path_question() {
             self.show_path_entry(question);
         }
-        self.follow_up(&ctx);
+        self.finish_frame(&ctx);
     }
 
     fn show_path_entry(&mut self, question: crate::app::FileQuestion) {
@@ -113,8 +113,8 @@ impl Window {
             .exact_size(48.0)
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, theme, studio, views, actions));
-        writing_bar_ui(ui, theme, studio);
-        moving_edge_ui(ui, theme, studio);
+        write_indicator_ui(ui, theme, studio);
+        motion_indicator_ui(ui, theme, studio);
         self.status_line(ui, theme, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
@@ -225,7 +225,7 @@ impl Window {
         }
     }
 
-    fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
+    fn handle_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.handle_close_request(ctx);
         }
@@ -240,7 +240,7 @@ impl Window {
             self.views.help = !self.views.help;
         }
         let covered = self.has_open_dialog() || self.views.help;
-        surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_motion_active() });
+        set_hold_button_context(ctx, HoldButtonContext { covered, moving: self.studio.is_motion_active() });
         if covered || !ctx.input(|input| input.focused) {
             // The held button is not visible, or the release of its key will not be reported. The effect is already in
             // this frame. An action would request another frame each time.
@@ -312,23 +312,23 @@ impl Window {
 
     /// Handles Esc. It first stops what is running and then closes what is open. A half-typed byte, an open menu or a
     /// field being dragged takes precedence, because it holds the keyboard or the pointer.
-    fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
+    fn handle_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // While this window moves a drive, Esc applies to the motion, even if something is open or dragged.
         let moves = self.studio.is_turned_by_hand();
-        let goes_down = stop_debounce::is_escape_pressed(ctx);
+        let press_began = stop_debounce::is_escape_pressed(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
-        if !is_pressed && goes_down && moves {
+        if !is_pressed && press_began && moves {
             // With Ctrl or Alt, Esc closes nothing but still stops.
             stop_debounce::register_stop_press(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }
-        if !is_pressed || (in_use || !goes_down) && !moves {
+        if !is_pressed || (in_use || !press_began) && !moves {
             return;
         }
         let means_motion = stop_debounce::register_stop_press(ctx, moves, ctx.input(|input| input.time));
         // A held key stops only what has started since it was pressed. A further press within half a second also
         // applies to motion only. This includes a motion requested in this frame that has not begun.
-        if !goes_down || means_motion && !moves {
+        if !press_began || means_motion && !moves {
             actions.push(Action::StopMotion);
             return;
         }
@@ -346,7 +346,7 @@ impl Window {
         actions.push(Action::Escape);
     }
 
-    fn follow_up(&mut self, ctx: &egui::Context) {
+    fn finish_frame(&mut self, ctx: &egui::Context) {
         let size = ctx.content_rect().size();
         let size = (size.x.round() as u32, size.y.round() as u32);
         if self.studio.settings.size != Some(size) {
@@ -355,7 +355,7 @@ impl Window {
         if self.studio.can_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        self.views.forget_closed(&self.studio);
+        self.views.remove_closed_sessions(&self.studio);
         if self.studio.moves() {
             // These frames refresh any motion. It stops after 250 ms without a frame.
             ctx.request_repaint_after(Duration::from_millis(30));
@@ -368,7 +368,7 @@ impl Window {
 }
 
 /// Draws a red edge on the header while a drive moves.
-fn moving_edge_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+fn motion_indicator_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if studio.moves() {
         let screen = ui.ctx().content_rect();
         let edge = egui::Rect::from_min_size(screen.min + egui::vec2(0.0, 45.0), egui::vec2(screen.width(), 3.0));
@@ -377,7 +377,7 @@ fn moving_edge_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 }
 
 /// Draws an animated bar along the top edge during a write.
-fn writing_bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+fn write_indicator_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if !studio.devices().iter().any(|device| device.is_writing()) {
         return;
     }

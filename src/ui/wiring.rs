@@ -26,17 +26,17 @@ pub(crate) fn wires_ui(
 
 /// Checks that each wire has the given name and English text. Its German text must differ from the English.
 #[cfg(test)]
-pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
+pub(crate) fn assert_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
     for ((wire, id), (name, facts)) in wires.iter().zip(expected) {
         assert_eq!(wire, name);
-        check_notes(texts, &[*id], facts);
+        assert_notes(texts, &[*id], facts);
     }
 }
 
 /// Checks that a card's notes have the given English texts. Their German texts must differ from these.
 #[cfg(test)]
-pub(crate) fn check_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
+pub(crate) fn assert_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};
     let said = |language| notes.iter().map(|id| texts.text(id).words(language)).collect::<Vec<_>>().join(" ");
     let (english, german) = (said(English), said(German));

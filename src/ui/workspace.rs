@@ -15,7 +15,7 @@ const ABOVE_NOTHING: f32 = 0.22;
 const OPTION: f32 = 240.0;
 
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    if views.plot.is_large()
+    if views.plot.is_expanded()
         && let Some(device) = studio.selected_device()
     {
         let margin = egui::Margin::same(theme.space.groups as i8);
@@ -28,14 +28,14 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
         return;
     }
     let Some(device) = device_in_tab(studio, tab) else {
-        return nothing_ui(ui, theme, views.tabs.device(tab), actions);
+        return empty_page_ui(ui, theme, views.tabs.device(tab), actions);
     };
     let Some(session) = views.session(device) else { return };
     apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
 /// Draws the buttons for opening a device. They are shown while no device is open.
-fn nothing_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
+fn empty_page_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     ui.add_space((ui.available_height() * ABOVE_NOTHING).round());
     ui.vertical_centered(|ui| {
         if let Some(view) = view {

@@ -48,7 +48,7 @@ pub struct Committed<W> {
 
 /// The reason why a write did not begin. Nothing was written.
 #[derive(Debug, thiserror::Error)]
-pub enum NotBegun {
+pub enum NotStarted {
     /// The consent is for another plan.
     #[error("the consent is for another plan")]
     OtherPlan,
@@ -83,7 +83,7 @@ pub trait Planned {
     type Kind;
 
     /// Returns the plan with its kind of change and the wear of the device.
-    fn head(&self) -> PlanHead<'_, Self>;
+    fn head(&self) -> PlanHeader<'_, Self>;
 
     /// Returns the key that identifies the device in backups and the logbook.
     fn device(&self, is_virtual: bool) -> DeviceKey;
@@ -120,7 +120,7 @@ pub trait Planned {
 }
 
 /// A plan with its kind of change and the wear of the device.
-pub struct PlanHead<'p, P: Planned + ?Sized> {
+pub struct PlanHeader<'p, P: Planned + ?Sized> {
     /// Plan to write.
     pub plan: &'p Plan<P::Base, P::Op>,
     /// Kind of change that the plan makes.
@@ -132,7 +132,7 @@ pub struct PlanHead<'p, P: Planned + ?Sized> {
 }
 
 /// The error of a write that did not begin or was interrupted. It is the device's error if the base has changed.
-type Unfinished<P, W, E> =
+type WritePlanError<P, W, E> =
     JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
 
 /// Writes a plan to which the user has consented. Each operation is reported before it begins. A plan without
@@ -146,7 +146,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     agreed: &ApprovedPlan<P>,
     write: &mut W,
     tell: &mut dyn FnMut(Progress<&P::Op>),
-) -> Result<Committed<W::Written>, Unfinished<P, W, E>> {
+) -> Result<Committed<W::Written>, WritePlanError<P, W, E>> {
     let ApprovedPlan { prepared, consent, force_wear } = agreed;
     let plan = prepared.plan();
     if plan.is_empty() {
@@ -154,14 +154,15 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     }
     let (cost, planned) = (plan.write_cycles(), plan.ops.len());
     check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), *force_wear)?;
-    let confirmed = Confirmed::confirm(plan, *consent, write).ok_or(NotBegun::OtherPlan)?.map_err(JobError::Device)?;
+    let confirmed =
+        Confirmed::confirm(plan, *consent, write).ok_or(NotStarted::OtherPlan)?.map_err(JobError::Device)?;
     let items = plan.ops.iter().flat_map(|op| prepared.changed_items(op)).collect();
     let intent = Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None };
     let intended = WriteIntent::note(store, &prepared.device(is_virtual), intent, &prepared.before_image());
-    let intended = intended.map_err(NotBegun::NotKept)?;
+    let intended = intended.map_err(NotStarted::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
-        return Err(NotBegun::WearUnknown { cost }.into());
+        return Err(NotStarted::WearUnknown { cost }.into());
     }
     let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, step: what });
     let ended = confirmed.carry_out(write, tell);
@@ -182,7 +183,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
 }
 
 /// Creates the profile to be saved before a write.
-pub fn backup_of(body: Body) -> ProfileDocument {
+pub fn backup_document(body: Body) -> ProfileDocument {
     let mut document = ProfileDocument::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
@@ -219,12 +220,12 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
 /// Checks whether a write with this cost may begin, according to the known write cycles.
 ///
 /// # Errors
-/// Returns [`NotBegun::WearUnknown`] or [`NotBegun::Worn`].
-pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotBegun> {
+/// Returns [`NotStarted::WearUnknown`] or [`NotStarted::Worn`].
+pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotStarted> {
     match seen {
         _ if force_wear => Ok(()),
-        None if cost > 0 => Err(NotBegun::WearUnknown { cost }),
-        Some(seen) if seen.saturating_add(cost) > limit => Err(NotBegun::Worn { seen, cost, limit }),
+        None if cost > 0 => Err(NotStarted::WearUnknown { cost }),
+        Some(seen) if seen.saturating_add(cost) > limit => Err(NotStarted::Worn { seen, cost, limit }),
         _ => Ok(()),
     }
 }

@@ -65,7 +65,7 @@ impl<D: Device> EventSender<D> {
     }
 
     /// Sends the waiting events and wakes the reader.
-    pub(super) fn flush_late(&mut self) {
+    pub(super) fn flush_and_wake(&mut self) {
         if !self.is_empty() {
             self.flush();
             (self.wake)();
@@ -103,7 +103,7 @@ mod tests {
         outbox.send(progress(1000));
         assert_eq!(events.try_iter().count(), CAPACITY, "the channel was full");
         let before = wakes.load(Ordering::SeqCst);
-        outbox.flush_late();
+        outbox.flush_and_wake();
         assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
         let late: Vec<Event<TestDevice>> = events.try_iter().collect();
         assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::NotBegun;
+use super::NotStarted;
 use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
 /// The reason why a job ended early, for any kind of device.
@@ -33,7 +33,7 @@ pub enum JobError<E, P, I, K> {
     Plan(P),
     /// The write did not begin. The device has reached its limit of write cycles, or its backup cannot be saved.
     #[error(transparent)]
-    NotBegun(#[from] NotBegun),
+    NotStarted(#[from] NotStarted),
     /// The write began but was not completed.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
@@ -54,7 +54,7 @@ impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P
         match self {
             JobError::Device(error) => Some(error),
             JobError::Interrupted { interrupted, .. } => interrupted.cause.device(),
-            JobError::Plan(_) | JobError::NotBegun(_) => None,
+            JobError::Plan(_) | JobError::NotStarted(_) => None,
         }
     }
 }
@@ -71,7 +71,7 @@ where
     fn done(&self) -> Option<usize> {
         match self {
             JobError::Interrupted { interrupted, .. } => Some(interrupted.done.ops()),
-            JobError::Device(_) | JobError::Plan(_) | JobError::NotBegun(_) => None,
+            JobError::Device(_) | JobError::Plan(_) | JobError::NotStarted(_) => None,
         }
     }
 }

@@ -83,11 +83,11 @@ impl Live {
         self.sampling.request();
     }
 
-    pub(super) fn sampling_cancel(&self) -> &CancelToken {
+    pub(super) fn sampling_cancel_token(&self) -> &CancelToken {
         &self.sampling
     }
 
-    pub(super) fn stopper(&self) -> WorkerStopHandle {
+    pub(super) fn stop_handle(&self) -> WorkerStopHandle {
         WorkerStopHandle(self.clone())
     }
 

@@ -29,7 +29,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
-pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
+pub use commit::{Committed, NotStarted, check_wear, is_uncounted};
 pub use interruption::{JobError, JobInterruption};
 pub use live::WorkerStopHandle;
 pub use open::OpenError;
@@ -89,7 +89,7 @@ pub trait Device: Send + 'static {
     -> Result<Watched<Self::Sample>, Self::Error>;
 
     /// Takes the message that the device has sent since the last call.
-    fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
+    fn take_device_message(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
 
@@ -270,8 +270,8 @@ impl<D: Device> Worker<D> {
     }
 
     /// Returns a handle that can [`stop`](Self::stop) the worker without owning it.
-    pub fn stopper(&self) -> WorkerStopHandle {
-        self.live.stopper()
+    pub fn stop_handle(&self) -> WorkerStopHandle {
+        self.live.stop_handle()
     }
 
     /// Requests samples while no job is running. `interval` is from start to start, and zero means back to back. `None`
@@ -315,7 +315,7 @@ impl<D: Device> Worker<D> {
     }
 
     /// Returns whether the thread has ended and the wire is free.
-    pub fn is_ended(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         has_ended(&self.ended)
     }
 
@@ -360,7 +360,7 @@ impl<D: Device> Ending<D> {
     }
 
     /// Returns whether the thread has ended and the wire is free.
-    pub fn is_ended(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         has_ended(&self.ended)
     }
 

@@ -54,7 +54,7 @@ pub(crate) const fn reply_margin(scheme: LinkScheme) -> Duration {
 ///
 /// # Errors
 /// Returns an [`OpenError`]. Nothing has been sent then.
-pub fn open_bytes(
+pub fn open_byte_stream(
     url: &LinkUrl,
     format: CharacterFormat,
     clock: &Arc<dyn Clock>,

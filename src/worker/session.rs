@@ -93,7 +93,7 @@ impl<D: Device> Session<D> {
             JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
             JobReport::Remark(remark) => tell(Event::Remark(remark)),
         });
-        while let Some(remark) = self.take_remark() {
+        while let Some(remark) = self.take_device_message() {
             tell(Event::Remark(remark));
         }
         match result {
@@ -125,8 +125,8 @@ impl<D: Device> Session<D> {
     }
 
     /// Returns a message that the device has sent since the last call, unless an event contains it.
-    pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
-        self.device.take_remark()
+    pub(super) fn take_device_message(&mut self) -> Option<D::DeviceMessage> {
+        self.device.take_device_message()
     }
 
     /// Runs a job on this thread and returns only its result.

@@ -165,7 +165,7 @@ impl<P: Producer> Stream<P> {
     }
 
     /// Returns whether the thread has ended and its resources are free.
-    pub fn is_ended(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         has_ended(&self.ended)
     }
 

@@ -68,7 +68,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
     let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
         // The token is reset first, and then the requests are read for which it was set. See `Live::interrupt_sample`.
-        bench.live.sampling_cancel().reset();
+        bench.live.sampling_cancel_token().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
                 bench.carry_out(order);
@@ -79,7 +79,7 @@ fn run_loop<D: Device>(mut bench: Bench<D>) {
             Err(TryRecvError::Disconnected) => break,
             Err(TryRecvError::Empty) => {}
         }
-        bench.events.flush_late();
+        bench.events.flush_and_wake();
         if let Some(watches) = bench.watches.changed_entries(&mut known) {
             agenda.watch(watches);
         }
@@ -131,7 +131,7 @@ impl<D: Device> Bench<D> {
     /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted the
     /// operation, which is then still due.
     fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
-        self.session.set_cancel(self.live.sampling_cancel().clone());
+        self.session.set_cancel(self.live.sampling_cancel_token().clone());
         let request = self.live.number();
         let taken = match due {
             DueRequest::Sample => self.session.sample(),
@@ -148,7 +148,7 @@ impl<D: Device> Bench<D> {
             Err(error) if error.is_cancelled() => return false,
             Err(error) => {
                 self.live.poll_failed(request);
-                while let Some(remark) = self.session.take_remark() {
+                while let Some(remark) = self.session.take_device_message() {
                     self.events.send(Event::Remark(remark));
                 }
                 self.events.send(Event::PollFailed(Box::new(error)));
@@ -159,7 +159,7 @@ impl<D: Device> Bench<D> {
 
     fn run_idle_work(&mut self) {
         // A job interrupts this request, as it interrupts a sample.
-        self.session.set_cancel(self.live.sampling_cancel().clone());
+        self.session.set_cancel(self.live.sampling_cancel_token().clone());
         if let Some(remark) = self.session.idle() {
             self.events.send(Event::Remark(remark));
         }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde_json::json;
 
 use super::biss_profile::PROFILE;
-use super::support::{Bench, Foreign, Ran, requested_frame};
+use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json", "--yes"]].concat())
@@ -168,12 +168,12 @@ fn on_a_terminal_the_user_names_the_motor_source() {
         ("1\nn\n", "nothing was written"),
         ("1\n\n", "calibration table is lost"),
     ] {
-        let ran = requested_frame(&bench, &command, answers);
+        let ran = run_on_terminal(&bench, &command, answers);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.contains("How is the motor driven?") && ran.out.contains(words), "{words}: {ran:?}");
         assert_eq!(written(&encoder), [""; 0]);
     }
-    let ran = requested_frame(&bench, &command, "1\ny\n");
+    let ran = run_on_terminal(&bench, &command, "1\ny\n");
     assert_eq!(ran.status, Some(0), "{ran:?}");
     assert!(
         ran.out.contains("Turn the motor counterclockwise") && ran.out.contains("Turn the motor clockwise"),

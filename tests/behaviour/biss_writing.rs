@@ -4,7 +4,7 @@ use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
 
 use super::biss_profile::PROFILE;
-use super::support::{Bench, Foreign, Ran, requested_frame};
+use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
 /// The content of the profile for bank 24h and 25h, and its preset value of 270°.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
@@ -367,14 +367,14 @@ fn on_a_terminal_leading_back_needs_confirmation() {
     let Some(encoder) = bench.kit(&[]) else { return };
     let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];
     for no in ["n\n", "\n"] {
-        let ran = requested_frame(&bench, &lead_back, no);
+        let ran = run_on_terminal(&bench, &lead_back, no);
         assert!(
             ran.status == Some(1) && ran.out.contains("not saved") && ran.out.contains("was not changed"),
             "{ran:?}"
         );
     }
     assert_eq!(encoder.requests(), [""; 0]);
-    assert_eq!(requested_frame(&bench, &lead_back, "y\n").status, Some(0));
-    assert_eq!(requested_frame(&bench, &[&lead_back[..], &["--yes"]].concat(), "").status, Some(0));
+    assert_eq!(run_on_terminal(&bench, &lead_back, "y\n").status, Some(0));
+    assert_eq!(run_on_terminal(&bench, &[&lead_back[..], &["--yes"]].concat(), "").status, Some(0));
     assert_eq!(bench.run(&lead_back).status, Some(0));
 }

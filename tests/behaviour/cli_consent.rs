@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::support::{Bench, frame, python, requested_frame};
+use super::support::{Bench, frame, python, run_on_terminal};
 
 #[test]
 fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
@@ -14,14 +14,14 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     // On a terminal the program asks about a drive as well (issue 22.30), unless the answer was given.
     let arguments = ["write", "hiperface", "field:0@1", "16", "--only-master", "--link", &encoder.url];
     for no in ["n\n", "\n", "what?\n"] {
-        let ran = requested_frame(&bench, &arguments, no);
+        let ran = run_on_terminal(&bench, &arguments, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         for words in ["field:0@1+1", "15", "16", "nothing was written"] {
             assert!(ran.out.contains(words), "{words}: {ran:?}");
         }
         assert_eq!(encoder.writes(), [""; 0]);
     }
-    let ran = requested_frame(&bench, &arguments, "y\n");
+    let ran = run_on_terminal(&bench, &arguments, "y\n");
     assert_eq!(ran.status, Some(0), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
 }
@@ -37,7 +37,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
     }
     let arguments = ["identify", "hiperface", "--link", &encoder.url];
     for reply in ["yes\n", "y\n", "not sure\n", "\n"] {
-        let ran = requested_frame(&bench, &arguments, reply);
+        let ran = run_on_terminal(&bench, &arguments, reply);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(
             ran.out.contains("Is a drive or controller connected") && ran.out.contains("Nothing was sent"),
@@ -45,7 +45,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
         );
         assert_eq!(encoder.requests(), [""; 0], "{reply:?}");
     }
-    let ran = requested_frame(&bench, &arguments, "no\n");
+    let ran = run_on_terminal(&bench, &arguments, "no\n");
     assert!(ran.status == Some(0) && ran.out.contains("serial number"), "{ran:?}");
 }
 
@@ -132,16 +132,16 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     }
     std::fs::write(&file, "dear").unwrap();
     for no in ["n\n", "\n"] {
-        let ran = requested_frame(&bench, &save, no);
+        let ran = run_on_terminal(&bench, &save, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.contains("already exists") && ran.out.contains("was not changed"), "{ran:?}");
         assert_eq!(bench.read("layout.ron"), "dear");
     }
-    assert_eq!(requested_frame(&bench, &save, "y\n").status, Some(0));
+    assert_eq!(run_on_terminal(&bench, &save, "y\n").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
     // With an option as the answer, there is no question.
     std::fs::write(&file, "dear").unwrap();
-    assert_eq!(requested_frame(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
+    assert_eq!(run_on_terminal(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
 }
 
@@ -161,7 +161,7 @@ fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
         &["write", "hiperdrive", "24", "5"],
     ];
     for write in writes {
-        let ran = requested_frame(&bench, &[write, &["--link", "sim:"]].concat(), "y\n");
+        let ran = run_on_terminal(&bench, &[write, &["--link", "sim:"]].concat(), "y\n");
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.contains("--force-wear") && !ran.out.contains("Write?"), "{ran:?}");
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran, requested_frame};
+use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
 /// Programs of a foreign encoder: two of them, as JSON.
 const PROGRAMS: &str =
@@ -225,13 +225,13 @@ fn reading_cam_programs_needs_confirmation() {
         assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("The outputs switch to each program"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert!(bench.run(&[command[0], "--help"]).out.contains("live outputs"), "{command:?}");
-        let ran = requested_frame(&bench, command, "n\n");
+        let ran = run_on_terminal(&bench, command, "n\n");
         assert!(ran.status == Some(1) && ran.out.contains("Does the machine stand still?"), "{ran:?}");
         assert!(!selects(), "{command:?}");
     }
-    let ran = requested_frame(&bench, commands[3], "y\n");
+    let ran = run_on_terminal(&bench, commands[3], "y\n");
     assert!(ran.status == Some(0) && ran.out.contains("0..0"), "{ran:?}");
     // A command that selects no program asks nothing.
-    let ran = requested_frame(&bench, &["do", "interbus", "check", "--link", &url], "");
+    let ran = run_on_terminal(&bench, &["do", "interbus", "check", "--link", &url], "");
     assert!(ran.status == Some(0) && !ran.out.contains("stand still?"), "{ran:?}");
 }

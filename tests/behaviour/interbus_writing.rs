@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use encoder_studio::store::DeviceKey;
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran, requested_frame};
+use super::support::{Bench, Foreign, Ran, run_on_terminal};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
@@ -282,11 +282,11 @@ fn the_stores_of_an_eeprom_are_counted() {
     encoder.requests();
     let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
     for no in ["n\n", "y\nn\n"] {
-        let ran = requested_frame(&bench, &typed, no);
+        let ran = run_on_terminal(&bench, &typed, no);
         assert!(ran.status == Some(1) && ran.out.contains("nothing was written"), "{ran:?}");
     }
     assert!(written(&encoder).is_empty());
-    let ran = requested_frame(&bench, &typed, "y\ny\n");
+    let ran = run_on_terminal(&bench, &typed, "y\ny\n");
     assert!(ran.status == Some(0) && ran.out.contains("must be stopped"), "{ran:?}");
     assert_eq!(written(&encoder), ["W 0A000005", "STORE parameters"]);
     wear_to(449);

@@ -383,7 +383,7 @@ impl Drop for Simulated {
 const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
 /// Runs the program on a terminal on which an answer is typed.
-pub(crate) fn requested_frame(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
+pub(crate) fn run_on_terminal(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new("python3");
     command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());

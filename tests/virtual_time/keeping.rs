@@ -6,7 +6,7 @@ use encoder_studio::devices::hiperface::jobs::{Change, JobError};
 use encoder_studio::devices::hiperface::profile::FieldRange;
 use encoder_studio::devices::hiperface::protocol::{AccessCode, AccessCodeNumber};
 use encoder_studio::store::Store;
-use encoder_studio::worker::NotBegun;
+use encoder_studio::worker::NotStarted;
 
 use crate::support::{Desk, backup};
 
@@ -25,8 +25,8 @@ fn without_a_backup_nothing_is_written() {
         let error = desk.change(store_byte(0xEE)).unwrap_err();
         // Without a folder, the write cycles are not known either.
         let refused = match in_the_way {
-            "data" => matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })),
-            _ => matches!(error, JobError::NotBegun(NotBegun::NotKept(_))),
+            "data" => matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })),
+            _ => matches!(error, JobError::NotStarted(NotStarted::NotKept(_))),
         };
         assert!(refused, "{in_the_way}: {error:?}");
         assert_eq!((desk.memory(), desk.wear()), (memory, 0), "{in_the_way}");
@@ -48,7 +48,7 @@ fn a_broken_logbook_stops_an_unforced_write() {
         }
         let prepared = desk.prepare(store_byte(0xEE)).unwrap();
         let error = desk.commit(&prepared).unwrap_err();
-        assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })), "{error:?}");
+        assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error:?}");
         assert_eq!(desk.wear(), 0);
         let done = desk.commit_by_force(&prepared).unwrap();
         assert!(done.logbook_warning.is_some());

@@ -87,7 +87,7 @@ fn a_new_interval_applies_immediately() {
 #[test]
 fn a_stop_ends_polling() {
     let bench = in_virtual_time("");
-    for stop in [Worker::stop, |worker: &Worker<Hiperface>| worker.stopper().stop()] {
+    for stop in [Worker::stop, |worker: &Worker<Hiperface>| worker.stop_handle().stop()] {
         bench.worker.poll(BACK_TO_BACK);
         samples(&bench.worker, 3);
         stop(&bench.worker);

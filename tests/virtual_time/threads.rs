@@ -164,7 +164,7 @@ fn a_closed_worker_has_ended_even_during_a_job() {
         if busy {
             bench.worker.submit(search()).unwrap();
         }
-        assert!(!bench.worker.is_ended());
+        assert!(!bench.worker.is_finished());
         assert!(bench.worker.close(LONG));
         assert_eq!(Arc::strong_count(&bench.clock), 1, "the session is gone");
     }
@@ -176,7 +176,7 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
     let id = bench.worker.submit(search()).unwrap();
     let ending = bench.worker.end();
     assert!(ending.wait(LONG));
-    assert!(ending.is_ended());
+    assert!(ending.is_finished());
     assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
 }
 
@@ -184,15 +184,15 @@ fn an_ending_worker_still_reports_the_end_of_its_job() {
 #[test]
 fn a_stop_applies_to_one_job() {
     let mut bench = in_virtual_time("");
-    let stopper = bench.worker.stopper();
-    stopper.stop();
+    let stop_handle = bench.worker.stop_handle();
+    stop_handle.stop();
     bench.worker.submit(identify()).unwrap();
     assert!(matches!(until_end(&bench.worker).last(), Some(Event::Finished(..))), "the stop came before");
 
     let mut bench = in_real_time("settings=0xE0");
-    let stopper = bench.worker.stopper();
+    let stop_handle = bench.worker.stop_handle();
     bench.worker.submit(search()).unwrap();
-    std::thread::spawn(move || stopper.stop());
+    std::thread::spawn(move || stop_handle.stop());
     until_end(&bench.worker);
     assert!(bench.tap.lock().unwrap().sent.len() < 32, "the search has ended early");
 }

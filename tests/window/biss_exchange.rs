@@ -11,7 +11,7 @@ use encoder_studio::devices::biss::state::BissAction as Biss;
 use encoder_studio::signals::state::{SignalsAction as Signals, SourceAction};
 
 use crate::biss_support::{ask, connect, encoder, is_read};
-use crate::served::Served;
+use crate::served::ServedDevice;
 use crate::support::Desk;
 
 fn edit(desk: &mut Desk) {
@@ -24,7 +24,7 @@ fn edit(desk: &mut Desk) {
 
 #[test]
 fn edits_of_one_encoder_are_never_planned_for_another() {
-    let served = Served::new("serial=1");
+    let served = ServedDevice::new("serial=1");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
     edit(&mut desk);
@@ -47,7 +47,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
 /// Without edits, only the discarded plan is reported.
 #[test]
 fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
-    let served = Served::new("serial=1");
+    let served = ServedDevice::new("serial=1");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
     served.exchange("serial=2");
@@ -61,7 +61,7 @@ fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
 
 #[test]
 fn a_wire_is_used_by_the_encoder_or_the_scope() {
-    let served = Served::new("rpm=6");
+    let served = ServedDevice::new("rpm=6");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
     desk.signals(Signals::Source(SourceAction::SetLink(served.link())));
@@ -79,7 +79,7 @@ fn a_wire_is_used_by_the_encoder_or_the_scope() {
 
 #[test]
 fn an_adapter_does_not_take_the_wire_from_a_write() {
-    let served = Served::new("rpm=0");
+    let served = ServedDevice::new("rpm=0");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
     ask(&mut desk, Biss::LeadBack);

@@ -11,7 +11,7 @@ use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
 use encoder_studio::devices::biss::profile::{MotorSource, MountingSteps, Op, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, PresetValue};
-use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, End, Reached, ReviewState};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, End, ReviewState, StepStatus};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
@@ -42,7 +42,7 @@ fn plan(desk: &mut Desk, change: Change) {
 fn until_asked(desk: &mut Desk, task: Task, ready: bool) {
     desk.until("it is asked", |studio| {
         let guide = studio.biss().and_then(|own| own.guide.as_ref());
-        let demand = guide.and_then(|guide| guide.demand());
+        let demand = guide.and_then(|guide| guide.operator_prompt());
         demand.is_some_and(|own| own.task == task && own.is_ready() == ready)
     });
 }
@@ -109,7 +109,7 @@ fn calibration() -> Change {
 }
 
 fn turn_of(studio: &Studio) -> Option<Task> {
-    Some(studio.biss()?.guide.as_ref()?.demand()?.task)
+    Some(studio.biss()?.guide.as_ref()?.operator_prompt()?.task)
 }
 
 #[test]
@@ -162,12 +162,12 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     assert_eq!(weights, [Severity::Warning, Severity::Note, Severity::Good, Severity::Note]);
     assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
     assert!(!may_lead_back, "it is in operation");
-    let reached: Vec<Reached> = guide.steps().iter().map(|own| own.reached).collect();
-    let cut = reached.iter().position(|own| *own == Reached::Cancelled).unwrap();
-    assert!(reached[..cut].iter().all(|own| *own == Reached::Done), "{reached:?}");
+    let reached: Vec<StepStatus> = guide.steps().iter().map(|own| own.reached).collect();
+    let cut = reached.iter().position(|own| *own == StepStatus::Cancelled).unwrap();
+    assert!(reached[..cut].iter().all(|own| *own == StepStatus::Done), "{reached:?}");
     let (back, between) = reached[cut + 1..].split_last().unwrap();
-    assert_eq!(*back, Reached::Done, "it was led back");
-    assert!(!between.is_empty() && between.iter().all(|own| *own == Reached::Ahead), "{reached:?}");
+    assert_eq!(*back, StepStatus::Done, "it was led back");
+    assert!(!between.is_empty() && between.iter().all(|own| *own == StepStatus::Ahead), "{reached:?}");
 }
 
 #[test]

@@ -483,8 +483,8 @@ fn another_type_of_device_needs_a_separate_permission() {
         let sheet = shown(&desk.studio).unwrap().sheet().unwrap();
         let Stage::Failed { texts, .. } = &sheet.stage else { panic!() };
         assert!(texts[0].words(Language::English).contains("another type of device"), "{texts:?}");
-        assert!(sheet.toggles.iter().any(|own| own.permit == Permit::OtherType && !own.is_on));
-        review(&mut desk, ReviewAction::Toggle(Permit::OtherType));
+        assert!(sheet.toggles.iter().any(|own| own.permit == Permit::TypeMismatch && !own.is_on));
+        review(&mut desk, ReviewAction::Toggle(Permit::TypeMismatch));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Ready(_) | Stage::Nothing));
         let warnings = shown(&desk.studio).unwrap().sheet().unwrap().warnings;
         let named = ["review.other_type", "biss_review.other_kind", "ib_review.other_type", "hd_review.other_kind"];

@@ -188,7 +188,7 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
 #[test]
 fn pitch_and_unit_are_remembered() {
     let mut desk = read("sim:");
-    assert_eq!(unit(&desk).ruler(ONE).available_measures().count(), 3, "no millimetres without a spindle");
+    assert_eq!(unit(&desk).ruler(ONE).available_units().count(), 3, "no millimetres without a spindle");
     let pitch = Length { nanometres: 4_000_000 };
     act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
     act(&mut desk, Hiperdrive::SetMeasure(PositionUnit::Millimetres));

@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    AxisAction as Run, AxisButton, AxisStep, End, Power, Reached, RestartEvidence, TestTarget, words,
+    AxisAction as Run, AxisButton, AxisStep, End, Power, RestartEvidence, StepStatus, TestTarget, words,
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::sim::SimulatedFaults;
@@ -38,18 +38,18 @@ fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
     run(&mut desk, Run::Press(AxisButton::PowerCycle));
     desk.until("it is back", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().survived() && own.session.is_ready()
+        own.axis().unwrap().has_survived() && own.session.is_ready()
     });
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
-    assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).step_status(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).step_status(step) == StepStatus::Done));
     let (lower, upper) = limits;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [1, 400, 256, lower.into(), upper.into()]);
 }
 
 #[test]
 fn nothing_moves_before_the_limits_are_confirmed() {
-    let mut desk = until_jog();
+    let mut desk = at_jog_step();
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).step(), AxisStep::Confirm);
     control(&mut desk);
@@ -66,7 +66,7 @@ fn nothing_moves_before_the_limits_are_confirmed() {
 /// The values that the user saw on pressing count, even if the window learns with the press that they are outdated.
 #[test]
 fn limits_changed_since_they_were_shown_are_not_confirmed() {
-    let mut desk = until_jog();
+    let mut desk = at_jog_step();
     run(&mut desk, Run::Press(AxisButton::Confirm));
     // Again from the beginning, so that no lock blocks it.
     run(&mut desk, Run::Begin);
@@ -155,7 +155,7 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
         (Motor::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
         (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
-        held_until(&mut desk, press, "it turns", |own| own.moves.held_motion(own.drive()).is_some());
+        held_until(&mut desk, press, "it turns", |own| own.moves.held_jog(own.drive()).is_some());
         let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
@@ -186,7 +186,7 @@ fn a_pitch_applies_only_after_confirmation() {
 /// Issue 21.6 (h): the next run reports an interrupted one, also after a restart of the program.
 #[test]
 fn a_new_run_lists_changes_left_by_an_aborted_one() {
-    let mut desk = until_jog();
+    let mut desk = at_jog_step();
     let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.words(Language::English));
     let told = differences(&desk).unwrap();
     assert!(
@@ -233,14 +233,14 @@ fn a_reconnection_is_not_a_power_cycle() {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && matches!(own.axis().unwrap().power(), Some(Power::Back { .. }))
     });
-    assert!(!axis(&desk).survived());
+    assert!(!axis(&desk).has_survived());
     assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     // A power cycle without the program noticing, as with a real one; no request is made meanwhile.
     target.power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
-    desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
-    assert!(axis(&desk).survived(), "{:?}", axis(&desk).power());
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().has_survived());
+    assert!(axis(&desk).has_survived(), "{:?}", axis(&desk).power());
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
     assert_eq!(restart, RestartEvidence::Read);
     run(&mut desk, Run::Next);
@@ -250,7 +250,7 @@ fn a_reconnection_is_not_a_power_cycle() {
 /// Issue 21.6 (g): a fault during the test is reported with its code, disables motion, and is acknowledged there.
 #[test]
 fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
-    let mut desk = until_test(FRESH, 1, false);
+    let mut desk = at_test_step(FRESH, 1, false);
     go(&mut desk, TestTarget::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
     let clock = Moment::default();
@@ -328,7 +328,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
-    desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().has_survived());
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
     assert_eq!(restart, RestartEvidence::Read);
     until_ready(&mut desk);

@@ -204,9 +204,9 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(warned(&desk), ["hd_refused.outside"]);
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
-    assert!(unit(&desk).check_can_allow_endless(ONE).is_ok(), "it can be switched on");
+    assert!(unit(&desk).check_can_allow_endless_run(ONE).is_ok(), "it can be switched on");
     drive(&mut desk, Motor::Expert(true));
-    assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
+    assert!(unit(&desk).check_can_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
     assert!(is_at_standstill(&desk));
     // Each endless run must be allowed again.
@@ -302,7 +302,7 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.limits(ONE) == Some((-65_536, 65_536)) && own.session.is_ready()
     });
-    assert!(unit(&desk).check_can_allow_endless(ONE).is_err(), "they are not the factory's");
+    assert!(unit(&desk).check_can_allow_endless_run(ONE).is_err(), "they are not the factory's");
     drive(&mut desk, Motor::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
@@ -321,37 +321,37 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
     let own = unit(&desk);
     assert_eq!(own.outside_limits_text(ONE).unwrap().id(), "hd_outside.words");
-    assert_eq!(own.may_jog(ONE, up).unwrap_err().id(), "hd_refused.outward");
-    assert!(own.may_jog(ONE, down).is_ok());
+    assert_eq!(own.check_can_jog(ONE, up).unwrap_err().id(), "hd_refused.outward");
+    assert!(own.check_can_jog(ONE, down).is_ok());
     drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
     desk.studio.poll();
     assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(up));
-            assert!(unit(desk).may_jog(ONE, up).is_ok() && !unit(desk).can_enable_outward(ONE, up));
+            assert!(unit(desk).check_can_jog(ONE, up).is_ok() && !unit(desk).can_enable_outward_jog(ONE, up));
             drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
         let press = Motor::JogPress { direction: up, repeated: false };
         hold_pad_until(&mut desk, press, "it moves out", free, moves);
         let sent = unit(&desk).moves.sent(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
-        assert!(unit(&desk).may_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
+        assert!(unit(&desk).check_can_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
         drive(&mut desk, Motor::JogRelease);
         desk.until("it stands", |studio| {
             let own = studio.hiperdrive().unwrap();
             own.state(ONE) != Some(State::Moving) && !own.moves.is_motion_active()
         });
-        assert!(unit(&desk).may_jog(ONE, up).is_err(), "freed for one press");
+        assert!(unit(&desk).check_can_jog(ONE, up).is_err(), "freed for one press");
     }
     // A permission ends with a stop, and with another page of the window.
     drive(&mut desk, Motor::FreeOutward(up));
     desk.act(Action::StopMotion);
-    assert!(unit(&desk).may_jog(ONE, up).is_err());
+    assert!(unit(&desk).check_can_jog(ONE, up).is_err());
     drive(&mut desk, Motor::FreeOutward(up));
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
-    assert!(unit(&desk).may_jog(ONE, up).is_err());
+    assert!(unit(&desk).check_can_jog(ONE, up).is_err());
 }
 
 /// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves,
@@ -367,12 +367,12 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     assert_eq!(unit(&desk).outside_limits_text(ONE).unwrap().id(), "hd_outside.unclear");
     for (way, other) in [(up, down), (down, up)] {
         for own in [up, down] {
-            assert_eq!(unit(&desk).may_jog(ONE, own).unwrap_err().id(), "hd_refused.unclear", "{own:?}");
+            assert_eq!(unit(&desk).check_can_jog(ONE, own).unwrap_err().id(), "hd_refused.unclear", "{own:?}");
             assert!(unit(&desk).is_blocked(ONE, own), "{own:?}");
         }
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(way));
-            assert!(unit(desk).may_jog(ONE, way).is_ok() && unit(desk).may_jog(ONE, other).is_err());
+            assert!(unit(desk).check_can_jog(ONE, way).is_ok() && unit(desk).check_can_jog(ONE, other).is_err());
             drive(desk, Motor::JogEffort(SpeedTorque { speed: Percent::FULL, torque: Percent::FULL }));
         };
         let press = Motor::JogPress { direction: way, repeated: false };

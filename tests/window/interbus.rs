@@ -113,7 +113,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     edit(&mut desk, Edit::Gear { steps: 7200, revolutions: 2 });
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(5), start: 7000, stop: 40, on: true });
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(6), start: 100, stop: 200, on: true });
-    assert!(encoder(&desk).edits_parameters() && encoder(&desk).edits_cams());
+    assert!(encoder(&desk).has_parameter_edits() && encoder(&desk).has_cam_edits());
     wish(&mut desk, DeviceCommand::Undo);
     wish(&mut desk, DeviceCommand::Redo);
     // One parameterisation and one program.
@@ -165,7 +165,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
         studio.interbus().is_some_and(|own| own.record.last().is_some() && own.session.is_ready())
     });
     desk.settle();
-    assert!(encoder(&desk).survey.is_none() && encoder(&desk).needs_standstill());
+    assert!(encoder(&desk).survey.is_none() && encoder(&desk).needs_standstill_confirmation());
     let sent = |desk: &Desk| desk.outside.wire(GATE).outs();
     assert_eq!(sent(&desk), 0, "no OUT word");
     wish(&mut desk, DeviceCommand::Read);
@@ -209,7 +209,7 @@ fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     act(&mut desk, Interbus::PasteTable(program(1), table.replace("9;0;x;1;2\n", "")));
     act(&mut desk, Interbus::TakeTable(true));
     let own = encoder(&desk);
-    assert!(own.import.is_none() && own.edits_cams());
+    assert!(own.import.is_none() && own.has_cam_edits());
     let wanted = own.staged.wanted().unwrap();
     let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
     // 350 to 400 degrees pass the end: 400 is 40.

@@ -239,7 +239,7 @@ fn onto_another(desk: &mut Desk, path: &std::path::Path) {
 fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
     until_refused(desk);
-    desk.toggle(Permit::OtherType);
+    desk.toggle(Permit::TypeMismatch);
 }
 
 /// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an
@@ -307,7 +307,7 @@ fn another_type_of_encoder_needs_a_separate_permission() {
     until_refused(&mut desk);
     let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
     assert_eq!(texts[0].id(), "plan.other_type");
-    desk.toggle(Permit::OtherType);
+    desk.toggle(Permit::TypeMismatch);
     desk.until_planned();
     assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
 }

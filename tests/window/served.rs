@@ -12,7 +12,7 @@ use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
 /// An adapter on a TCP port, for one connection after the other.
-pub(crate) struct Served {
+pub(crate) struct ServedDevice {
     port: u16,
     /// Received requests.
     heard: Arc<Mutex<Vec<Request>>>,
@@ -22,11 +22,11 @@ pub(crate) struct Served {
     other: Arc<Mutex<Option<Adapter>>>,
 }
 
-impl Served {
+impl ServedDevice {
     pub(crate) fn new(query: &str) -> Self {
         let mut adapter = adapter(query);
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let served = Served {
+        let served = ServedDevice {
             port: listener.local_addr().unwrap().port(),
             heard: Arc::default(),
             cut: Arc::default(),

@@ -11,7 +11,7 @@ use encoder_studio::buses::bridge::protocol::Request;
 use encoder_studio::signals::state::{Origin, SignalsAction as Signals, SourceAction, SourceKind};
 
 use crate::screen::Screen;
-use crate::served::Served;
+use crate::served::ServedDevice;
 use crate::support::{Desk, HANGING, LONG, Outside};
 
 fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
@@ -57,7 +57,7 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
 
 #[test]
 fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
-    let served = Served::new("rpm=60");
+    let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     for round in 1..=3 {
         begin(&mut desk, &served.link(), 20_000);
@@ -73,7 +73,7 @@ fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
 
 #[test]
 fn a_closing_window_stops_the_adapter_first() {
-    let served = Served::new("rpm=60");
+    let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
@@ -84,7 +84,7 @@ fn a_closing_window_stops_the_adapter_first() {
 
 #[test]
 fn a_lost_connection_is_reported_and_can_be_restarted() {
-    let served = Served::new("rpm=60");
+    let served = ServedDevice::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);

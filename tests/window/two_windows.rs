@@ -36,7 +36,7 @@ fn found(desk: &Desk) -> Settings {
 
 /// Polls both windows until a condition holds.
 #[track_caller]
-fn combine_spreads(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk) -> bool) {
+fn poll_both_until(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk) -> bool) {
     let [first, second] = windows;
     let began = Instant::now();
     while !condition(first, second) {
@@ -92,9 +92,9 @@ fn changes_of_each_window_survive_the_others_write() {
     second.act(Action::KeepSize(1500, 900));
     second.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:second:1");
     let all = ["Light", "German", "1500", "tcp:first:1", "tcp:second:1"];
-    combine_spreads([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
+    poll_both_until([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
     first.act(Action::KeepLayout("(a layout)".to_owned()));
-    combine_spreads([&mut first, &mut second], "it is kept", |first, _| settings_contain(first, &["(a layout)"]));
+    poll_both_until([&mut first, &mut second], "it is kept", |first, _| settings_contain(first, &["(a layout)"]));
     let kept = found(&first);
     assert_eq!((kept.theme, kept.language, kept.size), (ColorScheme::Light, Language::German, Some((1500, 900))));
     assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
@@ -118,11 +118,11 @@ fn limits_marked_by_another_window_are_locked() {
     assert!(!is_locked(&first) && !is_locked(&second));
     scale(&mut first, 400);
     assert!(is_locked(&first));
-    combine_spreads([&mut first, &mut second], "the other one is locked", |_, second| is_locked(second));
+    poll_both_until([&mut first, &mut second], "the other one is locked", |_, second| is_locked(second));
     drive(&mut second, Motor::Step { by: 64 });
     assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
     second.act(Action::SetTheme(ColorScheme::Light));
-    combine_spreads([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light"]));
+    poll_both_until([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light"]));
     bystander.act(Action::SetLanguage(Language::German));
     first.until("that is kept", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains("German")));
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
@@ -139,24 +139,24 @@ fn limits_are_confirmed_in_each_window() {
     with_drives(&mut second);
     take(&mut second);
     scale(&mut first, 400);
-    combine_spreads([&mut first, &mut second], "both are locked", |_, second| is_locked(second));
+    poll_both_until([&mut first, &mut second], "both are locked", |_, second| is_locked(second));
     drive(&mut second, Motor::ConfirmLimits(ONE));
     assert!(!is_locked(&second));
-    combine_spreads([&mut first, &mut second], "that is kept", |first, _| {
+    poll_both_until([&mut first, &mut second], "that is kept", |first, _| {
         settings_contain(first, &["unconfirmed: []"])
     });
     assert!(is_locked(&first) && !is_locked(&second));
     // After any write on either side.
     first.act(Action::SetTheme(ColorScheme::Light));
     second.act(Action::SetLanguage(Language::German));
-    combine_spreads([&mut first, &mut second], "that is kept", |first, _| {
+    poll_both_until([&mut first, &mut second], "that is kept", |first, _| {
         settings_contain(first, &["Light", "German"])
     });
     let began = Instant::now();
-    combine_spreads([&mut first, &mut second], "some time passes", |_, _| began.elapsed() > Duration::from_secs(3));
+    poll_both_until([&mut first, &mut second], "some time passes", |_, _| began.elapsed() > Duration::from_secs(3));
     assert!(is_locked(&first) && !is_locked(&second));
     scale(&mut first, 100);
-    combine_spreads([&mut first, &mut second], "the other one is locked again", |_, second| is_locked(second));
+    poll_both_until([&mut first, &mut second], "the other one is locked again", |_, second| is_locked(second));
     assert!(settings_contain(&first, &["unconfirmed: [", "1,"]));
 }
 
@@ -172,7 +172,7 @@ fn values_typed_for_a_drive_stay_in_their_window() {
     act(&mut second, Hiperdrive::SetPitch(two, pitch(5_000_000)));
     act(&mut second, Hiperdrive::SetMeasure(PositionUnit::Degrees));
     let all = ["1: 4000000", "2: 5000000", "Degrees"];
-    combine_spreads([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
+    poll_both_until([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
     assert_eq!((unit(&first).pitch(two), unit(&second).pitch(ONE)), (None, None));
     assert_eq!(unit(&first).measure, PositionUnit::Steps);
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };

@@ -56,7 +56,7 @@ impl Columns {
     /// Finds the columns by name. Returns `None` if sine or cosine is missing.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
-            let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
+            let at = names.iter().position(|name| known.contains(&name_without_unit(name).as_str()));
             at.map(|at| at + 1)
         };
         let references = find(&["refsin", "sinref", "sinminus", "sin-", "-sin", "nsin"])
@@ -131,7 +131,7 @@ pub(super) fn is_unit(text: &str) -> bool {
 }
 
 /// Returns a column name in lower case and without its unit: `Time [ms]` becomes `time`.
-fn bare_name(name: &str) -> String {
+fn name_without_unit(name: &str) -> String {
     let name = name.trim().to_lowercase();
     let bare = match column_unit(&name) {
         Some(unit) => name.strip_suffix([']', ')']).unwrap_or(&name).strip_suffix(unit).unwrap_or(&name).to_owned(),

@@ -4,7 +4,7 @@ use super::super::import::Import;
 use super::*;
 use crate::analysis::capture::Capture;
 
-fn read_in(pieces: usize, text: &[u8], wishes: &TableHints) -> Result<(Layout, Capture), CaptureError> {
+fn read_in_pieces(pieces: usize, text: &[u8], wishes: &TableHints) -> Result<(Layout, Capture), CaptureError> {
     let mut import = Import::begin(text, wishes)?;
     for piece in text.chunks(pieces) {
         import.feed(piece)?;
@@ -15,9 +15,9 @@ fn read_in(pieces: usize, text: &[u8], wishes: &TableHints) -> Result<(Layout, C
 #[track_caller]
 fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
     let text = text.as_ref();
-    let whole = read_in(1 << 20, text, &TableHints::default());
+    let whole = read_in_pieces(1 << 20, text, &TableHints::default());
     for pieces in [1, 7] {
-        assert_eq!(read_in(pieces, text, &TableHints::default()), whole, "in pieces of {pieces}");
+        assert_eq!(read_in_pieces(pieces, text, &TableHints::default()), whole, "in pieces of {pieces}");
     }
     whole
 }
@@ -79,7 +79,7 @@ fn the_detected_layout_is_returned_and_can_be_overridden() {
         volts_per_unit: Some(2.0),
         ..TableHints::default()
     };
-    let (_, capture) = read_in(99, text, &wishes).unwrap();
+    let (_, capture) = read_in_pieces(99, text, &wishes).unwrap();
     assert_eq!((capture.sine_v, capture.cosine_v, capture.time_s), (vec![4.0, 8.0], vec![3.0, 6.0], vec![]));
 }
 
@@ -120,12 +120,12 @@ fn errors_name_row_and_column() {
 #[test]
 fn row_numbers_are_right_beyond_the_sniffed_head() {
     let mut text: String = (0..20_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
-    let (_, capture) = read_in(4096, text.as_bytes(), &TableHints::default()).unwrap();
+    let (_, capture) = read_in_pieces(4096, text.as_bytes(), &TableHints::default()).unwrap();
     assert_eq!(capture.sine_v.len(), 20_000);
     assert!((capture.time_s[19_999] - 0.019_999).abs() < 1e-12);
     text.push_str("0,?,0\n");
     let expected = CaptureError::NotANumber { row: 20_001, column: 2, text: "?".to_owned() };
-    assert_eq!(read_in(4096, text.as_bytes(), &TableHints::default()).unwrap_err(), expected);
+    assert_eq!(read_in_pieces(4096, text.as_bytes(), &TableHints::default()).unwrap_err(), expected);
 }
 
 #[test]
@@ -149,9 +149,9 @@ fn reference_and_absolute_position_columns_are_recognized() {
         columns: Some(Columns { reference_angle: Some(4), absolute: Some(5), ..Columns::PLAIN }),
         ..TableHints::default()
     };
-    let (_, capture) = read_in(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", &wishes).unwrap();
+    let (_, capture) = read_in_pieces(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", &wishes).unwrap();
     assert_eq!((capture.reference_deg, capture.absolute), both);
-    let error = read_in(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8.5\n", &wishes).unwrap_err();
+    let error = read_in_pieces(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8.5\n", &wishes).unwrap_err();
     assert_eq!(error, CaptureError::NotWhole { row: 2, column: 5, text: "-8.5".to_owned() });
     let error = read("t,sin,cos,reference\n0,1,2,3\n1,1,2\n").unwrap_err();
     assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
@@ -178,7 +178,7 @@ fn start_and_increment_define_the_times() {
     }
     // A unit given by the user takes precedence.
     let wishes = TableHints { time_unit: Some(TimeUnit::Milliseconds), ..TableHints::default() };
-    assert_eq!(read_in(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
+    assert_eq!(read_in_pieces(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
 }
 
 /// Issue 22.13: rows without a value are left out and counted; so is a truncated last line. Six rows are enough for a
@@ -264,7 +264,10 @@ fn an_unclosed_quotation_mark_swallows_no_rows() {
         assert_eq!(read(text).unwrap_err(), CaptureError::OpenQuote { row: 8 }, "{column}");
     }
     let long = format!("t,sin,cos\n{six}6,3,4,\"{}", "7,8,9\n".repeat(400_000));
-    assert_eq!(read_in(4096, long.as_bytes(), &TableHints::default()).unwrap_err(), CaptureError::OpenQuote { row: 8 });
+    assert_eq!(
+        read_in_pieces(4096, long.as_bytes(), &TableHints::default()).unwrap_err(),
+        CaptureError::OpenQuote { row: 8 }
+    );
     // Closed at the end of the file, over two lines.
     let (_, capture) = read(format!("t,sin,cos,note\n{six}6,7,8,\"two\nlines\"")).unwrap();
     assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
@@ -279,7 +282,7 @@ fn sample_numbers_are_integers_in_the_first_column() {
     let expected = CaptureError::NotASampleNumber { row: 4, column: 1, text: "0.5".to_owned() };
     assert_eq!(read(times).unwrap_err(), expected);
     let wishes = TableHints { time_unit: Some(TimeUnit::Seconds), ..TableHints::default() };
-    assert_eq!(read_in(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
+    assert_eq!(read_in_pieces(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
 }
 
 /// Issue 22.13: 9.9E37 and 9.91E37 are the notation of SCPI instruments for an overload and a missing value.

@@ -122,7 +122,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     found.truncate(MOST);
     let radial_v2 = found.iter().map(|found| found.radial_v2).sum();
     let mut lines: Vec<Interference> = found.into_iter().map(|found| found.line).collect();
-    name_mains_lines(&mut lines, spacing_hz);
+    assign_mains_frequencies(&mut lines, spacing_hz);
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
@@ -205,7 +205,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 
 /// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both mains frequencies, so the other lines
 /// decide.
-fn name_mains_lines(lines: &mut [Interference], spacing_hz: f64) {
+fn assign_mains_frequencies(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;
     }

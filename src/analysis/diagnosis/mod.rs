@@ -215,7 +215,7 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
         say(Severity::Fault, what);
     }
     for found in limits.judge(&analysis.ellipse, analysis.coverage.residual_rms) {
-        if single.is_some() && trust::is_of_single_ended(&found) {
+        if single.is_some() && trust::is_caused_by_single_ended(&found) {
             continue;
         }
         let explained = matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_));

@@ -41,7 +41,7 @@ fn steady(time: f64) -> f64 {
     1234.5 * time
 }
 
-fn added(volts_sine: f64, volts_cosine: f64, hertz: f64) -> impl Fn(f64, f64, (f64, f64)) -> (f64, f64) {
+fn with_interference(volts_sine: f64, volts_cosine: f64, hertz: f64) -> impl Fn(f64, f64, (f64, f64)) -> (f64, f64) {
     move |time, _, (sine, cosine)| {
         let wave = (TAU * hertz * time).sin();
         (sine + volts_sine * wave, cosine + volts_cosine * wave)
@@ -124,7 +124,7 @@ fn amplitude_variation_over_a_revolution_is_not_interference() {
 fn interference_is_reported_with_frequency_and_amplitude() {
     for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
         for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
-            let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding_text();
+            let finding = made(steady, with_interference(volts, -0.5 * volts, hertz)).finding_text();
             let FindingKind::Interference { frequency_hz, volts: found, share, common } = finding.kind else {
                 panic!("{finding:?}")
             };
@@ -139,7 +139,8 @@ fn interference_is_reported_with_frequency_and_amplitude() {
 
 #[test]
 fn interference_is_found_while_the_speed_changes() {
-    let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding_text();
+    let finding =
+        made(|time| 500.0 * time + 100.0 * time * time, with_interference(0.02, 0.015, 8_000.0)).finding_text();
     let FindingKind::Interference { frequency_hz, volts, common, .. } = finding.kind else { panic!("{finding:?}") };
     near(frequency_hz, 8_000.0, 0.5);
     near(volts, 0.02, 2e-4);
@@ -160,7 +161,7 @@ fn mains_hum_is_reported_with_its_harmonics() {
         near(share, 0.02, 1e-4);
     }
     // Ten milliseconds cannot distinguish 50 Hz from the mean level.
-    let mut short = made(steady, added(0.01, 0.01, 50.0));
+    let mut short = made(steady, with_interference(0.01, 0.01, 50.0));
     for column in [&mut short.time, &mut short.sine, &mut short.cosine] {
         column.truncate(1_000);
     }
@@ -170,7 +171,7 @@ fn mains_hum_is_reported_with_its_harmonics() {
 #[test]
 fn noise_is_reported_separately_from_spectral_lines() {
     let mut random = fastrand::Rng::with_seed(9);
-    let mut capture = made(steady, added(0.02, 0.0, 8_000.0));
+    let mut capture = made(steady, with_interference(0.02, 0.0, 8_000.0));
     for value in capture.sine.iter_mut().chain(&mut capture.cosine) {
         *value += 0.01 * 3.0_f64.sqrt() * ((0..4).map(|_| random.f64()).sum::<f64>() - 2.0);
     }

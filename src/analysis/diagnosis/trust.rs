@@ -64,6 +64,6 @@ pub(super) fn detect_single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
 
 /// Returns whether a finding results from single-ended columns. Such columns have the wire's level as their offset and
 /// half the amplitude.
-pub(super) fn is_of_single_ended(found: &OutOfLimits) -> bool {
+pub(super) fn is_caused_by_single_ended(found: &OutOfLimits) -> bool {
     matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
 }

@@ -183,7 +183,7 @@ impl<T: Number> SampleBlock<T> {
     }
 
     pub(super) fn first_valid(&self, range: Range<usize>) -> Option<usize> {
-        if self.flags.is_surely_good(range.start) {
+        if self.flags.is_known_valid(range.start) {
             return (!range.is_empty()).then_some(range.start);
         }
         if self.len() == BLOCK && self.top.is_empty() {
@@ -200,7 +200,7 @@ impl<T: Number> SampleBlock<T> {
     }
 
     pub(super) fn last_valid(&self, range: Range<usize>) -> Option<usize> {
-        if self.flags.is_surely_good(range.end.saturating_sub(1)) {
+        if self.flags.is_known_valid(range.end.saturating_sub(1)) {
             return range.end.checked_sub(1).filter(|last| *last >= range.start);
         }
         if self.len() == BLOCK && self.top.is_empty() {

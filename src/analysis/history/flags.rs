@@ -110,7 +110,7 @@ impl FlagBlock {
     }
 
     /// Returns whether the group summary alone proves that sample `at` has a valid value.
-    pub(super) fn is_surely_good(&self, at: usize) -> bool {
+    pub(super) fn is_known_valid(&self, at: usize) -> bool {
         !self.flags_in_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
 
@@ -229,7 +229,7 @@ mod tests {
             }
             for (at, flags) in plain.iter().enumerate() {
                 assert_eq!(block.get(at), *flags);
-                assert!(!block.is_surely_good(at) || !flags.contains(Flags::BAD));
+                assert!(!block.is_known_valid(at) || !flags.contains(Flags::BAD));
             }
             assert_eq!(block.any(), union(&plain));
         }

@@ -68,7 +68,7 @@ impl<'a> Part<'a> {
 
     /// Adds flags, one entry per value.
     #[must_use]
-    pub fn flagged(self, flags: &'a [Flags]) -> Self {
+    pub fn with_flags(self, flags: &'a [Flags]) -> Self {
         Part { flags, ..self }
     }
 
@@ -188,7 +188,7 @@ impl History {
 
     /// Returns the time of the oldest sample that remains after `more` further samples are appended. Returns `None` if
     /// no current sample remains.
-    pub fn oldest_after(&self, more: usize) -> Option<SampleTime> {
+    pub fn oldest_remaining_time(&self, more: usize) -> Option<SampleTime> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
         self.times.get(first.max(self.times.first()))

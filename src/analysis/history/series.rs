@@ -95,7 +95,7 @@ impl<T: Number> Series<T> {
 
     /// Returns the first sample in `range` that has a valid value.
     pub(super) fn first_valid(&self, range: Range<u64>) -> Option<u64> {
-        if !range.is_empty() && self.is_surely_good(range.start) {
+        if !range.is_empty() && self.is_known_valid(range.start) {
             return Some(range.start);
         }
         self.parts(range).find_map(|(start, block, range)| Some(start + block.first_valid(range)? as u64))
@@ -103,7 +103,7 @@ impl<T: Number> Series<T> {
 
     /// Returns the last sample in `range` that has a valid value.
     pub(super) fn last_valid(&self, range: Range<u64>) -> Option<u64> {
-        if !range.is_empty() && self.is_surely_good(range.end - 1) {
+        if !range.is_empty() && self.is_known_valid(range.end - 1) {
             return Some(range.end - 1);
         }
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
@@ -111,10 +111,10 @@ impl<T: Number> Series<T> {
 
     /// Returns whether sample `index` is stored and has a valid value. This is a quick check: false does not prove that
     /// the value is invalid.
-    fn is_surely_good(&self, index: u64) -> bool {
+    fn is_known_valid(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
         let has_it = |block: &&SampleBlock<T>| index >= self.first && at < block.len();
-        self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
+        self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_known_valid(at))
     }
 
     pub(super) fn memory(&self) -> usize {

@@ -61,18 +61,18 @@ pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
         let (mut least, mut most) = (*first, *first);
         for group in others {
             for ((least, most), value) in least.iter_mut().zip(&mut most).zip(group) {
-                *least = smaller_of(*least, *value);
-                *most = larger_of(*most, *value);
+                *least = min_of(*least, *value);
+                *most = max_of(*most, *value);
             }
         }
-        (reduce_eight(least, smaller_of), reduce_eight(most, larger_of))
+        (reduce_eight(least, min_of), reduce_eight(most, max_of))
     });
     let start = of_groups.or_else(|| rest.first().map(|first| (*first, *first)))?;
-    Some(rest.iter().fold(start, |(least, most), value| (smaller_of(least, *value), larger_of(most, *value))))
+    Some(rest.iter().fold(start, |(least, most), value| (min_of(least, *value), max_of(most, *value))))
 }
 
 pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
-    (reduce_eight(*values, smaller_of), reduce_eight(*values, larger_of))
+    (reduce_eight(*values, min_of), reduce_eight(*values, max_of))
 }
 
 /// Reduces eight values pairwise. No operation then has to wait for the previous one.
@@ -80,11 +80,11 @@ fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, 
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
 
-fn smaller_of<T: Number>(one: T, other: T) -> T {
+fn min_of<T: Number>(one: T, other: T) -> T {
     if other < one { other } else { one }
 }
 
-fn larger_of<T: Number>(one: T, other: T) -> T {
+fn max_of<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 

@@ -31,7 +31,7 @@ impl Made {
     }
 
     #[track_caller]
-    fn comes_out(&self, tolerance: f64) -> Outliers {
+    fn assert_ellipse_fits(&self, tolerance: f64) -> Outliers {
         let analysis = self.analysed().unwrap();
         let (found, put) = (analysis.ellipse, ELLIPSE);
         for (found, put) in [
@@ -51,7 +51,7 @@ impl Made {
 fn a_single_spike_is_excluded_and_reported() {
     let mut capture = made(360, 1.0, 0.0);
     capture.sine[100] = 5.0;
-    let told = capture.comes_out(1e-9);
+    let told = capture.assert_ellipse_fits(1e-9);
     assert_eq!((told.stretches.first(), told.count, told.longest), (Some(&(100..101)), 1, 1));
     // The sine was 0.45 V and is 5 V; on the corrected circle that is r/cos α times as much, mostly outward.
     assert!(told.farthest_v > 4.0 && told.farthest_v < 5.2, "{told:?}");
@@ -71,7 +71,7 @@ fn spikes_in_a_long_capture_do_not_change_the_fit() {
     for at in (50_000..50_030).chain([0, 99_999]) {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
-    let told = capture.comes_out(6.0 * 1.8e-5);
+    let told = capture.assert_ellipse_fits(6.0 * 1.8e-5);
     // Some of the sparks are along the ellipse and not away from it.
     assert!(told.count <= 72 && told.count >= 66, "{}", told.count);
     assert_eq!(told.longest, 30);
@@ -91,7 +91,7 @@ fn a_spike_that_ruins_the_plain_fit_is_found() {
     for at in [3, 200, 201, 399] {
         (capture.sine[at], capture.cosine[at]) = (-80.0, 120.0);
     }
-    let told = capture.comes_out(5e-4);
+    let told = capture.assert_ellipse_fits(5e-4);
     assert_eq!(told.stretches, [3..4, 200..202, 399..400]);
 }
 
@@ -134,7 +134,7 @@ fn a_spike_does_not_revive_a_dead_channel() {
     // Nor does it make one dead.
     let mut capture = made(5_000, 5.0, 5e-4);
     capture.sine[2_345] = 40.0;
-    assert_eq!(capture.comes_out(1e-4).count, 1);
+    assert_eq!(capture.assert_ellipse_fits(1e-4).count, 1);
 }
 
 #[test]

@@ -70,7 +70,7 @@ impl Studio {
 
     fn apply_entries(&mut self, entries: Payload) {
         let Some(connect) = &mut self.connect else { return };
-        let form = connect.forms_mut().find(|form| form.has_entries_of_form(&entries));
+        let form = connect.forms_mut().find(|form| form.accepts_entries(&entries));
         if form.is_none_or(|form| form.edit(entries).is_err()) {
             return self.notify_wrong_kind(None);
         }
@@ -87,7 +87,7 @@ impl Studio {
             return;
         };
         let mut fills_in = Ok(false);
-        self.call_finder(tab, place, |form, context| fills_in = form.find(action, context));
+        self.with_form_context(tab, place, |form, context| fills_in = form.find(action, context));
         match fills_in {
             Ok(true) => self.edit(|connect| connect.typed = None),
             Ok(false) => {}
@@ -99,7 +99,7 @@ impl Studio {
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &ConnectDialog| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
-            self.call_finder(tab, place, |form, context| form.confirmed(context));
+            self.with_form_context(tab, place, |form, context| form.confirmed(context));
         }
     }
 
@@ -119,14 +119,19 @@ impl Studio {
     }
 
     /// Calls `act` with a form of the dialog and the rest of the studio, and then executes what the form has requested.
-    fn call_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
+    fn with_form_context(
+        &mut self,
+        tab: Tab,
+        place: usize,
+        act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>),
+    ) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
         let mut context = FinderContext::new(self, tab, link);
         if let Some((_, form)) = connect.forms.get_mut(place) {
             act(form.as_mut(), &mut context);
         }
-        let NextAction { found, problem } = context.into_next();
+        let NextAction { found, problem } = context.into_requests();
         connect.problem = problem;
         self.connect = Some(connect);
         if let Some(url) = found {

@@ -31,7 +31,7 @@ impl<'a> FinderContext<'a> {
         FinderContext { studio, tab, link, found: None, problem: None }
     }
 
-    pub(super) fn into_next(self) -> NextAction {
+    pub(super) fn into_requests(self) -> NextAction {
         NextAction { found: self.found, problem: self.problem }
     }
 
@@ -48,8 +48,8 @@ impl<'a> FinderContext<'a> {
     }
 
     /// Returns a number that is unique among searches and sessions.
-    pub fn new_number(&mut self) -> u32 {
-        self.studio.new_number()
+    pub fn next_number(&mut self) -> u32 {
+        self.studio.next_number()
     }
 
     /// Releases the connection, which a session or a tool may hold. A session that is writing is not released;
@@ -57,9 +57,9 @@ impl<'a> FinderContext<'a> {
     ///
     /// # Errors
     /// Returns the session that is writing.
-    pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
-        let earlier = self.studio.free_wire(url, why)?;
-        self.studio.free_wire_of_tools(url);
+    pub fn release_connection(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
+        let earlier = self.studio.release_connection(url, why)?;
+        self.studio.release_tool_connections(url);
         Ok(earlier)
     }
 

@@ -116,7 +116,7 @@ pub trait AnyForm {
     /// Returns an example link, shown as a hint.
     fn example(&self) -> &'static str;
     /// Returns whether the payload contains entries of this form.
-    fn has_entries_of_form(&self, entries: &Payload) -> bool;
+    fn accepts_entries(&self, entries: &Payload) -> bool;
     /// Returns whether the payload contains an action of this form's finder.
     fn is_finder_action(&self, action: &Payload) -> bool;
     /// Replaces the entries with edited ones.
@@ -182,7 +182,7 @@ impl<F: FormModel> AnyForm for Filled<F> {
         self.form.example()
     }
 
-    fn has_entries_of_form(&self, entries: &Payload) -> bool {
+    fn accepts_entries(&self, entries: &Payload) -> bool {
         entries.is::<F>()
     }
 

@@ -115,7 +115,7 @@ pub(crate) mod tests {
     use super::*;
 
     /// Checks that each link fills in a form from which an equivalent link is built.
-    pub(crate) fn assert_comes_back(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
+    pub(crate) fn assert_round_trip(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();
             pairs.sort();

@@ -65,8 +65,8 @@ impl AnyDevice {
     }
 
     /// Returns whether this is the latest attempt to open the link of the device.
-    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
-        self.state().is_attempt(attempt)
+    pub(in crate::app) fn is_current_attempt(&self, attempt: u32) -> bool {
+        self.state().is_current_attempt(attempt)
     }
 
     /// Returns the backups or the reason why there are none, or `None` if they have not been requested yet.

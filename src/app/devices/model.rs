@@ -5,7 +5,7 @@
 use std::any::Any;
 use std::path::{Path, PathBuf};
 
-use crate::app::action::{Opened, ReadError, ReviewAction};
+use crate::app::action::{OpenedConnection, ReadError, ReviewAction};
 use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
 use crate::app::review::ReviewSheet;
@@ -39,7 +39,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
     }
 
     /// Adopts the session of the opened link.
-    fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
+    fn connect(&mut self, opened: OpenedConnection<Self::Device>, services: &mut Services);
 
     /// Executes an action specific to this kind of device.
     fn act(&mut self, action: Self::Action, context: &mut ActionContext<'_>);
@@ -76,7 +76,7 @@ pub trait DeviceModel: SessionEvents + HasDraft + 'static {
             | DeviceCommand::AskCompare
             | DeviceCommand::Compare(_) => {}
             DeviceCommand::Read => {
-                if !self.session().read_file_again(services) {
+                if !self.session().reload_file(services) {
                     self.read_device(services);
                 }
             }
@@ -234,7 +234,7 @@ impl<'a> ActionContext<'a> {
         self.next.push(command);
     }
 
-    pub(in crate::app) fn into_next(self) -> Vec<DeviceCommand> {
+    pub(in crate::app) fn into_requests(self) -> Vec<DeviceCommand> {
         self.next
     }
 

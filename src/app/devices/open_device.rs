@@ -95,7 +95,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
     #[doc(hidden)]
-    fn open_failed(&self, failed: &OpenFailure) -> Text;
+    fn open_failure_text(&self, failed: &OpenFailure) -> Text;
     #[doc(hidden)]
     fn connect(&mut self, opened: Box<dyn OpenedSession>, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
@@ -273,8 +273,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::drive_memory(self)
     }
 
-    fn open_failed(&self, failed: &OpenFailure) -> Text {
-        M::Device::open_failed(failed)
+    fn open_failure_text(&self, failed: &OpenFailure) -> Text {
+        M::Device::open_failure_text(failed)
     }
 
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()> {
@@ -282,7 +282,7 @@ impl<M: DeviceModel> OpenDevice for M {
         let prepare = DeviceModel::prepare(self, &services.world);
         services.open_task::<M::Device>(url, earlier, prepare, move |result| {
             let result = result.map(|opened| opened as Box<dyn OpenedSession>);
-            Done::Opened(Attempt { session, attempt, result })
+            Done::OpenedConnection(Attempt { session, attempt, result })
         })
     }
 

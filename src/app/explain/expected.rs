@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::app::COMMON;
     use crate::app::Language::{English, German};
-    use crate::app::explain::in_both_languages;
+    use crate::app::explain::assert_in_both_languages;
     use crate::expected::Limit;
 
     const QUANTITIES: [Quantity; 25] = [
@@ -212,11 +212,14 @@ mod tests {
         let mut told = BTreeSet::new();
         for own in samples() {
             let text = expected_text(&own);
-            in_both_languages(&text, &own);
+            assert_in_both_languages(&text, &own);
             told.insert(text.id());
         }
         for own in QUANTITIES {
-            in_both_languages(&expected_text(&AllowedValues::range(own, 1, 8)), &AllowedValues::range(own, 1, 8));
+            assert_in_both_languages(
+                &expected_text(&AllowedValues::range(own, 1, 8)),
+                &AllowedValues::range(own, 1, 8),
+            );
             told.insert(quantity(own).id());
         }
         // A row that no sample reaches has a variant that is not above, or none.

@@ -9,7 +9,7 @@ use std::path::Path;
 
 pub(crate) use detail::syntax;
 #[cfg(test)]
-pub(crate) use detail::tests::check as in_both_languages;
+pub(crate) use detail::tests::check as assert_in_both_languages;
 pub use detail::{document, logbook_problem, recording, setting, url};
 pub use expected::expected_text;
 
@@ -19,7 +19,7 @@ use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{ProfileDocument, ProfileError, SCHEMA};
 use crate::store::{FileError, FileErrorKind, LogbookError, StoreError};
 use crate::units::Parity;
-use crate::worker::{NotBegun, OpenError};
+use crate::worker::{NotStarted, OpenError};
 
 pub fn link(error: &LinkError) -> Text {
     let target = &error.target;
@@ -59,7 +59,7 @@ pub fn open(error: &OpenError) -> Text {
 
 /// Returns the reason why a link could not be opened or its thread could not be started. `open` explains the errors of
 /// the kind of device.
-pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
+pub fn open_failure_text(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailure::Link(error) => open(error),
         OpenFailure::Thread(why) => Text::new("session.no_thread").with("why", why),
@@ -134,12 +134,12 @@ pub fn newer_profile(path: &Path, document: &ProfileDocument) -> Text {
         .with("entries", document.beyond.join(", "))
 }
 
-pub fn not_started_text(why: &NotBegun) -> Text {
+pub fn not_started_text(why: &NotStarted) -> Text {
     match why {
-        NotBegun::OtherPlan => Text::new("write.other_plan"),
-        NotBegun::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
-        NotBegun::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
-        NotBegun::Worn { seen, cost, limit } => {
+        NotStarted::OtherPlan => Text::new("write.other_plan"),
+        NotStarted::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
+        NotStarted::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
+        NotStarted::Worn { seen, cost, limit } => {
             Text::new("write.worn").with("used", seen).with("cost", cost).with("limit", limit)
         }
     }

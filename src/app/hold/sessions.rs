@@ -14,7 +14,7 @@ const POINTER: usize = 3;
 
 /// What is really pressed, apart from what is reported of it.
 #[derive(Default)]
-struct Hands {
+struct TestOperator {
     /// Time of the press, for everything that is down.
     down: [Option<f64>; 4],
     /// What was pressed last, which alone repeats itself.
@@ -36,7 +36,7 @@ fn any_session_holds_only_what_a_person_has_pressed_since_the_last_change() {
     let (mut by_key, mut by_pointer) = (0, 0);
     for seed in 0..SESSIONS {
         let mut dice = fastrand::Rng::with_seed(seed);
-        let (mut state, mut hands, mut now) = (HoldState::default(), Hands::default(), 0.0);
+        let (mut state, mut hands, mut now) = (HoldState::default(), TestOperator::default(), 0.0);
         let mut scene = READY;
         // The half of a repetition that arrives with the next frame.
         let mut late: Option<HoldInput> = None;

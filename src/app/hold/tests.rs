@@ -10,7 +10,7 @@ const UP: HoldInput = HoldInput::Up(Space);
 const POINTER: HoldInput = HoldInput::PointerDown { on: true };
 
 /// A button, a picture each fifth of a second.
-struct Pad {
+struct TestButton {
     state: HoldState,
     now: f64,
     apart: f64,
@@ -19,22 +19,22 @@ struct Pad {
     follows: bool,
 }
 
-impl Pad {
+impl TestButton {
     fn new() -> Self {
-        Pad { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
+        TestButton { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
     }
 
     /// Creates a pad with the keyboard focus, after Space and Enter were seen up.
     fn armed() -> Self {
-        let mut pad = Pad::new();
+        let mut pad = TestButton::new();
         assert_eq!(pad.picture(&[]), None);
         assert_eq!(pad.picture(&[DOWN, HoldInput::Down { key: Enter, plain: true }]), None);
-        assert_eq!(pad.lift(&[UP, HoldInput::Up(Enter)]), None);
+        assert_eq!(pad.release_keys(&[UP, HoldInput::Up(Enter)]), None);
         pad
     }
 
     /// A picture in which keys go up, and one that sees them up.
-    fn lift(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
+    fn release_keys(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
         let event = self.picture(inputs);
         assert_eq!(self.picture(&[]), None);
         event
@@ -58,7 +58,7 @@ impl Pad {
 /// Issue 21.2: the events of X11 when Space is held and the window loses and regains the keyboard focus.
 #[test]
 fn a_key_held_while_focus_returns_starts_no_hold() {
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.picture(&[DOWN]), Some(Hold), "it repeats itself");
     pad.scene.window = false;
@@ -70,9 +70,9 @@ fn a_key_held_while_focus_returns_starts_no_hold() {
     for _ in 0..20 {
         assert_eq!(pad.picture(&[DOWN]), None, "it is still held");
     }
-    assert!(pad.state.waits_for_release());
-    assert_eq!(pad.lift(&[UP]), None);
-    assert!(!pad.state.waits_for_release());
+    assert!(pad.state.is_waiting_for_release());
+    assert_eq!(pad.release_keys(&[UP]), None);
+    assert!(!pad.state.is_waiting_for_release());
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     // All of it between two frames.
     let blink = [UP, HoldInput::WindowFocus(false), HoldInput::WindowFocus(true), DOWN];
@@ -83,7 +83,7 @@ fn a_key_held_while_focus_returns_starts_no_hold() {
 /// Issue 21.2: after any change around the button, a key counts only after it was seen up.
 #[test]
 fn after_any_change_a_key_counts_only_once_released() {
-    type Change = fn(&mut Pad);
+    type Change = fn(&mut TestButton);
     let changes: [(&str, Change); 4] = [
         ("the keyboard was elsewhere in the window", |pad| {
             pad.scene.keyboard = false;
@@ -104,7 +104,7 @@ fn after_any_change_a_key_counts_only_once_released() {
     ];
     for (what, change) in changes {
         for held in [false, true] {
-            let mut pad = Pad::armed();
+            let mut pad = TestButton::armed();
             if held {
                 assert_eq!(pad.picture(&[DOWN]), Some(Press));
             }
@@ -113,7 +113,7 @@ fn after_any_change_a_key_counts_only_once_released() {
             pad.follows = true;
             assert!(!pad.state.is_held(), "{what}, {held}");
             assert_eq!(pad.picture(&[DOWN]), None, "{what}, {held}");
-            assert_eq!(pad.lift(&[UP]), None, "{what}, {held}");
+            assert_eq!(pad.release_keys(&[UP]), None, "{what}, {held}");
             assert_eq!(pad.picture(&[DOWN]), Some(Press), "{what}, {held}");
         }
     }
@@ -122,7 +122,7 @@ fn after_any_change_a_key_counts_only_once_released() {
 /// Issue 21.2: a pointer that is already pressed starts nothing, whatever becomes possible meanwhile.
 #[test]
 fn a_hold_begins_only_with_a_new_pointer_press() {
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     pad.scene.enabled = false;
     assert_eq!(pad.picture(&[POINTER]), None);
     pad.scene.enabled = true;
@@ -162,7 +162,7 @@ fn any_other_input_ends_a_hold() {
     ];
     for input in beside {
         for holds in [DOWN, POINTER] {
-            let mut pad = Pad::armed();
+            let mut pad = TestButton::armed();
             assert_eq!(pad.picture(&[holds]), Some(Press));
             assert_eq!(pad.picture(&[]), Some(Hold));
             assert_eq!(pad.picture(&[input]), Some(Release), "{input:?} beside {holds:?}");
@@ -170,16 +170,16 @@ fn any_other_input_ends_a_hold() {
             assert_eq!(pad.picture(&[DOWN]), None, "{input:?} beside {holds:?}");
         }
     }
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     pad.picture(&[POINTER]);
     assert_eq!(pad.picture(&[DOWN]), Some(Release), "also the key that could hold it");
     // Two at once: neither.
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN, POINTER]), None);
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[POINTER, DOWN]), None);
     // The pointer is pressed elsewhere.
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     pad.picture(&[HoldInput::PointerDown { on: false }]);
     assert_eq!(pad.picture(&[DOWN]), None);
 }
@@ -188,15 +188,15 @@ fn any_other_input_ends_a_hold() {
 #[test]
 fn a_key_stops_motion_and_starts_no_hold() {
     for armed in [false, true] {
-        let mut pad = if armed { Pad::armed() } else { Pad::new() };
+        let mut pad = if armed { TestButton::armed() } else { TestButton::new() };
         pad.scene.moving = true;
         assert_eq!(pad.picture(&[DOWN]), Some(Stop), "{armed}");
         pad.scene.moving = false;
         assert_eq!(pad.picture(&[DOWN]), None, "{armed}: still held");
-        assert_eq!(pad.lift(&[UP]), None);
+        assert_eq!(pad.release_keys(&[UP]), None);
         assert_eq!(pad.picture(&[DOWN]), Some(Press));
     }
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     (pad.scene.moving, pad.scene.keyboard) = (true, false);
     assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
 }
@@ -205,7 +205,7 @@ fn a_key_stops_motion_and_starts_no_hold() {
 #[test]
 fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
-        let mut pad = Pad::armed();
+        let mut pad = TestButton::armed();
         pad.apart = apart;
         assert_eq!(pad.picture(&[DOWN]), Some(Press), "{apart}");
         assert_eq!(pad.picture(&[UP]), Some(Release), "{apart}");
@@ -219,20 +219,20 @@ fn a_key_repeat_split_over_two_frames_starts_no_hold() {
 /// Issue 22.29: a barcode scanner types Enter within milliseconds of the last digit.
 #[test]
 fn a_press_right_after_another_key_starts_no_hold() {
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[HoldInput::OtherKey, DOWN]), None);
-    assert_eq!(pad.lift(&[UP]), None);
+    assert_eq!(pad.release_keys(&[UP]), None);
     assert_eq!(pad.picture(&[HoldInput::OtherKey]), None);
     assert_eq!(pad.picture(&[DOWN]), None);
-    assert_eq!(pad.lift(&[UP]), None);
-    assert_eq!(pad.lift(&[HoldInput::OtherKey]), None);
+    assert_eq!(pad.release_keys(&[UP]), None);
+    assert_eq!(pad.release_keys(&[HoldInput::OtherKey]), None);
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
 }
 
 /// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
 #[test]
 fn a_release_requests_the_frame_that_rearms_the_key() {
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.state.repaint_delay(), None, "while it is held");
     assert_eq!(pad.picture(&[UP]), Some(Release));
@@ -248,7 +248,7 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
 
 #[test]
 fn a_press_released_within_a_frame_starts_no_hold() {
-    let mut pad = Pad::armed();
+    let mut pad = TestButton::armed();
     assert_eq!(pad.picture(&[DOWN, UP]), None);
     assert_eq!(pad.picture(&[POINTER, HoldInput::PointerUp]), None);
     assert_eq!(pad.picture(&[POINTER]), Some(Press));

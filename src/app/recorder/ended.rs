@@ -40,7 +40,7 @@ impl Recorder {
         if let Some(line) = self.take(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });
         }
-        self.forget_trigger(id);
+        self.clear_trigger(id);
     }
 
     pub(in crate::app) fn resume_line(&mut self, id: SeriesId, name: Text, heading: String) {
@@ -63,7 +63,7 @@ impl Recorder {
             line.choose(unit.as_ref());
         });
         // The trigger level was entered in the old unit.
-        self.forget_trigger(id);
+        self.clear_trigger(id);
     }
 
     pub(in crate::app) fn has_samples(&self, id: SeriesId) -> bool {

@@ -11,7 +11,7 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use super::{GroupId, Recorder, SAMPLE, Series};
 use crate::analysis::SampleTime;
 use crate::analysis::history::{Flags, History};
-use crate::store::{FileError, write_with};
+use crate::store::{FileError, write_atomically_with};
 
 /// Number of rows in a portion.
 const ROWS: usize = 16_384;
@@ -25,8 +25,8 @@ pub struct Export {
     cancelled: Arc<AtomicBool>,
     written: Arc<AtomicU64>,
     total: u64,
-    sender: Option<Sender<Portion>>,
-    next: Option<Portion>,
+    sender: Option<Sender<Chunk>>,
+    next: Option<Chunk>,
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
@@ -72,7 +72,7 @@ struct Column {
 }
 
 #[derive(Debug)]
-enum Portion {
+enum Chunk {
     Rows(Rows),
     /// End of the samples. Without it, the table is incomplete.
     End,
@@ -98,7 +98,7 @@ pub(in crate::app) struct Writing {
     number: ExportNumber,
     counts: bool,
     headings: Vec<String>,
-    receiver: Receiver<Portion>,
+    receiver: Receiver<Chunk>,
     cancelled: Arc<AtomicBool>,
     written: Arc<AtomicU64>,
 }
@@ -192,7 +192,7 @@ impl Recorder {
                 Some(portion) => portion,
                 None => self.next_rows(&mut export.heads, &export.columns, &mut export.lost),
             };
-            let is_end = matches!(portion, Portion::End);
+            let is_end = matches!(portion, Chunk::End);
             match sender.try_send(portion) {
                 Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
@@ -222,7 +222,7 @@ impl Recorder {
 
     /// Returns the next rows. The samples of all groups are in the order of time, and samples of the same time are in
     /// one row.
-    fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
+    fn next_rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Chunk {
         // The histories have the order of the heads. A group that was removed no longer has samples.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
@@ -246,7 +246,7 @@ impl Recorder {
             rows.times.push(now);
             rows.cells.extend(columns.iter().map(|column| cell(column, &histories, &due)));
         }
-        if rows.times.is_empty() { Portion::End } else { Portion::Rows(rows) }
+        if rows.times.is_empty() { Chunk::End } else { Chunk::Rows(rows) }
     }
 }
 
@@ -274,7 +274,7 @@ impl Writing {
     /// Writes rows until all have arrived. Calls `wake` whenever more rows can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> ExportResult {
         let mut given_up = false;
-        let rows = write_with(&self.path, |file| {
+        let rows = write_atomically_with(&self.path, |file| {
             given_up = !self.write(file, wake)?;
             // An incomplete table must not replace an existing file.
             if given_up { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
@@ -305,8 +305,8 @@ impl Writing {
                 return Ok(false);
             }
             let rows = match portion {
-                Portion::Rows(rows) => rows,
-                Portion::End => return Ok(true),
+                Chunk::Rows(rows) => rows,
+                Chunk::End => return Ok(true),
             };
             text.clear();
             rows.text(self.headings.len(), self.counts, &mut text);

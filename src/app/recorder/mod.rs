@@ -138,7 +138,7 @@ impl Recorder {
     /// `longest_pause` nanoseconds apart are not joined.
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
-        let id = GroupId(self.new_number());
+        let id = GroupId(self.next_number());
         let stamp = SampleGroupStamp::new();
         self.groups.insert(id, Group { history, stamp, columns: columns.to_vec(), capacity, longest_pause });
         id
@@ -146,7 +146,7 @@ impl Recorder {
 
     /// Adds a line for a column of a group. The first of its scales is displayed.
     pub fn add_line(&mut self, line: Series) -> SeriesId {
-        let id = SeriesId(self.new_number());
+        let id = SeriesId(self.next_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
         let colour = (0..).find(taken).unwrap_or(0);
         self.lines.push(Series { id, colour, ..line });
@@ -160,10 +160,10 @@ impl Recorder {
         if self.lines.iter().all(|line| line.group != group) {
             self.groups.remove(&group);
         }
-        self.forget_trigger(id);
+        self.clear_trigger(id);
     }
 
-    fn forget_trigger(&mut self, id: SeriesId) {
+    fn clear_trigger(&mut self, id: SeriesId) {
         if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
             self.watch = None;
         }
@@ -191,7 +191,7 @@ impl Recorder {
     }
 
     /// Marks a gap before the next samples of every group.
-    pub(in crate::app) fn break_all_groups(&mut self) {
+    pub(in crate::app) fn mark_gap_in_all_groups(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
@@ -257,7 +257,7 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
-    pub fn stamp(&self, line: &Series) -> Option<SampleGroupStamp> {
+    pub fn group_stamp(&self, line: &Series) -> Option<SampleGroupStamp> {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
 
@@ -314,7 +314,7 @@ impl Recorder {
             }
         });
         // The trigger level was entered in the old unit.
-        self.forget_trigger(id);
+        self.clear_trigger(id);
     }
 
     fn with_line(&mut self, id: SeriesId, change: impl FnOnce(&mut Series)) {
@@ -323,7 +323,7 @@ impl Recorder {
         }
     }
 
-    fn new_number(&mut self) -> u32 {
+    fn next_number(&mut self) -> u32 {
         self.next += 1;
         self.next
     }

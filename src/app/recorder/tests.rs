@@ -24,7 +24,7 @@ fn recorder(span: i64) -> (Recorder, GroupId, [SeriesId; 2]) {
 
 fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f64, flags: Flags) {
     let (count, volts, flags) = ([count], [volts], [flags]);
-    let parts = [Part::whole(&count).flagged(&flags), Part::real(&volts).flagged(&flags)];
+    let parts = [Part::whole(&count).with_flags(&flags), Part::real(&volts).with_flags(&flags)];
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 

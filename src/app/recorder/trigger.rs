@@ -151,7 +151,7 @@ impl Recorder {
         let history = &group.history;
         let Some(oldest) = history.time(history.all().start) else { return false };
         // Samples before the view may be displaced.
-        let remains = history.oldest_after(more);
+        let remains = history.oldest_remaining_time(more);
         remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
     }
 

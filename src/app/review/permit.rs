@@ -5,7 +5,7 @@ use crate::profile::RestoreOptions;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
     OtherDevice,
-    OtherType,
+    TypeMismatch,
     Mounting,
     /// Delete fields and create them again.
     Recreate,
@@ -22,12 +22,12 @@ pub struct PermitToggle {
 
 impl Permit {
     /// All permits in display order, except those for individual fields.
-    pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
+    pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::TypeMismatch, Permit::Mounting, Permit::Recreate];
 
     pub const fn word(self) -> &'static str {
         match self {
             Permit::OtherDevice => "review.allow_other",
-            Permit::OtherType => "review.allow_other_type",
+            Permit::TypeMismatch => "review.allow_other_type",
             Permit::Mounting => "review.with_mounting",
             Permit::Recreate => "review.recreate",
             Permit::Copy(_) => "review.copy_field",
@@ -37,7 +37,7 @@ impl Permit {
     pub const fn hint(self) -> Option<&'static str> {
         match self {
             Permit::OtherDevice | Permit::Copy(_) => None,
-            Permit::OtherType => Some("review.allow_other_type_hint"),
+            Permit::TypeMismatch => Some("review.allow_other_type_hint"),
             Permit::Mounting => Some("review.with_mounting_hint"),
             Permit::Recreate => Some("review.recreate_hint"),
         }
@@ -47,7 +47,7 @@ impl Permit {
     pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
-            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::TypeMismatch => Some(&mut options.allow_other_type),
             Permit::Mounting => Some(&mut options.with_mounting),
             Permit::Recreate | Permit::Copy(_) => None,
         }

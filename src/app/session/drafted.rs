@@ -49,7 +49,7 @@ pub trait HasDraft: HasSession {
     }
 
     /// Handles the successful saving of a connected device's profile to a file.
-    fn note_profile_saved(&mut self, _document: ProfileDocument) {}
+    fn handle_profile_saved(&mut self, _document: ProfileDocument) {}
 
     /// Returns the key of the draft, or `None` for a device that has no identity.
     fn draft_key(&self) -> Option<DraftKey> {
@@ -129,7 +129,7 @@ pub trait HasDraft: HasSession {
         let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
         let saved = Text::new("session.saved").with("path", saving.path.display());
         if self.session().phase != Phase::Offline {
-            self.note_profile_saved(*saving.document);
+            self.handle_profile_saved(*saving.document);
         } else {
             if saving.is_merged {
                 self.revert_edits();

@@ -43,8 +43,8 @@ pub trait Kind: Device + Sized {
     }
 
     /// Returns the reason why a link could not be opened or its thread could not be started.
-    fn open_failed(failed: &OpenFailure) -> Text {
-        explain::open_failed(failed, Self::open_error)
+    fn open_failure_text(failed: &OpenFailure) -> Text {
+        explain::open_failure_text(failed, Self::open_error)
     }
 
     /// Returns the name of a job.
@@ -73,7 +73,7 @@ pub trait Kind: Device + Sized {
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
     /// Returns the message about the end of a job in a released session, or `None` if the event does not end it.
-    fn job_endings(event: &Event<Self>) -> Option<JobCompletion> {
+    fn job_completions(event: &Event<Self>) -> Option<JobCompletion> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
                 let result =

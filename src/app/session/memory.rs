@@ -51,7 +51,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
 
     /// Returns whether a change was made for another type of device. This is only checked if it requires a separate
     /// permit.
-    fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
+    fn is_for_other_type(&self, _change: &Change<Self>) -> bool {
         false
     }
 
@@ -67,7 +67,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
     /// Discards all data about the device, because another device has replied.
-    fn forget_device(&mut self);
+    fn discard_device_data(&mut self);
 
     /// Prepares the display of a review.
     fn prepare_review(&mut self) {}
@@ -113,7 +113,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         if let Some(why) = self.session().plan_obstacle() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
-        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_another_type(&change));
+        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_other_type(&change));
         let objection = self.change_rejection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
@@ -171,9 +171,9 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
             services.notify(Severity::Warning, vec![text], Some(&self.session().name()));
         }
         self.release_draft(services);
-        self.forget_device();
+        self.discard_device_data();
         *self.review_mut() = None;
-        self.session_mut().forget_device();
+        self.session_mut().discard_device_data();
     }
 
     /// Executes the plan that the user has reviewed.
@@ -222,7 +222,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Handles the end of an executed plan. The device is read again.
-    fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
+    fn handle_commit_end(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
         // The review shows a success until it is closed.
@@ -231,7 +231,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
         } else {
             services.notify(severity, texts, Some(&name));
         }
-        self.pending_mut().forget_steps();
+        self.pending_mut().clear_undo_steps();
         self.schedule_rereads();
         self.carried_out(&committed, services);
         if let Some(review) = self.review_mut()
@@ -269,7 +269,7 @@ pub trait HasMemory: SessionEvents + HasDraft + HasSession<Device: Reviewable> {
     }
 
     /// Discards a plan that has not been started.
-    fn forget_plan(&mut self) {
+    fn discard_plan(&mut self) {
         if self.review().is_some_and(Review::is_pending_plan) {
             *self.review_mut() = None;
         }

@@ -31,7 +31,7 @@ pub(crate) use session_events::first;
 pub use session_events::{EarlyEnd, SessionEvents};
 pub use state::SessionState;
 
-use super::action::Opened;
+use super::action::OpenedConnection;
 use super::kinds::KindRegistry;
 use super::live_session::LiveSession;
 use super::services::{JobState, Services};
@@ -176,7 +176,7 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    pub fn attach_connection(&mut self, opened: Opened<D>, services: &mut Services) {
+    pub fn attach_connection(&mut self, opened: OpenedConnection<D>, services: &mut Services) {
         let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
         self.trace.begin(opened.began.clone());
         self.line = Some(LiveSession::new(opened));

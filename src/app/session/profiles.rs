@@ -41,7 +41,7 @@ impl SessionState {
     }
 
     /// Starts a task that reads the profile again. Returns `false` if the session is not a profile.
-    pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
+    pub(crate) fn reload_file(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
         let (path, store, kinds) = (path.clone(), services.world.store.clone(), services.world.kinds);

@@ -6,7 +6,7 @@
 use super::{HasSession, Kind};
 use crate::app::live_session::LiveSession;
 use crate::app::services::{JobState, Services};
-use crate::app::trace::Explained;
+use crate::app::trace::FrameExplanation;
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
 use crate::worker::{Device, Event, JobId, JobInterruption as _};
@@ -35,8 +35,8 @@ pub trait SessionEvents: HasSession {
 
     /// Returns the explanation of a frame for the trace. It is empty if the bytes need none. Called once for each
     /// frame, in order.
-    fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
-        Explained::default()
+    fn meaning_of(&mut self, _frame: &TraceEntry) -> FrameExplanation {
+        FrameExplanation::default()
     }
 
     /// Handles a message that the device has sent during a job.
@@ -46,10 +46,10 @@ pub trait SessionEvents: HasSession {
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open, but the device does not reply.
-    fn means_no_response(&self, error: &Error<Self>) -> bool;
+    fn is_no_response(&self, error: &Error<Self>) -> bool;
 
     /// Discards pending requests, because their replies will not arrive.
-    fn forget_requests(&mut self);
+    fn discard_requests(&mut self);
 
     /// Prepares the release of the line.
     fn prepare_release(&mut self) {}
@@ -139,7 +139,7 @@ pub trait SessionEvents: HasSession {
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
             None => {
-                let is_silent = self.means_no_response(error);
+                let is_silent = self.is_no_response(error);
                 self.session_mut().polling_failed(Self::Device::error_texts(error), is_silent, services);
             }
         }
@@ -166,8 +166,8 @@ pub trait SessionEvents: HasSession {
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {
             Some(why) => self.connection_lost(why, services),
-            None if self.means_no_response(error) || self.session().just_connected => {
-                self.session_mut().mark_silent(texts, services);
+            None if self.is_no_response(error) || self.session().just_connected => {
+                self.session_mut().mark_unresponsive(texts, services);
             }
             None => {
                 self.session_mut().answers();
@@ -184,7 +184,7 @@ pub trait SessionEvents: HasSession {
         self.prepare_release();
         // The last frames are fetched, because they show the cause best.
         self.fetch_samples_and_frames();
-        self.forget_requests();
+        self.discard_requests();
         self.handle_early_end(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);
     }
@@ -192,7 +192,7 @@ pub trait SessionEvents: HasSession {
     /// Releases the thread, ends the running job with `end`, and discards any plan.
     fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.prepare_release();
-        self.forget_requests();
+        self.discard_requests();
         self.session_mut().let_go(end, services);
     }
 }

@@ -60,7 +60,7 @@ impl SessionState {
     }
 
     /// Returns whether this is the latest attempt to open the link of the session.
-    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+    pub(in crate::app) fn is_current_attempt(&self, attempt: u32) -> bool {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
@@ -102,7 +102,7 @@ impl SessionState {
 
     /// Marks the device as silent: the link is open, but the device does not reply. `why` contains the reason and what
     /// to do.
-    pub(crate) fn mark_silent(&mut self, why: Vec<Text>, services: &mut Services) {
+    pub(crate) fn mark_unresponsive(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));
@@ -118,7 +118,7 @@ impl SessionState {
     }
 
     /// Discards all data about the device, because another device has replied.
-    pub(super) fn forget_device(&mut self) {
+    pub(super) fn discard_device_data(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
         self.statuses.clear();
     }

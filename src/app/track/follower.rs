@@ -30,7 +30,7 @@ impl PositionTracker {
     ///
     /// It must arrive soon enough. If there were samples without a position in between, the shaft must be too slow to
     /// have passed the range unnoticed.
-    pub(super) fn is_joined_to_last(&self, time: SampleTime, apart: i64) -> bool {
+    pub(super) fn is_contiguous_with_last(&self, time: SampleTime, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
             return false;
@@ -39,7 +39,7 @@ impl PositionTracker {
         self.pace.is_some_and(|pace| pace * time.seconds_since(before) < range as f64 / 4.0)
     }
 
-    pub(super) fn note_missing_sample(&mut self) {
+    pub(super) fn record_missing_sample(&mut self) {
         self.has_missed = true;
     }
 

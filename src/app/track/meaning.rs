@@ -66,7 +66,7 @@ impl Meaning {
     }
 
     /// Returns whether both describe the same positions. The units may differ.
-    pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
+    pub(super) fn is_same_location(&self, other: &Meaning) -> bool {
         let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)
     }

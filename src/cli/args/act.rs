@@ -26,7 +26,7 @@ impl ActionArgs {
     ///
     /// # Errors
     /// Returns an error if the action belongs to another kind of device.
-    pub(crate) fn action_of<A: ValueEnum>(&self, kind: &str, known: &str) -> Result<A> {
+    pub(crate) fn parse_action<A: ValueEnum>(&self, kind: &str, known: &str) -> Result<A> {
         let action = &self.action;
         A::from_str(action, false)
             .map_err(|_| Failure::Usage(format!("{action} is not an action of {kind} devices; these are {known}")))

@@ -9,7 +9,7 @@ use std::thread::Scope;
 use std::time::Duration;
 
 use super::PATIENCE;
-use crate::link::{Clock, RealClock, wake_before_others};
+use crate::link::{Clock, RealClock, request_realtime_priority};
 use crate::sim::DatagramDevice;
 
 /// Maximum sleep of the sender. Every packet is due at least this long after its request.
@@ -43,16 +43,16 @@ fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketA
     Ok((listener, socket, at))
 }
 
-pub(super) struct Served {
+pub(super) struct ServedDevice {
     socket: UdpSocket,
     /// Device, locked while its packets are taken and sent. Packets then cannot overtake each other.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }
 
-impl Served {
+impl ServedDevice {
     pub(super) fn new(socket: UdpSocket, device: Box<dyn DatagramDevice>, clock: Arc<RealClock>) -> Self {
-        Served { socket, device: Mutex::new(device), clock }
+        ServedDevice { socket, device: Mutex::new(device), clock }
     }
 
     /// Receives and sends packets until the program is interrupted.
@@ -71,7 +71,7 @@ impl Served {
     }
 
     fn receive(&self, ended: &AtomicBool) {
-        wake_before_others();
+        request_realtime_priority();
         let mut buffer = [0; ROOM];
         while !ended.load(Ordering::SeqCst) {
             match self.socket.recv_from(&mut buffer) {
@@ -88,7 +88,7 @@ impl Served {
     }
 
     fn send(&self, ended: &AtomicBool) {
-        wake_before_others();
+        request_realtime_priority();
         while !ended.load(Ordering::SeqCst) {
             let next = self.pump(|_, _| ());
             std::thread::sleep(next.min(REST));

@@ -12,4 +12,4 @@ pub mod views;
 use crate::kinds::Kind;
 
 pub const KIND: Kind =
-    Kind { view: &views::BissView, commands: &commands::BissCommands, at_adapter: Some(&sim::AtAdapter) };
+    Kind { view: &views::BissView, commands: &commands::BissCommands, at_adapter: Some(&sim::AttachableEncoder) };

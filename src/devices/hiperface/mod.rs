@@ -11,5 +11,8 @@ pub mod views;
 
 use crate::kinds::Kind;
 
-pub const KIND: Kind =
-    Kind { view: &views::HiperfaceView, commands: &commands::HiperfaceCommands, at_adapter: Some(&sim::AtAdapter) };
+pub const KIND: Kind = Kind {
+    view: &views::HiperfaceView,
+    commands: &commands::HiperfaceCommands,
+    at_adapter: Some(&sim::AttachableEncoder),
+};

@@ -11,5 +11,8 @@ pub mod views;
 
 use crate::kinds::Kind;
 
-pub const KIND: Kind =
-    Kind { view: &views::SsiView, commands: &commands::SsiCommands, at_adapter: Some(&sim::AtAdapter::DELIVERED) };
+pub const KIND: Kind = Kind {
+    view: &views::SsiView,
+    commands: &commands::SsiCommands,
+    at_adapter: Some(&sim::AttachableEncoder::DELIVERED),
+};

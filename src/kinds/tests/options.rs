@@ -19,7 +19,7 @@ fn commands_and_options_are_as_recorded() {
         std::fs::write(path, &text).unwrap();
     }
     let recorded = std::fs::read_to_string(path).unwrap();
-    let (is, was) = (by_command(&text), by_command(&recorded));
+    let (is, was) = (arguments_by_command(&text), arguments_by_command(&recorded));
     assert_eq!(is.keys().collect::<Vec<_>>(), was.keys().collect::<Vec<_>>());
     for (command, own) in &is {
         assert_eq!(own, &was[command], "{command}");
@@ -33,7 +33,7 @@ struct Taken<'t> {
     options: BTreeSet<&'t str>,
 }
 
-fn by_command(text: &str) -> BTreeMap<&str, Taken<'_>> {
+fn arguments_by_command(text: &str) -> BTreeMap<&str, Taken<'_>> {
     let mut commands: BTreeMap<&str, Taken<'_>> = BTreeMap::new();
     let mut command = "";
     for line in text.lines() {

@@ -16,7 +16,7 @@ fn ready_made() -> Vec<(&'static str, String)> {
 }
 
 /// Returns a commented profile of this kind, as a user writes it.
-fn commented(kind: &str) -> String {
+fn commented_profile(kind: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/commented");
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
 }
@@ -25,7 +25,7 @@ fn commented(kind: &str) -> String {
 #[test]
 fn unchanged_text_is_kept_verbatim() {
     for kind in program().studio.formats.kinds() {
-        let text = commented(kind);
+        let text = commented_profile(kind);
         for text in [text.replace('\n', "\r\n"), text] {
             let carried = ProfileDocument::parse(&text, program().studio.formats)
                 .unwrap()
@@ -69,7 +69,7 @@ fn any_rewrite_is_exact_and_lists_lost_comments() {
 }
 
 /// Returns a text with other blanks between its words: those of `picks` in turn. Comments are numbered.
-fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
+fn with_varied_whitespace(text: &str, picks: &[usize]) -> (String, usize) {
     const WAYS: usize = 9;
     let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());
     let mut quoted = false;
@@ -126,11 +126,11 @@ proptest::proptest! {
         picks in proptest::collection::vec(0_usize..9, 1..200),
     ) {
         let mut all = ready_made();
-        all.extend(program().studio.formats.kinds().map(|kind| (kind, commented(kind))));
+        all.extend(program().studio.formats.kinds().map(|kind| (kind, commented_profile(kind))));
         let (kind, text) = &all[from % all.len()];
         let others: Vec<&String> = all.iter().filter(|(own, _)| own == kind).map(|(_, text)| text).collect();
         let document = ProfileDocument::parse(others[to % others.len()], program().studio.formats).unwrap();
-        let (spaced, comments) = spaced(text, &picks);
+        let (spaced, comments) = with_varied_whitespace(text, &picks);
         let before = ProfileDocument::parse(&spaced, program().studio.formats).unwrap();
         proptest::prop_assert_eq!(before.emit(), ProfileDocument::parse(text, program().studio.formats).unwrap().emit());
         let same = before.rewrite_text(&spaced, program().studio.formats);

@@ -76,7 +76,7 @@ impl LineState {
 
     /// Raises the margin to one and a half times the sum of the margin and `lateness`. The maximum is
     /// [`LONGEST_MARGIN`].
-    pub(super) fn extend_allowance(&mut self, lateness: Duration) {
+    pub(super) fn raise_margin(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);
         tracing::warn!(

@@ -96,8 +96,8 @@ impl Tool for Signals {
         self.synchronise.follow(source);
     }
 
-    fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
-        self.source.free_wire(url, services);
+    fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
+        self.source.release_connection(url, services);
     }
 
     fn takes(&self, path: &Path) -> bool {
@@ -118,7 +118,7 @@ impl Signals {
     /// Starts the adapter after other users have released its connection. The link is stored in the settings.
     fn start_adapter_when_free(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
-            Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
+            Some(url) => context.release_connection(&url, TEXTS.text("session.let_go_for_signals")),
             None => Ok(None),
         };
         match earlier {
@@ -191,7 +191,7 @@ impl Signals {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
-            self.judge_again(services);
+            self.update_verdicts(services);
         }
     }
 
@@ -234,7 +234,7 @@ impl Signals {
             SignalsAction::Source(action) => self.handle_source_action(action, services),
             SignalsAction::SetFamily(family) => {
                 self.family = family;
-                self.judge_again(services);
+                self.update_verdicts(services);
             }
             SignalsAction::Keep => {
                 let shown = self.measurement.as_ref().map(|own| own.results().clone());
@@ -314,7 +314,7 @@ impl Signals {
                 let judge = measurement.judge;
                 self.show(measurement, services);
                 if judge != self.judge() {
-                    self.judge_again(services);
+                    self.update_verdicts(services);
                 }
                 self.problem = None;
                 self.table = Some(table);
@@ -363,7 +363,7 @@ impl Signals {
         DiagnosisSettings { family: self.family, periods: self.periods }
     }
 
-    pub(super) fn judge_again(&mut self, services: &mut Services) {
+    pub(super) fn update_verdicts(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());

@@ -143,10 +143,10 @@ impl SignalFeed {
         }
     }
 
-    pub(super) fn is_ended(&self) -> bool {
+    pub(super) fn is_finished(&self) -> bool {
         match self {
-            SignalFeed::Virtual(stream) => stream.is_ended(),
-            SignalFeed::Adapter { stream, .. } => stream.is_ended(),
+            SignalFeed::Virtual(stream) => stream.is_finished(),
+            SignalFeed::Adapter { stream, .. } => stream.is_finished(),
         }
     }
 

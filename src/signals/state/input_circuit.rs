@@ -53,7 +53,7 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
-    pub fn circuit(&self) -> Result<InputCircuitResult, Text> {
+    pub fn calculate_circuit(&self) -> Result<InputCircuitResult, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
         let ohms = parse_quantity(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
@@ -115,7 +115,7 @@ mod tests {
             ("1024", "5859.375", "47 pF", 100_000.0, 16.452, 1.462, 0.95906, 8_789.062_5),
         ];
         for (periods, speed, farads, frequency, phase, steps, gain, most) in rows {
-            let circuit = form(periods, speed, "10k", farads).circuit().unwrap();
+            let circuit = form(periods, speed, "10k", farads).calculate_circuit().unwrap();
             let OperatingPoint { frequency_hz, response, shaft_deg, .. } = circuit.here;
             assert!((frequency_hz - frequency).abs() < 1e-6 && circuit.is_within_bandwidth(), "{circuit:?}");
             assert!((response.phase_deg - phase).abs() < 6e-4 && (response.gain - gain).abs() < 6e-6, "{circuit:?}");
@@ -124,14 +124,14 @@ mod tests {
             assert!((circuit.most_rpm - most).abs() < 1e-6, "{circuit:?}");
         }
         // 1/(2π · 10 kΩ · 47 pF) = 338.628 kHz; a microsecond at 102.4 kHz is 36.864°.
-        let circuit = form("1024", "6000", "10k", "47p").circuit().unwrap();
+        let circuit = form("1024", "6000", "10k", "47p").calculate_circuit().unwrap();
         assert!((circuit.corner_hz - 338_627.5).abs() < 0.5, "{circuit:?}");
         assert!((circuit.sampling_skew_deg() - 36.864).abs() < 1e-9);
     }
 
     #[test]
     fn the_curve_ends_at_the_bandwidth() {
-        let circuit = form("1024", "9000", "10k", "47p").circuit().unwrap();
+        let circuit = form("1024", "9000", "10k", "47p").calculate_circuit().unwrap();
         assert!(!circuit.is_within_bandwidth(), "153.6 kHz");
         let course = circuit.course(10);
         assert_eq!(course.len(), 10);
@@ -153,9 +153,9 @@ mod tests {
             (form("1024", "6000", "10k", "47"), "entry.quantity"),
             (form("1024", "6000", "10k", ""), "entry.missing"),
         ] {
-            assert_eq!(form.circuit().unwrap_err().id(), id, "{form:?}");
+            assert_eq!(form.calculate_circuit().unwrap_err().id(), id, "{form:?}");
         }
-        let still = form("1024", "0", "10k", "47p").circuit().unwrap();
+        let still = form("1024", "0", "10k", "47p").calculate_circuit().unwrap();
         assert_eq!((still.here.frequency_hz, still.here.response.phase_deg, still.here.response.gain), (0.0, 0.0, 1.0));
     }
 }

@@ -167,7 +167,7 @@ impl Source {
     }
 
     /// Returns the longest duration that can be measured, in milliseconds. Returns `None` if the setting is shorter.
-    pub fn actual_limited_window_ms(&self) -> Option<f64> {
+    pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
             SourceKind::Adapter => self.streaming()?.period_ns,
@@ -236,7 +236,7 @@ impl Source {
     }
 
     /// Stops the adapter if it uses the connection of the given link, because an encoder search needs it.
-    pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
+    pub(crate) fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds =
             |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
         if self.live.as_ref().is_some_and(holds) {
@@ -363,7 +363,7 @@ impl Signals {
         let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };
         // This is checked first, since the last samples before the end must still be taken.
-        let ended = live.feed.is_ended();
+        let ended = live.feed.is_finished();
         for batch in live.feed.take() {
             if !live.held {
                 self.source.lost += self.scope.add(&batch);
@@ -406,7 +406,7 @@ impl Signals {
         self.show_live_measurement(measurement, services);
         // The settings have changed during the measurement.
         if judge != self.judge() {
-            self.judge_again(services);
+            self.update_verdicts(services);
         }
     }
 

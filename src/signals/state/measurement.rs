@@ -117,8 +117,8 @@ impl Measurement {
             spectra: Spectra::of(samples),
             nonlinearities: compare_with_reference(&capture, &analysis, judge),
             absolute_offset: reference_comparison::absolute_offset(&capture, analysis.as_ref().ok()),
-            raw: density(samples, None),
-            corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
+            raw: sample_density(samples, None),
+            corrected: analysis.as_ref().ok().and_then(|own| sample_density(samples, Some(own.ellipse.correction()))),
             analysis,
             origin,
         };
@@ -176,7 +176,7 @@ fn compare_with_reference(
 }
 
 /// Returns a Lissajous image centred on zero, after the correction if one is given.
-fn density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
+fn sample_density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
     /// Number of samples corrected at a time.
     const PORTION: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;

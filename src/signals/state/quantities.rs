@@ -81,7 +81,7 @@ impl Quantity {
         Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }
     }
 
-    pub(super) fn with_value_in_second_unit(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
+    pub(super) fn with_secondary_value(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
         self.also = Some((value, decimals, unit));
         self
     }
@@ -139,7 +139,7 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     let percent = |word, share: f64, decimals| Quantity::new(word, 100.0 * share, decimals, Unit::Percent);
     let offset = |word, offset_v: f64| {
         percent(word, offset_v / ellipse.amplitude_v, 2)
-            .with_value_in_second_unit(1000.0 * offset_v, 1, Unit::Millivolts)
+            .with_secondary_value(1000.0 * offset_v, 1, Unit::Millivolts)
             .bounded(QuantityLimit::Within(100.0 * limits.offset))
     };
     let (least, most) = coverage.vector_v;
@@ -170,7 +170,7 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
     let peak_to_peak = |word, degrees: f64| {
         let quantity = Quantity::new(word, degrees, 3, Unit::Degrees);
         match a_degree {
-            Some(a_degree) => quantity.with_value_in_second_unit(degrees * a_degree, 2, Unit::ArcSeconds),
+            Some(a_degree) => quantity.with_secondary_value(degrees * a_degree, 2, Unit::ArcSeconds),
             None => quantity,
         }
     };
@@ -191,7 +191,7 @@ mod tests {
 
     /// Returns the example of section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°, with 1000 samples over two
     /// periods in 20 ms.
-    fn section_7() -> Measurement {
+    fn section_7_example() -> Measurement {
         let (alpha, turns) = (3.0_f64.to_radians(), 2.0 * std::f64::consts::TAU);
         let angle = |at: i32| f64::from(at) / 999.0 * turns;
         let capture = Capture {
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn quantities_match_section_7_with_limits() {
-        let list = quantities(&section_7(), Family::Hiperface, Some(50));
+        let list = quantities(&section_7_example(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
         // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 per
         // revolution 2 revolutions per second.
@@ -234,9 +234,9 @@ mod tests {
         let least = find("quality.vector_least");
         assert!((least.value - 0.445_95).abs() < 2e-5 && least.verdict == Some(Verdict::Warn), "{least:?}");
         assert!((find("quality.vector_most").value - 0.537_64).abs() < 2e-5);
-        let bare = quantities(&section_7(), Family::Hiperface, None);
+        let bare = quantities(&section_7_example(), Family::Hiperface, None);
         assert!(bare.len() + 1 == list.len() && bare.iter().all(|own| own.unit != Unit::Rpm), "issue 22.13");
-        let wide = quantities(&section_7(), Family::AfsAfm60, Some(50));
+        let wide = quantities(&section_7_example(), Family::AfsAfm60, Some(50));
         let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(QuantityLimit::Between(0.4, 0.6))));
     }

@@ -100,11 +100,7 @@ impl Part {
 pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
     const ARC_SECONDS: f64 = 3600.0;
     let plus_minus = |word, degrees: f64| {
-        Quantity::new(word, degrees, 5, Unit::Degrees).with_value_in_second_unit(
-            degrees * ARC_SECONDS,
-            2,
-            Unit::ArcSeconds,
-        )
+        Quantity::new(word, degrees, 5, Unit::Degrees).with_secondary_value(degrees * ARC_SECONDS, 2, Unit::ArcSeconds)
     };
     vec![
         plus_minus("nonlinearity.dnl_raw", nonlinearities.raw.differential_deg),

@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    button, card_with, choice, entry, icon_button, paragraph, primary_button, show_error_below, text_entry,
+    button, card_with_trailing, choice, entry, icon_button, paragraph, primary_button, show_error_below, text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -22,7 +22,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     let aside = |ui: &mut Ui| {
         closed = icon_button(ui, true, icons::X, &say(theme, "adapter.close")).clicked();
     };
-    card_with(ui, theme, TEXTS.text("adapter.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("adapter.title"), aside, |ui| {
         let word = say(theme, "adapter.link_label");
         entry(ui, theme, &word, |ui| {
             let mut link = source.link().to_owned();

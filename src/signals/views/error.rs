@@ -21,7 +21,7 @@ pub(super) fn page_ui(
     let Some(measurement) = signals.measurement() else { return };
     source::settings_ui(ui, theme, signals, &view.source, actions);
     let Ok(analysis) = &measurement.analysis else {
-        quality::refused_ui(ui, theme, measurement);
+        quality::refusal_ui(ui, theme, measurement);
         theme.gap(ui);
         octant::card_ui(ui, theme, &mut view.octant);
         return;

@@ -18,7 +18,7 @@ const HEIGHT: f32 = 220.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     // The result is drawn beside the entries, and so it is calculated first.
-    let circuit = form.circuit();
+    let circuit = form.calculate_circuit();
     split(
         ui,
         theme,

@@ -14,7 +14,7 @@ use crate::analysis::quality::Family;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
 use crate::signals::state::{Measurement, MeasurementResult, Signals, SignalsAction as Signals_, forms, quantities};
-use crate::ui::controls::{card, card_with, choice, committed_entry, entry, name, paragraph, problem, split};
+use crate::ui::controls::{card, card_with_trailing, choice, committed_entry, entry, name, paragraph, problem, split};
 use crate::ui::widgets::{Lissajous, LissajousFigure, density_image, lissajous, series};
 use crate::ui::{Theme, icons};
 
@@ -60,7 +60,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
             }
         }
     };
-    card_with(ui, theme, TEXTS.text("quality.lissajous"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("quality.lissajous"), aside, |ui| {
         let limits = signals.family().limits();
         let (least, most) = limits.ok_v;
         let value = match analysed {
@@ -139,7 +139,7 @@ fn quality_figure(
 }
 
 /// Draws the reason why a capture could not be analysed, and its findings.
-pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
+pub(super) fn refusal_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));

@@ -9,7 +9,7 @@ use crate::signals::state::{
     ChannelSpectrum, Measurement, Signals, Spectra, TAB, TEXTS, TimeAxisError, Unit, decibel_volts,
 };
 use crate::signals::views::say;
-use crate::ui::controls::{card, card_with, name, paragraph};
+use crate::ui::controls::{card, card_with_trailing, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, plot};
 
@@ -38,7 +38,7 @@ pub(super) fn page_ui(
     spectrum_ui(ui, theme, signals, measurement, &mut view.scope);
     if measurement.analysis.is_err() {
         theme.gap(ui);
-        quality::refused_ui(ui, theme, measurement);
+        quality::refusal_ui(ui, theme, measurement);
     }
 }
 
@@ -77,7 +77,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
             }
         }
     };
-    card_with(ui, theme, TEXTS.text("spectrum.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("spectrum.title"), aside, |ui| {
         let spectra = match &measurement.spectra {
             Ok(spectra) => spectra,
             Err(error) => {

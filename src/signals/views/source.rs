@@ -48,7 +48,7 @@ pub(super) fn source_ui(
         ui.add_space(theme.space.between);
     }
     if !shown && !running {
-        nothing_ui(ui, theme, signals, view, actions);
+        empty_page_ui(ui, theme, signals, view, actions);
     }
     shown
 }
@@ -130,7 +130,7 @@ fn displayed_capture_ui(
                 toggle_ui(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
             }
         });
-        compared_ui(ui, theme, signals, actions);
+        compared_capture_ui(ui, theme, signals, actions);
     });
 }
 
@@ -245,7 +245,7 @@ fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut 
     }
 }
 
-fn compared_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+fn compared_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
@@ -290,7 +290,7 @@ fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions:
 }
 
 /// Draws the empty page, with buttons to load a capture or start a source.
-fn nothing_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+fn empty_page_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;
     }

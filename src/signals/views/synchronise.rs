@@ -7,7 +7,7 @@ use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as 
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::SynchronisationResult};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
+    card, card_with_trailing, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
     show_error_below, split, verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series, step_ring};
@@ -119,7 +119,7 @@ fn measured_offset_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, acti
     let aside = |ui: &mut Ui| {
         forget = icon_button(ui, count > 0, icons::TRASH, &say(theme, "synchronise.forget")).clicked();
     };
-    card_with(ui, theme, TEXTS.text("synchronise.measured"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("synchronise.measured"), aside, |ui| {
         paragraph(ui, theme.label(say(theme, "synchronise.measured_words")));
         row(ui, theme, &say(theme, "synchronise.readings"), theme.monospace(count.to_string()));
         let offset = state.measured();

@@ -7,7 +7,9 @@ use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::app::Action;
 use crate::signals::state::{Column, SignalsAction as Signals, TEXTS, Table, forms};
 use crate::signals::views::say;
-use crate::ui::controls::{button, card_with, choice, committed_entry, entry, paragraph, problem, two_columns};
+use crate::ui::controls::{
+    button, card_with_trailing, choice, committed_entry, entry, paragraph, problem, two_columns,
+};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -40,7 +42,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     let aside = |ui: &mut Ui| {
         again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "columns.detect")).clicked();
     };
-    card_with(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
         lines_ui(ui, theme, table);
         ui.add_space(theme.space.between);
         two_columns(

@@ -7,7 +7,9 @@ use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
-use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, show_error_below, two_columns};
+use crate::ui::controls::{
+    button, card_with_trailing, choice, entry, label_width, paragraph, show_error_below, two_columns,
+};
 use crate::ui::{Theme, icons};
 
 /// Slider for a setting, with its range and number of decimals. Values beyond the range can be typed.
@@ -57,7 +59,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     let aside = |ui: &mut Ui| {
         reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "virtual.reset")).clicked();
     };
-    card_with(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
         // The rows are low, since all of them must fit beside the curves that they affect.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
@@ -149,7 +151,7 @@ fn window(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(Sour
             ask(SourceAction::SetWindow(window));
         }
     });
-    if let Some(ms) = source.actual_limited_window_ms() {
+    if let Some(ms) = source.limited_window_ms() {
         let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
         paragraph(ui, theme.caption(theme.words(&text)));
     }

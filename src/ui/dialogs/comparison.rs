@@ -32,8 +32,8 @@ pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &
             if !differences.is_empty() {
                 table_ui(ui, theme, shown.comparison());
             }
-            only_ui(ui, theme, "comparison.only_left", only_left);
-            only_ui(ui, theme, "comparison.only_right", only_right);
+            one_sided_items_ui(ui, theme, "comparison.only_left", only_left);
+            one_sided_items_ui(ui, theme, "comparison.only_right", only_right);
         });
         theme.gap(ui);
         buttons_ui(ui, theme, device, shown, actions);
@@ -64,7 +64,7 @@ fn value_ui(ui: &mut Ui, theme: &Theme, text: &str) {
     }
 }
 
-fn only_ui(ui: &mut Ui, theme: &Theme, word: &'static str, items: &[String]) {
+fn one_sided_items_ui(ui: &mut Ui, theme: &Theme, word: &'static str, items: &[String]) {
     if !items.is_empty() {
         ui.add_space(theme.space.between);
         paragraph(ui, theme.caption(theme.words(&Text::new(word).with("items", items.join(", ")))));

@@ -48,7 +48,7 @@ pub(in crate::ui) fn live_ui(
     let alone = studio.settings.values_alone;
     apart(ui, "controls", |ui| controls_ui(ui, theme, (device, alone), views, actions));
     ui.add_space(theme.space.between);
-    if !alone && !views.plot.is_large() {
+    if !alone && !views.plot.is_expanded() {
         apart(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
     }
 }

@@ -259,7 +259,7 @@ mod tests {
         assert!(from < to && (to - from).is_finite());
     }
 
-    fn labels(from: i64, to: i64) -> (Vec<String>, Option<String>) {
+    fn tick_labels(from: i64, to: i64) -> (Vec<String>, Option<String>) {
         let ticks =
             time_ticks(SampleTime::from_nanoseconds(from), SampleTime::from_nanoseconds(to), 4, Language::English);
         (ticks.ticks.into_iter().map(|(_, label)| label).collect(), ticks.base)
@@ -279,7 +279,7 @@ mod tests {
             (86_400 * second, 86_430 * second, &["1 d 0:00:00", "1 d 0:00:10", "1 d 0:00:20", "1 d 0:00:30"]),
         ];
         for (from, to, expected) in cases {
-            let (found, base) = labels(from, to);
+            let (found, base) = tick_labels(from, to);
             assert_eq!((found, base), (expected.iter().map(|own| (*own).to_owned()).collect(), None), "{from} {to}");
         }
     }
@@ -287,7 +287,7 @@ mod tests {
     #[test]
     fn small_steps_far_from_the_start_use_a_round_base() {
         let hour = 3600 * SECOND;
-        let (found, base) = labels(hour + 30_000, hour + 33_000);
+        let (found, base) = tick_labels(hour + 30_000, hour + 33_000);
         assert_eq!(
             (found, base),
             (["+30 µs", "+31 µs", "+32 µs", "+33 µs"].map(ToOwned::to_owned).to_vec(), Some("1:00:00.0".to_owned()))

@@ -72,7 +72,7 @@ impl Reduced {
         let mut cuts: Vec<(PictureInputs, GridColumns)> = Vec::new();
         for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = PictureInputs { samples: recorder.stamp(line), all: history.all(), grid: *grid };
+            let wanted = PictureInputs { samples: recorder.group_stamp(line), all: history.all(), grid: *grid };
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }

@@ -38,13 +38,13 @@ impl PlotUiState {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 
-    pub(in crate::ui) fn is_large(&self) -> bool {
+    pub(in crate::ui) fn is_expanded(&self) -> bool {
         self.large == Some(true)
     }
 
     /// Moves the plot back into its panel. Returns false if the plot was already there.
     pub(in crate::ui) fn restore_size(&mut self) -> bool {
-        let was = self.is_large();
+        let was = self.is_expanded();
         self.large = self.large.map(|_| false);
         was
     }

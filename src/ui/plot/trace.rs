@@ -85,7 +85,7 @@ pub(super) fn shapes(
     out: &mut Vec<Shape>,
 ) {
     if picture.raw {
-        sparse(picture, lane, time, value, pen, out)
+        draw_sparse_trace(picture, lane, time, value, pen, out)
     } else {
         draw_dense_trace(picture, lane, time, value, pen, out)
     }
@@ -142,7 +142,14 @@ fn bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
     }
 }
 
-fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
+fn draw_sparse_trace(
+    picture: &Picture,
+    lane: Rect,
+    time: &TimeAxis,
+    value: &ValueAxis,
+    pen: &TraceStyle,
+    out: &mut Vec<Shape>,
+) {
     let smooth = picture.pixels.len() <= SMOOTH;
     let dots = picture.pixels.len() as f32 * DOTS < lane.width();
     let around = lane.expand(WIDTH * 4.0);
@@ -269,7 +276,7 @@ mod tests {
         let times: Vec<SampleTime> = (0..count).map(|at| SampleTime::from_nanoseconds(at * 100_000 / count)).collect();
         let values: Vec<f64> = (0..count).map(value).collect();
         let flags: Vec<Flags> = (0..count).map(flags).collect();
-        history.append(&times, &[Part::real(&values).flagged(&flags)]).unwrap();
+        history.append(&times, &[Part::real(&values).with_flags(&flags)]).unwrap();
         let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(100_000), 100);
         let mut picture = Picture::default();
         history.picture(0, &history.cut(&grid), &mut picture);

@@ -32,7 +32,7 @@ pub struct HoldButton<'a> {
 
 /// Context of the hold buttons. The window sets it before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) struct HoldSurroundings {
+pub(in crate::ui) struct HoldButtonContext {
     /// Whether the window is covered, so that no hold button can be pressed.
     pub(in crate::ui) covered: bool,
     pub(in crate::ui) moving: bool,
@@ -56,13 +56,13 @@ struct HoldButtonFrame {
 
 const LEAST: f32 = 56.0;
 
-pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurroundings) {
+pub(in crate::ui) fn set_hold_button_context(ctx: &Context, surroundings: HoldButtonContext) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
 /// Returns whether a hold button had the keyboard focus in the previous frame and still has it. Keys then belong to the
 /// button.
-pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
+pub(in crate::ui) fn has_hold_button_focus(ctx: &Context) -> bool {
     let drawn = drawn(ctx);
     let focused = ctx.memory(|memory| memory.focused());
     drawn.keyboard.is_some_and(|(id, pass)| focused == Some(id) && pass + 1 >= ctx.cumulative_pass_nr())
@@ -85,7 +85,8 @@ impl HoldButtonFrame {
 
 pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
     let size = Vec2::new(size.x.max(LEAST), size.y.max(LEAST));
-    let around: HoldSurroundings = ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();
+    let around: HoldButtonContext =
+        ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();
     let enabled = button.enabled && !around.covered;
     let sense = if button.enabled { Sense::click_and_drag() } else { Sense::hover() };
     let (_, response) = ui.allocate_exact_size(size, sense);
@@ -139,7 +140,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     let hint = theme.say("hold.release_first");
     let ended = theme.say("hold.ended");
     let is_held = state.is_held() && !button.has_ended;
-    let caption = match state.waits_for_release() {
+    let caption = match state.is_waiting_for_release() {
         true => &hint,
         false if state.is_held() && button.has_ended => &ended,
         false => button.caption,

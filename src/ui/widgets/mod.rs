@@ -24,12 +24,12 @@ pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexAddresses, HexEdit, HexMark, HexModel, HexView, hex_editor, hex_lines};
 pub use hold_button::{HoldButton, hold_button};
 pub(in crate::ui) use hold_button::{
-    HoldSurroundings, has_hold_button_keyboard, is_hold_button_held, surround_hold_buttons,
+    HoldButtonContext, has_hold_button_focus, is_hold_button_held, set_hold_button_context,
 };
 pub use lissajous::{Lissajous, LissajousFigure, density_image, lissajous};
 pub use register_table::{
-    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
-    RegisterTable, RegisterView, register_table,
+    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
+    RegisterTableOutput, RegisterView, register_table,
 };
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};

@@ -113,7 +113,7 @@ pub enum RegisterEvent {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RegisterOutput {
+pub struct RegisterTableOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
     /// Whether columns are hidden or narrower than usual. Parts of a row may then be cut off.
@@ -160,9 +160,9 @@ pub fn register_table(
     height: f32,
     view: &mut RegisterView,
     take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
-) -> RegisterOutput {
+) -> RegisterTableOutput {
     let id = ui.make_persistent_id(("register_table", table.label));
-    let mut output = RegisterOutput::default();
+    let mut output = RegisterTableOutput::default();
     let mut lines = Lines::new(table, view);
     keys::restore_deferred_keys(ui, view, id);
     if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
@@ -203,7 +203,7 @@ fn body(
     height: f32,
     view: &mut RegisterView,
     take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
-    output: &mut RegisterOutput,
+    output: &mut RegisterTableOutput,
 ) -> Response {
     view.page = ((height / LINE) as usize).saturating_sub(1);
     let area = ScrollArea::vertical().id_salt(id.with("lines")).auto_shrink(false).max_height(height);
@@ -218,7 +218,7 @@ fn body(
             Rect::from_min_size(pos2(whole.left(), top), Vec2::new(columns.width(), LINE))
         };
         if std::mem::take(&mut view.reveal)
-            && let Some(line) = view.selected.and_then(|own| lines.line_of(own))
+            && let Some(line) = view.selected.and_then(|own| lines.line_index(own))
         {
             ui.scroll_to_rect_animation(at(line), None, egui::style::ScrollAnimation::none());
         }
@@ -244,7 +244,7 @@ fn body(
             }
         }
         if let Some(edit) = &view.edit
-            && let Some(line) = lines.line_of(SelectedRow::Row(edit.place))
+            && let Some(line) = lines.line_index(SelectedRow::Row(edit.place))
             && let Some(range) = columns.range(columns::Column::Value)
         {
             let own = at(line);
@@ -323,7 +323,7 @@ fn row(
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     let boxed = (table.kind == RegisterKind::Numbers && row.read_only.is_none())
-        .then(|| columns.range(columns::Column::Value).map(|value| paint::value_box(theme, rect, value)))
+        .then(|| columns.range(columns::Column::Value).map(|value| paint::value_edit_rect(theme, rect, value)))
         .flatten();
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));

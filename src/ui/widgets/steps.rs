@@ -79,7 +79,7 @@ impl Gauge {
     }
 
     /// Returns whether the value lies in both the allowed and the best range.
-    pub fn is_best(&self) -> bool {
+    pub fn is_in_best_range(&self) -> bool {
         self.fits() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
     }
 }

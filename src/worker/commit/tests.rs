@@ -116,8 +116,8 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = char;
 
-    fn head(&self) -> PlanHead<'_, Self> {
-        PlanHead { plan: &self.plan, kind: 'k', cycles_seen: self.seen, wear_limit: 10 }
+    fn head(&self) -> PlanHeader<'_, Self> {
+        PlanHeader { plan: &self.plan, kind: 'k', cycles_seen: self.seen, wear_limit: 10 }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -149,7 +149,10 @@ fn confirm_plan(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPla
     ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear }
 }
 
-fn write(spy: &mut Spy, agreed: &ApprovedPlan<Prepared>) -> Result<Committed<Written>, Unfinished<Prepared, Spy, ()>> {
+fn write(
+    spy: &mut Spy,
+    agreed: &ApprovedPlan<Prepared>,
+) -> Result<Committed<Written>, WritePlanError<Prepared, Spy, ()>> {
     let (store, mut told) = (spy.store.clone(), Vec::new());
     let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.step.0)));
     let applied = spy.steps.iter().filter(|step| **step == "apply").count();
@@ -180,7 +183,7 @@ fn every_write_takes_all_steps_in_order() {
                 assert_eq!((interrupted.unfinished.map(|op| op.0), interrupted.end_state), (Some(2), "as it was"));
             }
             Err(JobError::Device(())) => assert_eq!(label, "refused"),
-            Err(JobError::NotBegun(NotBegun::Worn { seen: 9, cost: 3, limit: 10 })) => assert_eq!(label, "worn"),
+            Err(JobError::NotStarted(NotStarted::Worn { seen: 9, cost: 3, limit: 10 })) => assert_eq!(label, "worn"),
             Err(_) => panic!("{label}"),
         }
     }
@@ -194,7 +197,7 @@ fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     assert_eq!((done.written, done.backup), (Written::default(), None));
     let consent = confirm_plan(Some(0), &[2], false).consent;
     let ended = write(&mut spy, &ApprovedPlan { consent, ..confirm_plan(Some(0), &[1], false) });
-    assert!(matches!(ended, Err(JobError::NotBegun(NotBegun::OtherPlan))) && spy.steps.is_empty());
+    assert!(matches!(ended, Err(JobError::NotStarted(NotStarted::OtherPlan))) && spy.steps.is_empty());
 }
 
 /// Issue 22.4: an unknown count is not 0. Such a write begins only if forced, and the logbook's error is reported then.
@@ -222,14 +225,14 @@ fn an_unusable_logbook_prevents_a_write() {
     std::fs::create_dir_all(store.logbook_path()).unwrap();
     let seen = cycles_seen(&store, &device());
     assert_eq!(seen, None);
-    let write = |plain: &mut Plain, agreed| -> Result<_, Unfinished<Prepared, Plain, ()>> {
+    let write = |plain: &mut Plain, agreed| -> Result<_, WritePlanError<Prepared, Plain, ()>> {
         write_plan(&store, true, &agreed, plain, &mut |_| {})
     };
     // Not read; or read before and not to be written now.
     for seen in [seen, Some(0)] {
         let mut plain = Plain(0);
         let ended = write(&mut plain, confirm_plan(seen, &[2], false));
-        let refused = matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 2 })));
+        let refused = matches!(ended, Err(JobError::NotStarted(NotStarted::WearUnknown { cost: 2 })));
         assert!(refused && plain.0 == 0, "{seen:?}");
         let Ok(done) = write(&mut plain, confirm_plan(seen, &[2], true)) else { panic!("{seen:?}") };
         assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");

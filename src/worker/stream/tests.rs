@@ -71,7 +71,7 @@ fn an_idle_reader_does_not_block_and_losses_are_counted() {
     let total: usize = sizes.iter().sum();
     let (producer, ..) = numbers(sizes, true);
     let stream = Stream::spawn(producer, 1_000, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
-    wait_until(|| stream.is_ended());
+    wait_until(|| stream.is_finished());
     let batches = stream.take();
     let held: usize = batches.iter().map(|batch| batch.samples.len()).sum();
     assert!(held <= 1_000 && held > 900, "{held}");
@@ -88,7 +88,7 @@ fn an_occasional_reader_can_locate_gaps() {
     let stream = Stream::spawn(producer, 500, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
     let (mut next, mut read, mut lost) = (0, 0, 0);
     loop {
-        let over = stream.is_ended();
+        let over = stream.is_finished();
         let batches = stream.take();
         next = check(&batches, next);
         read += batches.iter().map(|batch| batch.samples.len() as u64).sum::<u64>();
@@ -129,7 +129,7 @@ fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
         counter.fetch_add(1, Ordering::SeqCst);
     });
     let stream = Stream::spawn(producer, 10, Arc::new(VirtualClock::default()), wake).unwrap();
-    wait_until(|| stream.is_ended());
+    wait_until(|| stream.is_finished());
     wait_until(|| wakes.load(Ordering::SeqCst) >= 21);
     // At 1, 51, … 951 ms, and at the end.
     assert_eq!(wakes.load(Ordering::SeqCst), 21);
@@ -146,7 +146,7 @@ fn the_last_batch_before_a_silence_wakes_the_reader() {
     wakes.recv_timeout(HANGS).unwrap();
     wakes.recv_timeout(HANGS).unwrap();
     assert_eq!(check(&stream.take(), 0), 2);
-    assert!(!stream.is_ended());
+    assert!(!stream.is_finished());
     assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes nobody");
 }
 

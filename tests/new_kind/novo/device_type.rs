@@ -48,7 +48,7 @@ impl Kind for Novo {
     }
     fn error_texts(error: &JobError) -> Vec<Text> {
         vec![match (error, error.device()) {
-            (JobError::NotBegun(why), _) => explain::not_started_text(why),
+            (JobError::NotStarted(why), _) => explain::not_started_text(why),
             (_, Some(Error::Cancelled)) => Text::new("encoder.cancelled"),
             (_, Some(Error::Silent)) => TEXTS.text("novo.silent"),
             (_, Some(Error::Link(error))) => explain::link(error),

@@ -10,7 +10,7 @@ use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
-use encoder_studio::worker::open::{check_parameters, inside, open_bytes, wrong_target_error};
+use encoder_studio::worker::open::{check_parameters, inside, open_byte_stream, wrong_target_error};
 use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, Watched};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
@@ -93,7 +93,7 @@ pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Novo>, OpenErr
     check(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let virtual_one = || Ok(inside(Virtual::from_pairs(url.query.pairs())?, &clock));
-    let wire = open_bytes(url, CharacterFormat::FACTORY, &clock, virtual_one)?;
+    let wire = open_byte_stream(url, CharacterFormat::FACTORY, &clock, virtual_one)?;
     Ok(Session::with(Novo(wire), clock, store, url.scheme == LinkScheme::Sim))
 }
 

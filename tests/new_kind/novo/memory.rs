@@ -75,7 +75,7 @@ impl HasMemory for Encoder {
     fn commit(&mut self, agreed: ApprovedPlanOf<Novo>) -> Job {
         Job::Commit(Box::new(agreed))
     }
-    fn forget_device(&mut self) {
+    fn discard_device_data(&mut self) {
         self.staged.clear();
         self.track.forget();
     }

@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use encoder_studio::app::session::{EarlyEnd, HasDraft, HasMemory, HasProfile, HasSession, Session, SessionEvents};
 use encoder_studio::app::track::{DeviceRecorder, Meaning, PositionSample};
 use encoder_studio::app::{
-    ActionContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobState, Opened, PendingEdits,
-    Recording, Services, Tab, Text,
+    ActionContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobState, OpenedConnection,
+    PendingEdits, Recording, Services, Tab, Text,
 };
 use encoder_studio::profile::Body;
 
@@ -127,14 +127,14 @@ impl SessionEvents for Encoder {
             Output::Surveyed(read) => self.surveyed(read, services),
             Output::Position(sample) => self.see(&[sample], 0),
             Output::Prepared(prepared) => self.planned(prepared, services),
-            Output::Committed(committed) => self.committed(*committed, services),
+            Output::Committed(committed) => self.handle_commit_end(*committed, services),
         }
     }
-    fn means_no_response(&self, error: &JobError) -> bool {
+    fn is_no_response(&self, error: &JobError) -> bool {
         error.device() == Some(&Error::Silent)
     }
-    fn forget_requests(&mut self) {
-        self.forget_plan();
+    fn discard_requests(&mut self) {
+        self.discard_plan();
     }
     fn handle_early_end(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.handle_interrupted_write(how, texts)
@@ -146,7 +146,7 @@ impl DeviceModel for Encoder {
     type Action = Action;
     type Done = Infallible;
 
-    fn connect(&mut self, opened: Opened<Novo>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Novo>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.track.begin(&opened.began);
         self.session.attach_connection(opened, services);

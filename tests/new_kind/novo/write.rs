@@ -3,7 +3,7 @@
 use encoder_studio::profile::{Body, ChangedItem, Confirmed, DeviceError, Write, Written};
 use encoder_studio::store::{DeviceKey, EntryKind};
 use encoder_studio::worker::SessionContext;
-use encoder_studio::worker::commit::{PlanHead, Planned, backup_of};
+use encoder_studio::worker::commit::{PlanHeader, Planned, backup_document};
 
 use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
 use super::profile::{NovoPlan, NovoProfile, Op};
@@ -50,8 +50,8 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ();
 
-    fn head(&self) -> PlanHead<'_, Self> {
-        PlanHead { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: LIFE }
+    fn head(&self) -> PlanHeader<'_, Self> {
+        PlanHeader { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: LIFE }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -65,6 +65,6 @@ impl Planned for Prepared {
     }
     fn before_image(&self) -> String {
         let (serial, values) = self.plan.base;
-        backup_of(Body::new(NovoProfile { serial, values })).emit()
+        backup_document(Body::new(NovoProfile { serial, values })).emit()
     }
 }

@@ -11,7 +11,7 @@ use encoder_studio::devices::biss::protocol::{DeviceMode, PositionFilter, Preset
 use encoder_studio::link::{CancelToken, Direction};
 
 use super::hands::{
-    Hands, IN_OPERATION, assert_reported_state, calibration, data, exchanges, filter, preset, wiegand_test,
+    IN_OPERATION, TestOperator, assert_reported_state, calibration, data, exchanges, filter, preset, wiegand_test,
 };
 use super::support::{Bench, Transport};
 
@@ -77,7 +77,7 @@ enum Ended {
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);
-    let mut hands = Hands::on(&bench);
+    let mut hands = TestOperator::on(&bench);
     // The shortest test: the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     let ended = match bench.commit(prepared, &mut hands).map_err(|error| *error) {
@@ -108,7 +108,7 @@ fn assert_can_be_led_back(
     }
     steps.push(told.end_state.at);
     let prepared = again.prepare((scene.change)()).unwrap_or_else(|error| panic!("{context}: {error}"));
-    let mut hands = Hands::on(&again);
+    let mut hands = TestOperator::on(&again);
     hands.rpm = (500.0, 2000.0);
     again.commit(&prepared, &mut hands).unwrap_or_else(|error| panic!("{context}: {error}"));
     assert!((scene.is_done)(&again), "{context}");

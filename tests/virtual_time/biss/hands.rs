@@ -19,7 +19,7 @@ use encoder_studio::worker::commit::ApprovedPlan;
 use super::support::{Bench, at};
 
 /// Follows the requests, and records them.
-pub(crate) struct Hands {
+pub(crate) struct TestOperator {
     motor: Motor,
     pub(crate) seat: OperatorChannel,
     /// Revolutions per minute in the calibration and in the Wiegand test.
@@ -32,9 +32,9 @@ pub(crate) struct Hands {
     pub(crate) instead: Vec<(Task, Answer)>,
 }
 
-impl Hands {
+impl TestOperator {
     pub(crate) fn on(bench: &Bench) -> Self {
-        Hands {
+        TestOperator {
             motor: bench.motor(),
             seat: OperatorChannel::default(),
             rpm: (500.0, 1000.0),
@@ -123,7 +123,7 @@ impl Bench {
     }
 
     /// Carries a plan out with this user at the motor.
-    pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut Hands) -> Result<Committed, Box<JobError>> {
+    pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut TestOperator) -> Result<Committed, Box<JobError>> {
         match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
             BissOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),
@@ -144,7 +144,7 @@ impl Bench {
 
     pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
         let prepared = self.prepare(change)?;
-        let mut hands = Hands::on(self);
+        let mut hands = TestOperator::on(self);
         self.commit(&prepared, &mut hands).map_err(|error| *error)
     }
 
@@ -184,7 +184,7 @@ impl Bench {
 /// during a run. Every eighth of these is enough.
 pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut bench = original.copied();
-    let mut hands = Hands::on(&bench);
+    let mut hands = TestOperator::on(&bench);
     hands.rpm = (500.0, 2000.0);
     let sent = bench.counter();
     let mut begun: Vec<(usize, ProcedureStep)> = Vec::new();

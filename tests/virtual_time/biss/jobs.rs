@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::devices::biss::jobs::{
-    Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep, ReadRegisters, device_key, open,
+    Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep, RegisterValues, device_key, open,
 };
 use encoder_studio::devices::biss::procedures::{
     self as device, Error, FrameSource, PositionReading, Sample, Status, Survey,
@@ -147,7 +147,7 @@ fn registers_and_banks_are_read() {
             Ok(BissOutput::Registers(registers)) => registers,
             other => panic!("{other:?}"),
         };
-        let temperature = ReadRegisters { start: at("0x66"), bytes: vec![75], unsaved: None };
+        let temperature = RegisterValues { start: at("0x66"), bytes: vec![75], unsaved: None };
         assert_eq!(read(BissJob::Read("0x66".parse().unwrap())), temperature);
         assert_eq!(read(BissJob::Read("0x03:0x2C+2".parse().unwrap())).bytes, [0x2E, 0xE0]);
         let direct = read(BissJob::ReadDirect);

@@ -15,16 +15,16 @@ use encoder_studio::devices::biss::protocol::{
 };
 use encoder_studio::devices::biss::state::explain::job;
 
-use super::hands::{Hands, IN_OPERATION, calibration, data, filter, interrupted, preset, wiegand_test};
+use super::hands::{IN_OPERATION, TestOperator, calibration, data, filter, interrupted, preset, wiegand_test};
 use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// Checks that the reported steps are those listed before, in their order; the return is reported if there is one.
 #[track_caller]
-fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
+fn assert_steps(bench: &mut Bench, change: Change) -> TestOperator {
     let prepared = bench.prepare(change).unwrap();
-    let mut hands = Hands::on(bench);
+    let mut hands = TestOperator::on(bench);
     bench.commit(&prepared, &mut hands).unwrap();
     let listed: Vec<(usize, ProcedureStep)> = prepared
         .plan
@@ -47,7 +47,7 @@ fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
             let before = bench.flash_cycles();
             let prepared = bench.prepare(calibration()).unwrap();
             assert_eq!(prepared.plan.write_cycles(), 1);
-            let mut hands = Hands::on(&bench);
+            let mut hands = TestOperator::on(&bench);
             let committed = bench.commit(&prepared, &mut hands).unwrap();
             let written = committed.written;
             assert_eq!((written.ops, written.write_cycles, written.written), (1, 1, 1));
@@ -75,7 +75,7 @@ fn a_wiegand_test_returns_results_and_saves_them_on_request() {
             let (before, from) = (bench.flash_cycles(), bench.now());
             let prepared = bench.prepare(wiegand_test(save)).unwrap();
             assert_eq!(prepared.plan.write_cycles(), u64::from(save));
-            let mut hands = Hands::on(&bench);
+            let mut hands = TestOperator::on(&bench);
             let written = bench.commit(&prepared, &mut hands).unwrap().written;
             assert_eq!(bench.flash_cycles() - before, u32::from(save));
             assert_eq!((written.write_cycles, written.written), (u64::from(save), u64::from(save)));
@@ -179,7 +179,7 @@ fn a_mounting_is_one_run_with_a_report() {
     let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
     let cost = prepared.plan.write_cycles();
     assert_eq!(cost, 4, "the preset value is stored already");
-    let mut hands = Hands::on(&bench);
+    let mut hands = TestOperator::on(&bench);
     let written = bench.commit(&prepared, &mut hands).unwrap().written;
     assert_eq!((written.ops, written.write_cycles, written.written), (4, 4, 1 + 1 + 1 + 64));
     assert_eq!(u64::from(bench.flash_cycles() - before), cost);
@@ -216,7 +216,7 @@ fn a_part_of_a_run_can_be_skipped() {
         let run = MountingSteps { calibrate: true, wiegand: Some(false), ..MountingSteps::default() };
         let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
         let before = bench.flash_cycles();
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         hands.instead.push((task, Answer::Skip));
         let written = bench.commit(&prepared, &mut hands).unwrap().written;
         assert_eq!(written.outcomes.first(), Some(&Outcome::Skipped { after }));
@@ -239,7 +239,7 @@ fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     ] {
         let mut bench = Bench::new(Transport::ConfigPin, "");
         let prepared = bench.prepare(change).unwrap();
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         hands.instead.push((task, Answer::Cancel));
         let told = interrupted(*bench.commit(&prepared, &mut hands).unwrap_err());
         assert_eq!(
@@ -308,7 +308,7 @@ fn a_failed_calibration_reports_the_reason() {
         let mut bench = Bench::new(Transport::ConfigPin, &format!("{query}&calibration-silent=off"));
         let prepared = bench.prepare(calibration()).unwrap();
         let before = bench.flash_cycles();
-        let (mut hands, motor) = (Hands::on(&bench), bench.motor());
+        let (mut hands, motor) = (TestOperator::on(&bench), bench.motor());
         let (told, seat) = (&mut hands, &motor);
         let commit = told.commit_of(&prepared);
         let error = bench
@@ -351,7 +351,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
     for (spoil, status) in cases {
         let mut bench = Bench::new(Transport::ConfigPin, "calibration-silent=off");
         let prepared = bench.prepare(calibration()).unwrap();
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         let commit = hands.commit_of(&prepared);
         let encoder = bench.handle();
         let error = bench
@@ -376,7 +376,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
     assert_eq!(dead.mode_and_password(), IN_OPERATION);
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
-    let mut hands = Hands::on(&bench);
+    let mut hands = TestOperator::on(&bench);
     let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
     let error = bench
         .run_watched(commit, &mut |news| {
@@ -396,7 +396,7 @@ fn a_run_that_never_ends_times_out() {
     // The motor stops, and the revolutions are never complete.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
-    let mut hands = Hands::on(&bench);
+    let mut hands = TestOperator::on(&bench);
     let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
     let error = bench
         .run_watched(commit, &mut |news| {
@@ -502,7 +502,7 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
     let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
     assert_eq!(prepared.plan.ops.len(), 2);
-    let hands = Hands::on(&bench);
+    let hands = TestOperator::on(&bench);
     let (commit, seat) = (hands.commit_of(&prepared), hands.seat);
     let mut asked = 0;
     let error = bench
@@ -536,7 +536,7 @@ fn the_status_of_an_earlier_run_is_ignored() {
         bench.change(calibration()).unwrap();
         // It leaves "counterclockwise done", which is also the end of the first run.
         let prepared = bench.prepare(calibration()).unwrap();
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         hands.instead.push((Task::Turn(Run::CalibrationClockwise), Answer::Skip));
         let skipped = Outcome::Skipped { after: Some(Run::CalibrationCounterclockwise) };
         assert_eq!(bench.commit(&prepared, &mut hands).unwrap().written.outcomes, [skipped]);

@@ -8,7 +8,7 @@ use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, JobError};
-use encoder_studio::devices::biss::procedures::{Error, FrameRun, Sample, Station, Supply};
+use encoder_studio::devices::biss::procedures::{ConsecutiveFrames, Error, Sample, Station, Supply};
 use encoder_studio::devices::biss::profile::RegisterRange;
 use encoder_studio::kinds::attachable_kinds;
 use encoder_studio::link::{Clock, VirtualClock};
@@ -53,7 +53,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
 }
 
 impl Stand {
-    fn run(&mut self) -> FrameRun {
+    fn run(&mut self) -> ConsecutiveFrames {
         match self.session.sample().unwrap() {
             Sample::Frames(run) => run,
             other => panic!("{other:?}"),
@@ -61,7 +61,7 @@ impl Stand {
     }
 
     /// Returns all frames streamed within this time.
-    fn runs(&mut self, time: Duration) -> Vec<FrameRun> {
+    fn runs(&mut self, time: Duration) -> Vec<ConsecutiveFrames> {
         let end = self.clock.now() + time;
         let mut runs = Vec::new();
         while self.clock.now() < end {
@@ -71,7 +71,7 @@ impl Stand {
     }
 
     /// Returns the bytes that the adapter sends within a second without a request.
-    fn sends_by_itself(&mut self) -> usize {
+    fn unsolicited_byte_count(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
             self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
@@ -91,14 +91,14 @@ impl Stand {
 
 /// Checks that numbers and times are continuous, and the position follows the shaft: 50 revolutions per second are
 /// 327.68 steps per frame.
-fn check(runs: &[FrameRun]) {
+fn check(runs: &[ConsecutiveFrames]) {
     let first = &runs[0];
     let mut before: Option<(Moment, u64)> = None;
     let mut next = first.first;
     for run in runs {
         assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
         next = run.first + run.frames.len() as u64;
-        for (moment, frame) in run.with_times() {
+        for (moment, frame) in run.iter_with_times() {
             let position = run.layout.steps(&frame.unwrap());
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.since(earlier), FAST);
@@ -122,7 +122,7 @@ fn short_polling_intervals_are_streamed() {
     assert!(frames > 50_000 && (streamed - 200..=streamed + 1).contains(&frames), "{frames} of {streamed}");
     assert_eq!(stand.count(Operation::BissStream), 1);
     stand.session.set_sample_interval(None);
-    assert_eq!(stand.sends_by_itself(), 0);
+    assert_eq!(stand.unsolicited_byte_count(), 0);
 }
 
 #[test]
@@ -135,14 +135,14 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         check(&runs);
         let begin = runs[0].at;
         assert!(runs[0].is_stream_start() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
-        last = runs.last().and_then(|run| run.with_times().last()).map(|(at, _)| at);
+        last = runs.last().and_then(|run| run.iter_with_times().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
         let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
         assert!(matches!(watched, Watched::Sample(Sample::Watched(_))));
     }
     stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     assert!(matches!(stand.session.sample(), Ok(Sample::Position(_))), "slow enough to be asked");
-    assert_eq!(stand.sends_by_itself(), 0);
+    assert_eq!(stand.unsolicited_byte_count(), 0);
     stand.session.set_sample_interval(Some(FAST));
     stand.run();
     stand.session.set_sample_interval(Some(FAST * 2));
@@ -155,7 +155,7 @@ fn damaged_and_missing_frames_are_reported() {
     noisy.session.set_sample_interval(Some(FAST));
     let runs = noisy.runs(Duration::from_secs(1));
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
-    let wrong: usize = runs.iter().map(FrameRun::crc_errors).sum();
+    let wrong: usize = runs.iter().map(ConsecutiveFrames::crc_errors).sum();
     assert!((0.04..0.06).contains(&(wrong as f64 / frames as f64)), "{wrong} of {frames}");
     let mut open = stand("line=open");
     open.session.set_sample_interval(Some(FAST));

@@ -6,7 +6,7 @@ use encoder_studio::buses::bridge::procedures::SupplyAfterSession::{AsFound, Off
 use encoder_studio::devices::biss::jobs::{BissJob, JobError};
 use encoder_studio::units::SupplyVoltage;
 
-use super::hands::{Hands, data};
+use super::hands::{TestOperator, data};
 use super::support::{Bench, at};
 
 fn has_power(bench: &Bench) -> bool {
@@ -93,7 +93,7 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);
     let prepared = whole.prepare(data()).unwrap();
     let begins = whole.tap().sent.len();
-    let mut hands = Hands::on(&whole);
+    let mut hands = TestOperator::on(&whole);
     whole.commit(&prepared, &mut hands).unwrap();
     let frames = whole.tap().sent.len() - begins;
     let mut kept = 0;
@@ -102,7 +102,7 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
         let prepared = bench.prepare(data()).unwrap();
         let cut = bench.tap().sent.len() + frames * part / 12;
         bench.tap().mute_from = Some(cut);
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         let error = *bench.commit(&prepared, &mut hands).unwrap_err();
         bench.tap().mute_from = None;
         let unknown =

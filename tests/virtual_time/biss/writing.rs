@@ -13,12 +13,12 @@ use encoder_studio::devices::biss::protocol::{PositionFilter, PresetValue};
 use encoder_studio::kinds::program;
 use encoder_studio::profile::{ChangedItem, Consent, ProfileDocument};
 use encoder_studio::store::{Entry, EntryKind, Intent, Logbook, Outcome as CountedFinding, read_text};
-use encoder_studio::worker::NotBegun;
+use encoder_studio::worker::NotStarted;
 use encoder_studio::worker::commit::ApprovedPlan;
 use jiff::Timestamp;
 
 use super::hands::{
-    Hands, IN_OPERATION, calibration, data, exchanges, filter, interrupted, preset, restore_of, wiegand_test,
+    IN_OPERATION, TestOperator, calibration, data, exchanges, filter, interrupted, preset, restore_of, wiegand_test,
 };
 use super::support::{Bench, Transport, at};
 
@@ -183,7 +183,7 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     let prepared = bench.prepare(filter()).unwrap();
     let (seen, before) = (prepared.cycles_seen, bench.flash_cycles());
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
-    assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { .. })), "{error}");
+    assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { .. })), "{error}");
     assert_eq!((seen, bench.flash_cycles()), (None, before));
     let consent = Consent::to(prepared.plan.id());
     let attendance =
@@ -215,7 +215,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     assert_eq!(prepared.cycles_seen, Some(999));
     let before = bench.flash_cycles();
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
-    assert!(matches!(error, JobError::NotBegun(NotBegun::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");
+    assert!(matches!(error, JobError::NotStarted(NotStarted::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");
     assert_eq!(bench.flash_cycles(), before);
     // One is left.
     let one = bench.prepare(filter()).unwrap();
@@ -286,7 +286,7 @@ fn unverifiable_results_are_reported_as_unclear() {
     let prepared = original.prepare(wiegand_test(true)).unwrap();
     for lost in ["answer", "request"] {
         let mut bench = original.copied();
-        let mut hands = Hands::on(&bench);
+        let mut hands = TestOperator::on(&bench);
         let (tap, counter) = (bench.tap_handle(), bench.counter());
         let commit = hands.commit_of(&prepared);
         let error = bench

@@ -10,7 +10,9 @@ use encoder_studio::link::Clock;
 use fastrand::Rng;
 
 use super::{End, Schedule, any_faults, assert_one_of, campaign};
-use crate::biss::hands::{Hands, IN_OPERATION, assert_reported_state, calibration, data, filter, preset, wiegand_test};
+use crate::biss::hands::{
+    IN_OPERATION, TestOperator, assert_reported_state, calibration, data, filter, preset, wiegand_test,
+};
 use crate::biss::support::{Bench, Handle, Transport};
 
 /// What is stored in the encoder: OEM data that are not 0, preset, filter, and whether it is calibrated.
@@ -36,8 +38,8 @@ struct Case {
     loses_table: bool,
 }
 
-fn hands(bench: &Bench) -> Hands {
-    let mut hands = Hands::on(bench);
+fn hands(bench: &Bench) -> TestOperator {
+    let mut hands = TestOperator::on(bench);
     // The shortest test: the fewest exchanges.
     hands.rpm = (500.0, 2000.0);
     hands
@@ -121,7 +123,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             assert_eq!(left, case.course[0], "{context}: {error}");
-            End::NotBegun
+            End::NotStarted
         }
     };
     // The line is intact again: the encoder is returned to operation, then the change is completed.

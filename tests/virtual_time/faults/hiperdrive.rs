@@ -81,7 +81,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             assert_eq!(left, case.before, "{context}: {error}");
-            End::NotBegun
+            End::NotStarted
         }
     };
     // The cable is back: a second run completes the change.

@@ -214,7 +214,7 @@ fn save(case: &Case, truth: &HiperfaceProfile, rng: &mut Rng) -> End {
         Ok(other) => panic!("{other:?}"),
         Err(error) => {
             assert!(!error.to_string().is_empty(), "{context}");
-            End::NotBegun
+            End::NotStarted
         }
     }
 }
@@ -243,7 +243,7 @@ fn run(cases: &[Case], truth: &HiperfaceProfile, rng: &mut Rng) -> End {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             assert_eq!(state, *before, "{context}: {error}");
-            End::NotBegun
+            End::NotStarted
         }
     };
     // The line is intact again: the same session or a new one completes the change, or says why it cannot.

@@ -206,7 +206,7 @@ fn run(cases: &[Case], rng: &mut Rng) -> End {
             let is_left = error.to_string().contains("could not be returned to operation");
             assert_eq!((&state.0, &state.1), (&before.0, &before.1), "{context}: {error}");
             assert!(state.2 == before.2 || is_left, "{context}: {error}");
-            End::NotBegun
+            End::NotStarted
         }
     };
     // The cable is back: the encoder is returned to operation, then the change is completed.

@@ -31,7 +31,7 @@ pub(crate) enum End {
     /// It was interrupted, described, and completed by a second run.
     Interrupted,
     /// Nothing had been written.
-    NotBegun,
+    NotStarted,
 }
 
 /// Carries out seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A

@@ -9,7 +9,7 @@ use encoder_studio::kinds::program;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::ProfileDocument;
 use encoder_studio::store::read_text;
-use encoder_studio::worker::NotBegun;
+use encoder_studio::worker::NotStarted;
 
 use super::support::{Stand, drive, image, number};
 
@@ -49,7 +49,7 @@ fn a_device_with_uncountable_saves_is_written_only_by_force() {
     stand.block_logbook();
     let prepared = stand.prepare(Change::Write(image(&[(24, 7)]))).unwrap();
     let error = stand.commit(prepared.clone()).unwrap_err();
-    assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })), "{error}");
+    assert!(matches!(error, JobError::NotStarted(NotStarted::WearUnknown { cost: 1 })), "{error}");
     assert!(stand.sets().is_empty());
     let done = stand.commit_with(prepared, true).unwrap();
     assert!(done.logbook_warning.is_some() && stand.value(24) == 7);

@@ -107,7 +107,7 @@ fn any_session_ends_at_a_standstill() {
             let sent = bench.cycle();
             model.look(now, sent, bench.man.actual(), bench.man.ended());
             let wanted = bench.intent.request.moves() && !stale && bench.permit.locks.is_empty();
-            assert!(wanted || sent.control.is_standing(), "{seed}/{step}: {:?} after {word:?}", sent.control);
+            assert!(wanted || sent.control.is_at_rest(), "{seed}/{step}: {:?} after {word:?}", sent.control);
             word = sent.control;
             unwanted = if wanted { 0 } else { unwanted + 1 };
             let moves = bench.actual().status.state() == State::Moving || bench.actual().speed != 0;

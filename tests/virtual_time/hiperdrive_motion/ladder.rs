@@ -58,7 +58,7 @@ fn each_cause_stops_in_the_same_way() {
                 bench.run(after);
                 cause(&mut bench);
                 let sent = bench.cycle();
-                assert!(sent.control.is_standing(), "{label} after {after} ms: {:?}", sent.control);
+                assert!(sent.control.is_at_rest(), "{label} after {after} ms: {:?}", sent.control);
                 let how = bench.man.ended().map(|ended| ended.1);
                 assert!(how == Some(ended) || after < 100, "{label} after {after} ms: {how:?}");
                 bench.run(300);
@@ -78,8 +78,8 @@ fn a_stale_intent_stops_the_drive() {
         bench.absent = true;
         // The last refresh was an interval ago.
         bench.run(240);
-        assert!(!bench.cycle().control.is_standing());
-        assert!(bench.cycle().control.is_standing());
+        assert!(!bench.cycle().control.is_at_rest());
+        assert!(bench.cycle().control.is_at_rest());
         assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Stale));
         bench.run(200);
         assert!(!bench.moves());
@@ -115,7 +115,7 @@ fn a_drive_that_does_not_stop_climbs_the_ladder() {
         let mut rungs = Vec::new();
         for ms in (0..1000).step_by(10) {
             let sent = bench.cycle();
-            assert!(sent.control.is_standing());
+            assert!(sent.control.is_at_rest());
             if let Phase::Stopping(rung) = bench.man.phase()
                 && rungs.last().is_none_or(|(last, _)| *last != rung)
             {
@@ -140,7 +140,7 @@ fn a_drive_without_reports_is_stopped() {
     bench.run(1000);
     bench.cut_back = true;
     bench.run(360);
-    assert!(bench.man.sent().control.is_standing());
+    assert!(bench.man.sent().control.is_at_rest());
     assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Deaf));
     bench.run(600);
     assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());

@@ -60,7 +60,7 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
         if is_past {
             past = Some(past.map_or(0, |count: u32| count + 1));
         }
-        if let (Some(past), true) = (past, sent.control.is_standing()) {
+        if let (Some(past), true) = (past, sent.control.is_at_rest()) {
             return (past, position);
         }
     }
@@ -119,7 +119,7 @@ fn a_run_ends_when_its_limits_become_unknown() {
     bench.act(jog(Direction::Clockwise, FULL, false));
     bench.run(1000);
     bench.permit = Permit::default();
-    assert!(bench.cycle().control.is_standing());
+    assert!(bench.cycle().control.is_at_rest());
     assert!(matches!(bench.man.ended(), Some((_, Ended::Locked(_)))), "{:?}", bench.man.ended());
 }
 
@@ -243,7 +243,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
         bench.cycle();
     }
     let act = bench.act(MotionRequest::Stop) - 1;
-    assert!(bench.cycle().control.is_standing());
+    assert!(bench.cycle().control.is_at_rest());
     bench.run(500);
     assert!(bench.position() > TURN, "{}", bench.position());
     assert_eq!(bench.man.ended(), Some((act, Ended::Stopped)));

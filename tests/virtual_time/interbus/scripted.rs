@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{ChangeKind, Commit, Committed, JobError, Prepared};
-use encoder_studio::devices::interbus::procedures::write::{EncoderWrite, Interrupted, Written};
+use encoder_studio::devices::interbus::procedures::write::{EncoderWriter, Interrupted, Written};
 use encoder_studio::devices::interbus::procedures::{
     Error, Exception, Handshake, Identity, Master, ProcessData, RequestedItem,
 };
@@ -175,7 +175,7 @@ pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<In
     let mut steps = Vec::new();
     let ended: Result<Committed, JobError> = {
         let master = Master::over(script, &mut station).with_reporter(|step| steps.push(step));
-        let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
+        let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
         // Without the words that read again.
         let begins = &mut |at: Progress<&Op>| {
             if at.done == 0 {

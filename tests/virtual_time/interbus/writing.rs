@@ -14,7 +14,7 @@ use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, Star
 use encoder_studio::link::{CancelToken, Clock};
 use encoder_studio::profile::{Consent, ProfileDocument};
 use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
-use encoder_studio::worker::{Event, JobId, NotBegun, Progress};
+use encoder_studio::worker::{Event, JobId, NotStarted, Progress};
 
 use super::support::{Stand, cam, program};
 
@@ -224,7 +224,7 @@ fn a_consent_covers_only_its_plan() {
     let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
     let commit = Commit { prepared, consent, force_wear: false };
     let error = stand.run(InterbusJob::Commit(Box::new(commit))).unwrap_err();
-    assert!(matches!(error, JobError::NotBegun(NotBegun::OtherPlan)), "{error}");
+    assert!(matches!(error, JobError::NotStarted(NotStarted::OtherPlan)), "{error}");
 }
 
 #[test]
@@ -241,9 +241,9 @@ fn a_worn_eeprom_is_written_only_by_force() {
             |force_wear| InterbusJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear }));
         let ended = stand.run(job(false));
         let is_refused = match seen {
-            Some(_) => matches!(ended, Err(JobError::NotBegun(NotBegun::Worn { .. }))),
+            Some(_) => matches!(ended, Err(JobError::NotStarted(NotStarted::Worn { .. }))),
             // Issue 22.4: an unknown count is not 0.
-            None => matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 1 }))),
+            None => matches!(ended, Err(JobError::NotStarted(NotStarted::WearUnknown { cost: 1 }))),
         };
         assert_eq!(is_refused, refused, "{seen:?}: {ended:?}");
         if refused {

@@ -7,7 +7,7 @@ use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingSteps, P
 use encoder_studio::devices::biss::protocol::PresetValue;
 
 use super::{Ready, compare, listen};
-use crate::biss::hands::{Hands, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};
+use crate::biss::hands::{TestOperator, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};
 use crate::biss::support::{Bench, Transport};
 
 /// The shortest runs: the fewest exchanges.
@@ -24,7 +24,7 @@ fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
             let (lines, cancel) = listen(&mut bench.session);
             let tap = bench.tap_handle();
             let carry_out = Box::new(move || {
-                let mut hands = Hands::on(&bench);
+                let mut hands = TestOperator::on(&bench);
                 hands.rpm = RPM;
                 match bench.commit(&prepared, &mut hands).map_err(|error| *error) {
                     Ok(done) => format!("done, {} operations, {} cycles", done.written.ops, done.written.write_cycles),

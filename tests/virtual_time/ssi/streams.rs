@@ -23,7 +23,7 @@ fn check(runs: &[Words]) {
     for run in runs {
         assert_eq!((run.first, run.lost, run.period_ns, run.clocks), (next, 0, 50_000, 25));
         next = run.first + run.words.len() as u64;
-        for (moment, word) in run.with_times() {
+        for (moment, word) in run.iter_with_times() {
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.since(earlier), FAST);
                 assert!((20..=21).contains(&(word - from)), "{from} to {word}");
@@ -63,7 +63,7 @@ fn short_polling_intervals_are_streamed() {
     assert!(words > 50_000 && (streamed - 200..=streamed + 1).contains(&words), "{words} of {streamed}");
     assert_eq!((stand.count(Operation::SsiStream), stand.count(Operation::SsiRead)), (1, 0));
     stand.session.set_sample_interval(None);
-    assert_eq!(stand.sends_by_itself(), 0);
+    assert_eq!(stand.unsolicited_byte_count(), 0);
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     }
     stand.session.set_sample_interval(Some(Duration::from_millis(5)));
     assert!(!stand.sample().is_streamed(), "slow enough to be asked");
-    assert_eq!(stand.sends_by_itself(), 0);
+    assert_eq!(stand.unsolicited_byte_count(), 0);
     stand.session.set_sample_interval(Some(FAST));
     stand.sample();
     stand.session.set_sample_interval(Some(FAST * 2));

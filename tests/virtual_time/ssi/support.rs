@@ -72,7 +72,7 @@ impl Stand {
     }
 
     /// Returns the bytes that the adapter sends within a second without a request.
-    pub(crate) fn sends_by_itself(&mut self) -> usize {
+    pub(crate) fn unsolicited_byte_count(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
             self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));

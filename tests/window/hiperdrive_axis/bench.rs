@@ -230,7 +230,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-pub(super) fn until_jog() -> Desk {
+pub(super) fn at_jog_step() -> Desk {
     until_scaled(FRESH, 1, false)
 }
 
@@ -248,7 +248,7 @@ pub(super) fn confirm(mut desk: Desk) -> Desk {
 }
 
 pub(super) fn confirmed() -> Desk {
-    confirm(until_jog())
+    confirm(at_jog_step())
 }
 
 /// Returns a drive with its position set to 128 steps, before the limits are taught.
@@ -269,7 +269,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
 }
 
 /// Returns a drive in the test, with taught limits.
-pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
+pub(super) fn at_test_step(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = referenced(link, drive, rough);
     jog(&mut desk, Direction::Counterclockwise, 10);
     run(&mut desk, Run::TakePlace);
@@ -318,7 +318,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
 
 /// Returns the saved axis, before the check over the supply.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
-    let mut desk = tested(until_test(link, drive, rough));
+    let mut desk = tested(at_test_step(link, drive, rough));
     next(&mut desk, AxisStep::Save);
     assert_eq!(unit(&desk).session.cycles, Some(0), "nothing was saved on the way");
     step_with_writes(&mut desk, 47, rough);

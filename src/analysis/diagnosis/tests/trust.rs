@@ -67,11 +67,11 @@ fn a_disturbance_makes_the_parameters_uncertain() {
         FindingKind::Uncertain { share } => Some(*share),
         _ => None,
     };
-    let hum = found(&made(steady, added(0.05, 0.05, 50.0)));
+    let hum = found(&made(steady, with_interference(0.05, 0.05, 50.0)));
     near(hum.iter().find_map(uncertain).unwrap(), 0.1, 2e-3);
-    let two = found(&made(steady, added(0.03, 0.0, 8_000.0)));
+    let two = found(&made(steady, with_interference(0.03, 0.0, 8_000.0)));
     near(two.iter().find_map(uncertain).unwrap(), 0.06, 1e-3);
-    let little = found(&made(steady, added(0.004, 0.0, 8_000.0)));
+    let little = found(&made(steady, with_interference(0.004, 0.0, 8_000.0)));
     assert!(!little.is_empty() && little.iter().find_map(uncertain).is_none(), "{little:?}");
 }
 

@@ -21,7 +21,7 @@ fn picture(history: &History, from: i64, to: i64, pixels: usize) -> Picture {
 fn history(values: &[f64], flags: &[Flags]) -> History {
     let mut history = History::new(&[Kind::Real], values.len());
     let times = times((0..values.len() as i64).map(|k| 10 * k));
-    history.append(&times, &[Part::real(values).flagged(flags)]).unwrap();
+    history.append(&times, &[Part::real(values).with_flags(flags)]).unwrap();
     history
 }
 
@@ -108,7 +108,7 @@ fn a_mismatched_batch_is_refused_unchanged() {
     let cases: [(&str, &[i64], &[Part<'_>], Refused); 6] = [
         ("too few columns", &[6], &[], Refused::Shape),
         ("too few values", &[6, 7], &[Part::real(&[1.0])], Refused::Shape),
-        ("too few flags", &[6, 7], &[Part::real(&[1.0, 2.0]).flagged(&[Flags::NONE])], Refused::Shape),
+        ("too few flags", &[6, 7], &[Part::real(&[1.0, 2.0]).with_flags(&[Flags::NONE])], Refused::Shape),
         ("another kind", &[6], &[Part::whole(&[1])], Refused::Shape),
         ("back to before", &[4], &[Part::real(&[1.0])], Refused::TimeGoesBack { at: 0 }),
         ("back inside", &[6, 8, 7], &[Part::real(&[1.0, 2.0, 3.0])], Refused::TimeGoesBack { at: 2 }),
@@ -189,10 +189,10 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
 #[test]
 fn the_next_oldest_sample_is_predicted() {
     let mut history = History::new(&[Kind::Whole], 5_000);
-    assert_eq!(history.oldest_after(1), None);
+    assert_eq!(history.oldest_remaining_time(1), None);
     let mut next = 0;
     for portion in [1, 4_095, 8_191, 1, 1, 4_095, 10_000] {
-        let expected = history.oldest_after(portion);
+        let expected = history.oldest_remaining_time(portion);
         let times: Vec<SampleTime> = (next..next + portion as i64).map(SampleTime::from_nanoseconds).collect();
         history.append(&times, &[Part::whole(&vec![0; portion])]).unwrap();
         let oldest = history.time(history.all().start).filter(|oldest| oldest.nanoseconds() < next);

@@ -21,8 +21,8 @@ fn memory_is_close_to_the_raw_columns() {
         let wholes = vec![15; BLOCK];
         let flags = vec![Flags::WARNING; if flagged { BLOCK } else { 0 }];
         let part = |kind: &Kind| match kind {
-            Kind::Real => Part::real(&reals).flagged(&flags),
-            Kind::Whole => Part::whole(&wholes).flagged(&flags),
+            Kind::Real => Part::real(&reals).with_flags(&flags),
+            Kind::Whole => Part::whole(&wholes).with_flags(&flags),
         };
         let parts: Vec<Part<'_>> = kinds.iter().map(part).collect();
         let mut most = 0;

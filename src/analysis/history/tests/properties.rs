@@ -134,7 +134,7 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
             Kind::Real => Part::real(&reals[range.clone()]),
             Kind::Whole => Part::whole(&wholes[range.clone()]),
         };
-        let part = if run.flagged == 0 { part } else { part.flagged(&given.flags[range.clone()]) };
+        let part = if run.flagged == 0 { part } else { part.with_flags(&given.flags[range.clone()]) };
         let zeros = vec![0.0; range.len()];
         history.append(&times[range], &[Part::real(&zeros), part]).unwrap();
     }

@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use crate::buses::bridge::procedures::{AdapterStreamError, Portion, StreamRequest, Streaming, Tap};
+use crate::buses::bridge::procedures::{AdapterStreamError, Chunk, StreamRequest, Streaming, Tap};
 use crate::buses::bridge::protocol::StreamData;
 use crate::link::{ByteLink, CancelToken, Clock, Ctx, Trace};
 use crate::units::SupplyVoltage;
@@ -99,7 +99,7 @@ impl<S: Stretch> Producer for Bridge<S> {
         let (cancel, mut trace) = (CancelToken::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
         let Some(portion) = self.tap.next(ctx, clock.now() + patience)? else { return Ok(None) };
-        let Portion { first, time, period_ns, lost, data } = portion;
+        let Chunk { first, time, period_ns, lost, data } = portion;
         let samples = self.stretch.read(data, streaming);
         Ok(samples.map(|samples| Batch { first, time, period_ns, lost, samples }))
     }

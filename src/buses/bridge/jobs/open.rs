@@ -11,7 +11,7 @@ use crate::parameter::{OptionalValue, Parameters, Words};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
-use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
 
 /// Link parameter that selects the virtual adapter. Streams accept it, since sessions require it.
 const BRIDGE: &str = "bridge";
@@ -47,7 +47,7 @@ pub fn open_adapter(
     let adapter = Adapter::from_pairs(&simulated(url, &line, &[])?, devices)?;
     let late = LinkParameters::read(url.query.pairs())?.margin.unwrap_or(reply_margin(url.scheme));
     let url = url.clone();
-    let open = move || open_bytes(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
+    let open = move || open_byte_stream(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
     Ok((late, Box::new(open)))
 }
 

@@ -83,7 +83,7 @@ impl<S: Stretch> Bench<S> {
 
     /// Returns the number of bytes that the adapter sends in a second without a request, in addition to those in
     /// transit.
-    pub(crate) fn sends_by_itself(&self) -> usize {
+    pub(crate) fn unsolicited_byte_count(&self) -> usize {
         let mut device = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
             self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
@@ -364,9 +364,9 @@ fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
 }
 
 /// Connection that is unplugged after this many portions.
-struct Unplugged(SimLink, u32);
+struct UnpluggingLink(SimLink, u32);
 
-impl ByteLink for Unplugged {
+impl ByteLink for UnpluggingLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         self.0.send(bytes)
     }
@@ -390,7 +390,7 @@ fn a_lost_or_missing_wire_is_reported() {
     for portions in [0, 1, 2, 3, 10] {
         let clock = Arc::new(VirtualClock::default());
         let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());
-        let open: Open = Box::new(move || Ok(Box::new(Unplugged(link, portions))));
+        let open: Open = Box::new(move || Ok(Box::new(UnpluggingLink(link, portions))));
         let stream =
             Stream::spawn(Bridge::new(SINE_COSINE, None, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
         assert!(stream.end().wait(Duration::from_secs(20)));

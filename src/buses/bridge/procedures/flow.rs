@@ -23,7 +23,7 @@ pub(crate) enum Streamed {
 
 /// Consecutive samples of a stream.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Portion {
+pub struct Chunk {
     /// Index of the first sample, counted from the start of the stream. Missing samples count as well.
     pub first: u64,
     /// Local time of the first sample.
@@ -137,7 +137,7 @@ impl SampleStream {
     /// # Errors
     /// Returns [`AdapterError::Mute`], [`AdapterError::Restarted`] or [`AdapterError::Data`] if the stream has ended.
     /// Other errors are cancellation and errors of the connection.
-    pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
+    pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Chunk>, Failure> {
         let mut bytes = Vec::new();
         loop {
             adapter.line.check_cancel()?;
@@ -188,7 +188,7 @@ impl SampleStream {
     }
 
     /// Returns the samples of a packet, or `None` if the packet contains no samples of this stream.
-    fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
+    fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Chunk>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.matches_stream(&data) => data,
             // The packet is a late reply or the end of an earlier stream.
@@ -210,7 +210,7 @@ impl SampleStream {
         // The number of samples is at most 255.
         self.next = first + count as u64;
         let time = self.time(&data, count, now);
-        Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
+        Ok(Some(Chunk { first, time, period_ns: self.period_ns, lost, data }))
     }
 
     /// Returns the time of the first sample. It is not earlier than the start of the stream, and the last sample is not

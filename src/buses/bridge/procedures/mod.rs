@@ -20,7 +20,7 @@ use crate::link::line::{LineError, LineState, SerialLine};
 use crate::parameter::Whole;
 use crate::units::{Moment, SupplyVoltage};
 
-pub use flow::Portion;
+pub use flow::Chunk;
 pub use power::SupplyAfterSession;
 pub(crate) use power::log_supply_failure;
 pub use tap::{AdapterStreamError, StreamRequest, Streaming, Tap};
@@ -275,7 +275,7 @@ impl Adapter<'_, '_> {
             let broken = self.adapter.receiver.dropped_count() - broken;
             self.state.damaged += broken;
             self.state.quality.damaged += broken;
-            if let Some(bytes) = self.adapter.receiver.take_damaged() {
+            if let Some(bytes) = self.adapter.receiver.take_damaged_bytes() {
                 let now = self.line.now();
                 self.line.show(now, MaskedBytes::clear(&bytes));
             }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::flow::{Portion, SampleStream, Streamed};
+use super::flow::{Chunk, SampleStream, Streamed};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
 use crate::link::line::{LineError, LineState, SerialLine};
@@ -133,7 +133,7 @@ impl Tap {
     ///
     /// # Errors
     /// Returns the reason why the stream has ended.
-    pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, AdapterStreamError> {
+    pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Chunk>, AdapterStreamError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };

@@ -54,7 +54,7 @@ impl Receiver {
     }
 
     /// Returns the bytes of the latest damaged packet. Later calls return `None` until another packet is damaged.
-    pub const fn take_damaged(&mut self) -> Option<Vec<u8>> {
+    pub const fn take_damaged_bytes(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }
 

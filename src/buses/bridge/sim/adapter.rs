@@ -245,7 +245,7 @@ impl Adapter {
             }
             Request::SsiStream { period_us } => {
                 let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
-                let period_us = self.stream(Kind::Ssi, period_us, setting.least_period_us(), setting.clocks);
+                let period_us = self.stream(Kind::Ssi, period_us, setting.min_period_us(), setting.clocks);
                 Ok(Reply::SsiStream { period_us })
             }
             Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {

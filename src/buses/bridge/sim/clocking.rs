@@ -40,7 +40,7 @@ impl SsiSetting {
     }
 
     /// Returns the minimum period of a word and its pause in whole microseconds.
-    pub(super) fn least_period_us(self) -> u32 {
+    pub(super) fn min_period_us(self) -> u32 {
         let microseconds = self.burst_duration().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }

@@ -74,7 +74,7 @@ fn number(operation: Operation) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::app::explain::{in_both_languages, setting};
+    use crate::app::explain::{assert_in_both_languages, setting};
     use crate::buses::bridge::sim::Adapter;
     use crate::kinds::attachable_kinds;
     use crate::link::UrlQuery;
@@ -128,7 +128,7 @@ mod tests {
             BodyError::Version { expected: 1, got: 2 },
         ];
         for error in errors {
-            in_both_languages(&body(&error), &error);
+            assert_in_both_languages(&body(&error), &error);
         }
     }
 
@@ -140,7 +140,7 @@ mod tests {
         for text in queries.split_whitespace() {
             let query: UrlQuery = text.parse().unwrap();
             let error = Adapter::from_pairs(query.pairs(), attachable_kinds()).err().unwrap();
-            in_both_languages(&setting(&error), &error);
+            assert_in_both_languages(&setting(&error), &error);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Descriptions of the packets to and from an adapter, for any bus behind it.
 
 use crate::app::explain::plain;
-use crate::app::{Explained, Text, TraceFault};
+use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
@@ -12,15 +12,15 @@ pub fn packet(bytes: &[u8]) -> Option<Packet> {
 }
 
 /// Explains a received packet if it is damaged or a refusal. For other packets, the result is `None`.
-pub fn received(bytes: &[u8]) -> Option<Explained> {
-    let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
+pub fn received(bytes: &[u8]) -> Option<FrameExplanation> {
+    let Some(packet) = packet(bytes) else { return Some(FrameExplanation::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
             let meaning: Vec<Text> = message_text(&packet).into_iter().collect();
-            Some(Explained { fault: Some(TraceFault::Reported), ..meaning.into() })
+            Some(FrameExplanation { fault: Some(TraceFault::Reported), ..meaning.into() })
         }
         Ok(_) => None,
-        Err(error) => Some(Explained::broken(plain(error))),
+        Err(error) => Some(FrameExplanation::broken(plain(error))),
     }
 }
 

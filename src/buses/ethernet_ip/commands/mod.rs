@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::cli::Result;
 use crate::cli::args::DecodeArgs;
 use crate::cli::commands::ProtocolDecoder;
-use crate::cli::decode::{Explained, frames, show};
+use crate::cli::decode::{FrameExplanation, frames, show};
 use crate::cli::output::{Output, count};
 
 pub(crate) struct DecodedBytes {
@@ -61,9 +61,9 @@ fn decode(output: &Output, words: &[String]) -> Result {
             Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
             Err(why) => (Err(why), Map::new()),
         };
-        Explained { shown: hex(bytes), compact: hex_compact(bytes), meaning, more }
+        FrameExplanation { shown: hex(bytes), compact: hex_compact(bytes), meaning, more }
     };
-    let explained: Vec<Explained> = frames(words)?.iter().map(explain).collect();
+    let explained: Vec<FrameExplanation> = frames(words)?.iter().map(explain).collect();
     show(output, &explained)
 }
 

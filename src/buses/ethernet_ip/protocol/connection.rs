@@ -90,7 +90,7 @@ impl NetworkParameters {
     }
 
     /// Creates the parameters from a received word.
-    pub const fn of_word(word: u16) -> Self {
+    pub const fn from_word(word: u16) -> Self {
         NetworkParameters(word)
     }
 
@@ -140,7 +140,7 @@ impl Transport {
     pub const CYCLIC: Transport = Transport(0x01);
 
     /// Creates the transport from a received byte.
-    pub const fn of_byte(byte: u8) -> Self {
+    pub const fn from_byte(byte: u8) -> Self {
         Transport(byte)
     }
 

@@ -130,10 +130,10 @@ impl ForwardOpen {
         // Three bytes are reserved.
         fields.array::<3>()?;
         let to_target_interval_us = fields.u32()?;
-        let to_target = NetworkParameters::of_word(fields.u16()?);
+        let to_target = NetworkParameters::from_word(fields.u16()?);
         let to_originator_interval_us = fields.u32()?;
-        let to_originator = NetworkParameters::of_word(fields.u16()?);
-        let transport = Transport::of_byte(fields.u8()?);
+        let to_originator = NetworkParameters::from_word(fields.u16()?);
+        let transport = Transport::from_byte(fields.u8()?);
         let path = EPath::take(&mut fields)?;
         fields.end(ForwardOpen {
             timeout,

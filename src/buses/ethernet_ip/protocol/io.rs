@@ -39,7 +39,7 @@ impl RunIdleHeader {
     pub const IDLE: RunIdleHeader = RunIdleHeader(0);
 
     /// Creates the header from a received word.
-    pub const fn of_word(word: u32) -> Self {
+    pub const fn from_word(word: u32) -> Self {
         RunIdleHeader(word)
     }
 

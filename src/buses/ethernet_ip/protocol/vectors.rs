@@ -222,7 +222,7 @@ fn published_network_parameters_match() {
     assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Header)), [22, 14]);
     assert_eq!([16, 8].map(|data| data + IoPacket::size_overhead(RealTimeFormat::Modeless)), [18, 10]);
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
-    let odd = NetworkParameters::of_word(0xFE05);
+    let odd = NetworkParameters::from_word(0xFE05);
     assert_eq!((odd.kind(), odd.priority()), (NetworkType::Reserved, NetworkPriority::Urgent));
     assert!(odd.is_variable() && odd.has_redundant_owner() && odd.word() == 0xFE05);
     let intervals: Vec<u32> =
@@ -232,7 +232,7 @@ fn published_network_parameters_match() {
         (Transport::CYCLIC.class(), Transport::CYCLIC.trigger(), Transport::CYCLIC.server()),
         (1, Trigger::Cyclic, false)
     );
-    let other = Transport::of_byte(0xA3);
+    let other = Transport::from_byte(0xA3);
     assert_eq!((other.class(), other.trigger(), other.server()), (3, Trigger::Application, true));
 }
 

@@ -16,7 +16,7 @@ use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::{answer, ask, can_prompt, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
-use crate::cli::profiles::{load_to_write, print_write_result};
+use crate::cli::profiles::{load_profile_to_write, print_write_result};
 use crate::cli::runner::{failed, unexpected_output};
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
@@ -34,7 +34,7 @@ const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back
 pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
+    match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
         (BissAction::Check, []) => check_device(common, output),
         (BissAction::LeadBack, []) => lead_back(common, output, act),
         (BissAction::Calibrate, []) => {
@@ -176,7 +176,7 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingSteps> {
 }
 
 fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
-    load_to_write(output, file)?
+    load_profile_to_write(output, file)?
         .into_profile()
         .map_err(|error| failed(&explain::profile(file, &error, KindRegistry::NONE)))
 }

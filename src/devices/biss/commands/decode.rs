@@ -10,7 +10,7 @@ use serde_json::{Map, json};
 
 use super::KIND;
 use crate::buses::ubicom::protocol::{Request, SYNC};
-use crate::cli::decode::{self, Explained, show};
+use crate::cli::decode::{self, FrameExplanation, show};
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
@@ -48,7 +48,7 @@ fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
         (false, word) => word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H'])),
     };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
-        words.iter().try_for_each(|word| refuse_odd_digits(word))?;
+        words.iter().try_for_each(|word| require_even_digit_count(word))?;
         return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
     }
     let one = |word: &String| match digits(word) {
@@ -56,7 +56,7 @@ fn parse_captured(words: &[String]) -> Result<Vec<Captured>> {
         (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
             .map(|raw| Captured::Bits(word.clone(), raw))
             .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
-        _ => refuse_odd_digits(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
+        _ => require_even_digit_count(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
     };
     words.iter().map(one).collect()
 }
@@ -73,7 +73,7 @@ fn position_word(word: &str) -> Result<u64> {
 }
 
 /// Refuses an argument with an odd number of digits, which cannot be bytes. It may be a position word without its mark.
-fn refuse_odd_digits(word: &str) -> Result<()> {
+fn require_even_digit_count(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
         return Ok(());
@@ -92,11 +92,11 @@ fn digits(word: &str) -> (bool, &str) {
 }
 
 /// Explains bytes by the protocol whose checksum matches. If there is none, explains them by their form.
-fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
+fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);
-    let position: Vec<Explained> = position::decode_bytes(bytes).into_iter().collect();
-    let fits = |found: &Vec<Explained>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());
+    let position: Vec<FrameExplanation> = position::decode_bytes(bytes).into_iter().collect();
+    let fits = |found: &Vec<FrameExplanation>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());
     if fits(&ubicom) {
         ubicom
     } else if fits(&bridge) {

@@ -12,7 +12,7 @@ use crate::cli::output::{Lines, Output, say};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Done, Result};
-use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, RegisterValues};
 use crate::devices::biss::procedures::{
     Damage, Error, FlagRegister, FrameSource, Identity, PositionReading, Status, Transport,
 };
@@ -247,7 +247,7 @@ pub(super) fn read(common: &CommonArgs, output: &Output, item: &str) -> Result {
     let range = super::item(item)?;
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
-    let ReadRegisters { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
+    let RegisterValues { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
     if let Some(mode) = unsaved {
         output.remark(&explained::unsaved(mode).terminal_text());
     }

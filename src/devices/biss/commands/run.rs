@@ -6,7 +6,7 @@ use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected_output};
 use crate::cli::{Failure, Result};
-use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, ReadRegisters};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, RegisterValues};
 use crate::devices::biss::procedures::procedure::{ProcedureProgress, StepDetail};
 use crate::devices::biss::procedures::{Identity, Transport};
 use crate::devices::biss::profile::RegisterRange;
@@ -85,7 +85,7 @@ pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec
 }
 
 /// Reads consecutive registers. The result also shows whether their values may never have been saved.
-pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
+pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<RegisterValues> {
     match runner.run(BissJob::Read(range))? {
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),
         BissOutput::Registers(read) => {

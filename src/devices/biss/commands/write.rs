@@ -7,7 +7,7 @@ use crate::cli::args::{CommonArgs, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::show_changed;
+use crate::cli::profiles::show_changes;
 use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::RegisterRange;
@@ -20,7 +20,7 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     let prepared = prepare(&mut runner, Change::Write(vec![(range, bytes)]))?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let (spent, _) = commit(&mut runner, output, prepared, &write.consent, super::PATIENCE)?;
-    show_changed(output, &range.to_string(), &operations, &changes, &spent)
+    show_changes(output, &range.to_string(), &operations, &changes, &spent)
 }
 
 /// Parses a number for a single register, or hexadecimal bytes for consecutive registers.

@@ -2,11 +2,11 @@
 
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
-use crate::devices::biss::procedures::write::EncoderWrite;
+use crate::devices::biss::procedures::write::EncoderWriter;
 use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, ChangedItem, Unknown};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -26,7 +26,7 @@ pub(super) fn commit(
     };
     encoder.ensure_identified(context)?;
     let mut master = encoder.master(context);
-    let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, report)?;
+    let mut write = EncoderWriter::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});
     match &ended {
         Ok(_) => encoder.station.unfinished = false,
@@ -43,8 +43,8 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHead<'_, Self> {
-        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
+    fn head(&self) -> PlanHeader<'_, Self> {
+        PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -75,7 +75,7 @@ impl Planned for Prepared {
             data: touched.filter(|image| image.all().next().is_some()).collect(),
         };
         profile.mark_mounting_dependent_values();
-        let mut document = backup_of(Body::new(profile));
+        let mut document = backup_document(Body::new(profile));
         let note = document.note.get_or_insert_default();
         for (address, value) in &base.registers {
             // A profile cannot contain these registers.

@@ -75,9 +75,9 @@ mod tests {
         }
         let streaming = bench.bridge.streaming().get().cloned().unwrap();
         assert_eq!((streaming.hello.name.as_str(), streaming.period_ns), ("virtual adapter", 50_000));
-        assert!(bench.sends_by_itself() > 100_000);
+        assert!(bench.unsolicited_byte_count() > 100_000);
         bench.bridge.end(&*bench.clock);
-        assert_eq!(bench.sends_by_itself(), 0, "the adapter was told to stop");
+        assert_eq!(bench.unsolicited_byte_count(), 0, "the adapter was told to stop");
     }
 
     #[test]

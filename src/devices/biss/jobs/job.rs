@@ -11,8 +11,8 @@ use crate::devices::biss::procedures::procedure::{
 use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
 use crate::devices::biss::profile::{
-    Bank, BissPlan, BissProfile, MotorSource, MountingSteps, OtherType, PlanError, PresetParts, RegisterRange,
-    RestoreOptions,
+    Bank, BissPlan, BissProfile, MotorSource, MountingSteps, PlanError, PresetParts, RegisterRange, RestoreOptions,
+    TypeMismatch,
 };
 use crate::devices::biss::protocol::{Area, DeviceMode, KIND, PositionFilter, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, EntryKind, StoreError};
@@ -131,7 +131,7 @@ pub struct Prepared {
     /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
     /// encoder.
     pub unsaved: Option<DeviceMode>,
-    pub other_type: Option<OtherType>,
+    pub other_type: Option<TypeMismatch>,
     /// Written values that are only valid for another encoder on its motor. They must be adjusted for this one.
     pub mounting_written: Vec<RegisterRange>,
 }
@@ -175,7 +175,7 @@ impl Operator for OperatorPresence {
 pub type Committed = crate::worker::Committed<Written>;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadRegisters {
+pub struct RegisterValues {
     pub start: RegisterAddress,
     /// Values in address order.
     pub bytes: Vec<u8>,
@@ -215,7 +215,7 @@ pub enum BissOutput {
     Status(Box<Status>),
     Check(Vec<BissStepResult>),
     Position(PositionReading),
-    Registers(ReadRegisters),
+    Registers(RegisterValues),
     Area {
         banks: Vec<Bank>,
         /// Device mode during the reading, if the registers may show values that were never saved in the encoder.

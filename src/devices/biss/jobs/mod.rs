@@ -15,7 +15,7 @@ pub use descriptions::load_descriptions;
 pub use frames::BissFrames;
 pub use job::{
     BissJob, BissOutput, Change, ChangeKind, Commit, Committed, DeviceMessage, JobError, JobStep, OperatorPresence,
-    Prepared, ReadRegisters, WEAR_LIMIT, WEAR_WARNING, device_key,
+    Prepared, RegisterValues, WEAR_LIMIT, WEAR_WARNING, device_key,
 };
 pub use open::{check, open};
 
@@ -204,7 +204,7 @@ impl Device for Biss {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn take_remark(&mut self) -> Option<DeviceMessage> {
+    fn take_device_message(&mut self) -> Option<DeviceMessage> {
         if !self.broken.is_empty() {
             return Some(DeviceMessage::Descriptions(std::mem::take(&mut self.broken)));
         }
@@ -231,14 +231,14 @@ impl Biss {
         let bytes = read_registers(&mut self.master(context), start, count)?;
         // Direct registers do not show values that are entered first and saved later.
         let unsaved = if start.bank().is_some() { self.unsaved(context)? } else { None };
-        Ok(BissOutput::Registers(ReadRegisters { start, bytes, unsaved }))
+        Ok(BissOutput::Registers(RegisterValues { start, bytes, unsaved }))
     }
 
     /// Returns the device mode if registers may show values that were never saved in the encoder.
     fn unsaved(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
         let mut master = self.master(context);
         let description = master.description()?;
-        procedures::write::unsaved_mode(&mut master, &description)
+        procedures::write::non_operational_mode(&mut master, &description)
     }
 }
 

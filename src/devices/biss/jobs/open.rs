@@ -11,7 +11,7 @@ use crate::link::{ByteLink, Clock, LinkScheme, LinkUrl, RealClock, UrlError, Url
 use crate::parameter::Words;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, open_bytes, reply_margin, wrong_target_error};
+use crate::worker::open::{check_parameters, inside, open_byte_stream, reply_margin, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Link parameter that selects an adapter for schemes that do not imply one.
@@ -33,7 +33,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     let (station, simulated) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    let wire = open_bytes(url, station.format, &clock, || {
+    let wire = open_byte_stream(url, station.format, &clock, || {
         let (mut link, turning) = simulated.connect(&clock);
         link.set_format(station.format)?;
         motor = turning;

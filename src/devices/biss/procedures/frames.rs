@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::buses::bridge::procedures::Portion;
+use crate::buses::bridge::procedures::Chunk;
 use crate::buses::bridge::protocol::{BissData, BissStatus};
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 use crate::units::Moment;
 
 /// The reason why a streamed frame contains no position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FrameReadingError {
+pub enum FrameReadError {
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
     /// The bits are not a valid frame, because the checksum is wrong or the line does not change.
@@ -20,11 +20,11 @@ pub enum FrameReadingError {
     Status(BissStatus),
 }
 
-pub type Frame = Result<PositionData, FrameReadingError>;
+pub type Frame = Result<PositionData, FrameReadError>;
 
 /// A run of consecutive stream frames at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrameRun {
+pub struct ConsecutiveFrames {
     /// Number of the first frame since the start of the stream. Missing frames are included.
     pub first: u64,
     pub at: Moment,
@@ -41,19 +41,19 @@ pub struct FrameRun {
     pub is_limited: bool,
 }
 
-impl FrameRun {
+impl ConsecutiveFrames {
     pub(super) fn new(
-        portion: &Portion,
+        portion: &Chunk,
         frames: Vec<Frame>,
         (layout, is_split_known): (Arc<Layout>, bool),
         clock_hz: u32,
         wished_us: u32,
     ) -> Self {
-        let Portion { first, time, period_ns, lost, .. } = *portion;
+        let Chunk { first, time, period_ns, lost, .. } = *portion;
         let is_limited = period_ns > i64::from(wished_us) * 1000;
         // A time before the start of the stream is replaced by the start.
         let at = Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
-        FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
+        ConsecutiveFrames { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
     pub const fn is_stream_start(&self) -> bool {
@@ -61,13 +61,13 @@ impl FrameRun {
     }
 
     /// Returns each frame with its sampling time.
-    pub fn with_times(&self) -> impl Iterator<Item = (Moment, &Frame)> {
+    pub fn iter_with_times(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
     }
 
     pub fn crc_errors(&self) -> usize {
-        let is_wrong = |frame: &&Frame| matches!(frame, Err(FrameReadingError::Frame(FrameError::Crc { .. })));
+        let is_wrong = |frame: &&Frame| matches!(frame, Err(FrameReadError::Frame(FrameError::Crc { .. })));
         self.frames.iter().filter(is_wrong).count()
     }
 }
@@ -79,10 +79,10 @@ pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
 fn frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
     match status {
         BissStatus::OK => Ok(layout.parse(raw)?),
-        BissStatus::NO_ACKNOWLEDGE => Err(FrameReadingError::NoAcknowledge),
+        BissStatus::NO_ACKNOWLEDGE => Err(FrameReadError::NoAcknowledge),
         BissStatus::STUCK_LOW => Err(FrameError::StuckLow.into()),
         BissStatus::STUCK_HIGH => Err(FrameError::StuckHigh.into()),
-        status => Err(FrameReadingError::Status(status)),
+        status => Err(FrameReadError::Status(status)),
     }
 }
 
@@ -100,10 +100,10 @@ mod tests {
             (BissStatus::OK, 0x000_0000_007C, Ok(PositionData { error: true, ..PositionData::default() })),
             (BissStatus::OK, 0x024_6980_00CE, Err(FrameError::Crc { expected: 0x0F, got: 0x0E }.into())),
             (BissStatus::OK, 0, Err(FrameError::StuckLow.into())),
-            (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(FrameReadingError::NoAcknowledge)),
+            (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(FrameReadError::NoAcknowledge)),
             (BissStatus::STUCK_LOW, 0, Err(FrameError::StuckLow.into())),
             (BissStatus::STUCK_HIGH, (1 << 41) - 1, Err(FrameError::StuckHigh.into())),
-            (BissStatus::new(9), 0x024_6980_00CF, Err(FrameReadingError::Status(BissStatus::new(9)))),
+            (BissStatus::new(9), 0x024_6980_00CF, Err(FrameReadError::Status(BissStatus::new(9)))),
         ];
         let values = cases.iter().map(|(status, raw, _)| (*status, *raw)).collect();
         let data = BissData { first_index: 0, t0_us: 0, period_us: 50, lost: 0, width: 6, values };

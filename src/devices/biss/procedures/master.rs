@@ -125,7 +125,7 @@ impl<'a> Master<'a> {
         self.ensure_ready()?;
         let requested = RequestedItem::Read(address);
         match self.read_confirmed(requested, |master| master.read_once(address)) {
-            Err(Error::NoReply { .. }) if self.is_only_silent_register(address)? => {
+            Err(Error::NoReply { .. }) if self.is_only_this_register_silent(address)? => {
                 Err(Error::NoSuchRegister { address })
             }
             Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
@@ -326,7 +326,7 @@ impl<'a> Master<'a> {
 
     /// Returns whether only the given register does not reply. Another register is read repeatedly for comparison. The
     /// check is skipped if the encoder may be silent for long.
-    fn is_only_silent_register(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+    fn is_only_this_register_silent(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);
         }

@@ -7,7 +7,7 @@ use super::error::to_register_array;
 use super::identify::identify_and_record;
 use super::registers::Registers;
 use super::survey::read_survey;
-use super::write::unsaved_mode;
+use super::write::non_operational_mode;
 use super::{Error, Master, PositionReading, Survey};
 use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
 use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
@@ -137,7 +137,7 @@ pub fn save(
         let identity = identify_and_record(master, types, &mut registers)?;
         let description = identity.description.clone();
         let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == Unsaved::Refused);
-        let before = unsaved_mode(master, &description)?;
+        let before = non_operational_mode(master, &description)?;
         if let Some(mode) = refused(&before) {
             return Err(Error::NotInOperation { mode });
         }
@@ -158,7 +158,7 @@ pub fn save(
             data.push(DataImage::of(area, banks));
         }
         // Another host may have entered a mode meanwhile.
-        let mode = before.or(unsaved_mode(master, &description)?);
+        let mode = before.or(non_operational_mode(master, &description)?);
         match refused(&mode) {
             Some(mode) => Err(Error::NotInOperation { mode }),
             None => Ok(profile_of(&survey, data, mode)),

@@ -25,7 +25,7 @@ pub mod write;
 pub use crate::link::line::Echo;
 pub use error::{Damage, Error, RequestedItem};
 pub use flags::read_position;
-pub use frames::{Frame, FrameReadingError, FrameRun, frames};
+pub use frames::{ConsecutiveFrames, Frame, FrameReadError, frames};
 pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};
 pub use master::Master;
 pub use memory::{

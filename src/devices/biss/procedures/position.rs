@@ -1,7 +1,7 @@
 //! Positions for display and plotting, and watched registers.
 
 use super::flags::add_error_flags;
-use super::{Damage, Error, FrameRun, Master};
+use super::{ConsecutiveFrames, Damage, Error, Master};
 use crate::bits::Word;
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Layout, PositionData};
@@ -98,7 +98,7 @@ pub enum Sample {
         /// Number of CRC errors, including frames that were requested again.
         crc_errors: u32,
     },
-    Frames(FrameRun),
+    Frames(ConsecutiveFrames),
     Watched(WatchedReading),
 }
 

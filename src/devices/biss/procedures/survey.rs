@@ -24,7 +24,7 @@ pub struct Status {
 impl Status {
     /// Returns the device mode, or `None` in operation. In other modes, registers may show values that were never
     /// saved.
-    pub fn unsaved_mode(&self) -> Option<DeviceMode> {
+    pub fn non_operational_mode(&self) -> Option<DeviceMode> {
         self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
     }
 }

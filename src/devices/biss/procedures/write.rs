@@ -55,14 +55,14 @@ impl Interrupted {
     }
 }
 
-pub struct EncoderWrite<'w, 'm> {
+pub struct EncoderWriter<'w, 'm> {
     guide: Guide<'w, 'm>,
     identity: &'w Identity,
     /// The step at which an operation ended early.
     at: ProcedureStep,
 }
 
-impl<'w, 'm> EncoderWrite<'w, 'm> {
+impl<'w, 'm> EncoderWriter<'w, 'm> {
     /// Creates the writer for the encoder with the given identity. Every step is reported to `tell`.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl<'w, 'm> EncoderWrite<'w, 'm> {
         tell: &'w mut dyn FnMut(ProcedureProgress),
     ) -> Result<Self, Error> {
         let description = master.description()?;
-        Ok(EncoderWrite {
+        Ok(EncoderWriter {
             guide: Guide::new(master, description, operator, tell),
             identity,
             at: ProcedureStep::LeadBack,
@@ -82,7 +82,7 @@ impl<'w, 'm> EncoderWrite<'w, 'm> {
     }
 }
 
-impl Write for EncoderWrite<'_, '_> {
+impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Failure;
@@ -204,7 +204,7 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
 /// # Errors
 /// Returns [`Error::NotInOperation`] in a device mode. Returns other errors if the exchange fails.
 pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
-    match unsaved_mode(master, description)? {
+    match non_operational_mode(master, description)? {
         None => Ok(()),
         Some(mode) => Err(Error::NotInOperation { mode }),
     }
@@ -215,7 +215,7 @@ pub fn ensure_operation_mode(master: &mut Master<'_>, description: &Description)
 ///
 /// # Errors
 /// Returns an error if the exchange fails.
-pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
+pub fn non_operational_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
     let Some(lock) = description.lock() else { return Ok(None) };
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
@@ -254,7 +254,7 @@ pub fn read_state(
 /// # Errors
 /// Returns an error if the exchange fails.
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
-    let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
+    let start = RegisterAddress::in_bank(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_consecutive(start, Bank::SIZE)?;
     Ok(Bank { number, bytes: to_register_array(start, bytes)? })
 }

@@ -18,7 +18,7 @@ pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     numbers.dedup();
     for number in numbers {
         let bytes = |bank: Bank| bank.bytes.to_vec();
-        let Some(place) = RegisterAddress::banked(number, 0) else { continue };
+        let Some(place) = RegisterAddress::in_bank(number, 0) else { continue };
         let (left, right) = (left.bank(number).map(bytes), right.bank(number).map(bytes));
         compare_bytes(&format!("{place}+{}", Bank::SIZE), left, right, &mut comparison);
     }

@@ -21,7 +21,7 @@ pub use edit::{
 };
 pub use entry_error::EntryError;
 pub use item::{ItemError, RegisterRange};
-pub use other_type::{OtherType, Width, other_type};
+pub use other_type::{TypeMismatch, Width, other_type};
 pub use plan::{Base, BissPlan, Op, PresetParts, RegisterChange};
 pub use record::{
     Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,

@@ -71,7 +71,7 @@ mod tests {
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         let area: Area = kit.areas().iter().find(|area| area.first == 0x24).unwrap().clone();
         let change = |at: u8, new| {
-            let address = RegisterAddress::banked(0x24, at).unwrap();
+            let address = RegisterAddress::in_bank(0x24, at).unwrap();
             RegisterChange { address, old: 0, new }
         };
         let value = PresetValue::new(98_304, 5).unwrap();

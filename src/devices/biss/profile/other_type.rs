@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::Identity;
 
 /// The difference in type between a profile and an encoder.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum OtherType {
+pub enum TypeMismatch {
     /// The reported identities differ.
     #[error("the profile is of {profile}, the encoder says {device}")]
     Kind {
@@ -59,11 +59,11 @@ impl fmt::Display for Width {
 
 /// Returns the difference between the types of a profile and an encoder, or `None` if they match. An unknown width
 /// matches any width.
-pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
+pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (of_profile, of_device) = (profile.kind(), device.kind());
     if of_profile != of_device {
-        return Some(OtherType::Kind { profile: Box::new(of_profile), device: Box::new(of_device) });
+        return Some(TypeMismatch::Kind { profile: Box::new(of_profile), device: Box::new(of_device) });
     }
     let (profile, device) = (Width::of(profile), Width::of(device));
-    profile.differs(device).then_some(OtherType::Width { profile, device })
+    profile.differs(device).then_some(TypeMismatch::Width { profile, device })
 }

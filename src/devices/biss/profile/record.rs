@@ -218,7 +218,7 @@ impl Bank {
 
     /// Returns each register address with its byte.
     pub fn registers(self) -> impl Iterator<Item = (RegisterAddress, u8)> {
-        let place = move |offset| RegisterAddress::banked(self.number, offset);
+        let place = move |offset| RegisterAddress::in_bank(self.number, offset);
         (0..RegisterAddress::BANK_SIZE).zip(self.bytes).filter_map(move |(offset, byte)| Some((place(offset)?, byte)))
     }
 }

@@ -3,7 +3,7 @@
 
 pub use crate::profile::RestoreOptions;
 
-use super::other_type::{OtherType, other_type};
+use super::other_type::{TypeMismatch, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress};
 
@@ -38,7 +38,7 @@ pub enum PlanError {
     },
     /// The profile was read from an encoder of another type.
     #[error(transparent)]
-    OtherType(#[from] OtherType),
+    TypeMismatch(#[from] TypeMismatch),
     /// The bank does not belong to a data area of the encoder, or cannot be written.
     #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
     NoBank {
@@ -127,7 +127,7 @@ pub fn plan_restore(
 ) -> Result<Restore, PlanError> {
     check_allowed(profile, &device.identity, options)?;
     let same_device = is_same_device(profile, &device.identity);
-    let mounting = if same_device { Mounting::Own } else { Mounting::from_other_device(options) };
+    let mounting = if same_device { Mounting::Own } else { Mounting::for_other_device(options) };
     let mut planner = Planner::new(profile, device, mounting);
     planner.data()?;
     planner.filter()?;
@@ -149,7 +149,7 @@ pub fn plan_data_areas(profile: &BissProfile, device: &DeviceState) -> Result<Re
 /// Checks that a profile was read from this encoder. An encoder without a serial number never passes.
 ///
 /// # Errors
-/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`].
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`].
 pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
@@ -158,7 +158,7 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
 /// serial number does not include another type, whose registers may have other meanings.
 ///
 /// # Errors
-/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`].
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`].
 pub fn check_allowed(
     profile: &BissProfile,
     device: &ProfileIdentity,
@@ -213,7 +213,7 @@ enum Mounting {
 }
 
 impl Mounting {
-    fn from_other_device(options: RestoreOptions) -> Self {
+    fn for_other_device(options: RestoreOptions) -> Self {
         if options.with_mounting { Mounting::Write } else { Mounting::Leave }
     }
 }

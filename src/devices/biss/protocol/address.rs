@@ -31,7 +31,7 @@ impl RegisterAddress {
     }
 
     /// Creates the address of a register in a bank. Returns `None` if the offset is above 3Fh.
-    pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
+    pub const fn in_bank(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
 
@@ -86,7 +86,7 @@ impl FromStr for RegisterAddress {
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let place = match text.split_once(':') {
             None => byte(text).and_then(Self::direct),
-            Some((bank, offset)) => byte(bank).zip(byte(offset)).and_then(|(bank, offset)| Self::banked(bank, offset)),
+            Some((bank, offset)) => byte(bank).zip(byte(offset)).and_then(|(bank, offset)| Self::in_bank(bank, offset)),
         };
         place.ok_or_else(|| AddressError(text.to_owned()))
     }
@@ -148,8 +148,8 @@ mod tests {
         for text in ["", "0x3F", "0x80", "0x00:0x40", "256:0", "1:", ":1", "0x+5:0", "+66", "-1", "0x24:0x10:0", "x"] {
             assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
         }
-        assert_eq!(RegisterAddress::from_global(0x403F), RegisterAddress::banked(0xFF, 0x3F));
-        assert_eq!(Some(RegisterAddress::bank_start(0xFF)), RegisterAddress::banked(0xFF, 0));
+        assert_eq!(RegisterAddress::from_global(0x403F), RegisterAddress::in_bank(0xFF, 0x3F));
+        assert_eq!(Some(RegisterAddress::bank_start(0xFF)), RegisterAddress::in_bank(0xFF, 0));
         for (address, place) in [
             (0x40, RegisterAddress::BANK_SELECT),
             (0x41, RegisterAddress::EDS_BANK),
@@ -159,7 +159,7 @@ mod tests {
             assert_eq!(RegisterAddress::direct(address), Some(place));
         }
         assert_eq!(RegisterAddress::from_global(0x4040), None);
-        let last = RegisterAddress::banked(2, 0x3F).unwrap();
+        let last = RegisterAddress::in_bank(2, 0x3F).unwrap();
         assert_eq!((last.plus(0), last.plus(1)), (Some(last), None));
         assert_eq!(RegisterAddress::direct(0x7E).and_then(|own| own.plus(1)), RegisterAddress::direct(0x7F));
     }
@@ -172,7 +172,7 @@ mod tests {
             prop_assert_eq!(address.to_string().parse(), Ok(address));
             let again = match address.bank() {
                 None => RegisterAddress::direct(address.address()),
-                Some(bank) => RegisterAddress::banked(bank, address.address()),
+                Some(bank) => RegisterAddress::in_bank(bank, address.address()),
             };
             prop_assert_eq!(again, Some(address));
         }

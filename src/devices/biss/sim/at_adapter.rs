@@ -7,9 +7,9 @@ use crate::units::Moment;
 
 /// A kit encoder on the bus of an adapter, created from a [`Config`].
 #[derive(Clone, Copy, Debug)]
-pub struct AtAdapter;
+pub struct AttachableEncoder;
 
-impl AttachableKind for AtAdapter {
+impl AttachableKind for AttachableEncoder {
     fn keys(&self) -> &'static [&'static str] {
         Config::KEYS
     }

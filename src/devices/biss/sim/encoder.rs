@@ -196,7 +196,7 @@ impl Encoder {
     /// Resolves an address from a control frame, using the selected bank.
     pub fn address(&self, address: u8) -> Option<RegisterAddress> {
         if address < RegisterAddress::BANK_SIZE {
-            RegisterAddress::banked(self.bank, address)
+            RegisterAddress::in_bank(self.bank, address)
         } else {
             RegisterAddress::direct(address)
         }

@@ -27,7 +27,7 @@ mod tests;
 mod ubicom;
 mod wiegand;
 
-pub use at_adapter::AtAdapter;
+pub use at_adapter::AttachableEncoder;
 pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;

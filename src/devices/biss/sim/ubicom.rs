@@ -139,7 +139,7 @@ impl UbicomPort {
     /// Sends bytes on the line and returns the time at which the last one has been transmitted.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
-        let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);
+        let sent = self.wires.send(start, format.baud.duration_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
             // With mismatched serial settings, no byte is received as sent.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
@@ -184,7 +184,7 @@ impl VirtualLine for UbicomPort {
         }
     }
 
-    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
+    fn transmit_from_host(&mut self, start: Moment, bytes: &[u8]) -> Moment {
         self.drive(start, bytes, false)
     }
 

@@ -3,7 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::Explained;
+use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, first};
@@ -58,7 +58,7 @@ impl Kind for Biss {
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
-        explained::loss(error)
+        explained::connection_loss_text(error)
     }
 }
 
@@ -76,7 +76,7 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.meaning.of(frame)
     }
 
@@ -125,7 +125,7 @@ impl SessionEvents for Encoder {
             BissOutput::Prepared(prepared) => self.planned(prepared, services),
             BissOutput::Committed(committed) => {
                 self.log_outcomes(&committed.written.outcomes, services);
-                self.committed(*committed, services);
+                self.handle_commit_end(*committed, services);
             }
             BissOutput::LedBack(mode) => {
                 self.mark_returned_to_operation();
@@ -139,19 +139,19 @@ impl SessionEvents for Encoder {
     }
 
     /// Returns whether an error means that neither the encoder nor the adapter responds.
-    fn means_no_response(&self, error: &JobError) -> bool {
+    fn is_no_response(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),
             JobError::Interrupted { interrupted, .. } => interrupted.cause.is_lost(),
             _ => false,
         };
-        is_lost && explained::loss(error).is_none()
+        is_lost && explained::connection_loss_text(error).is_none()
     }
 
-    fn forget_requests(&mut self) {
+    fn discard_requests(&mut self) {
         self.seen.clear();
         self.read_after.clear();
-        self.forget_plan();
+        self.discard_plan();
     }
 
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
@@ -173,7 +173,7 @@ impl SessionEvents for Encoder {
 
     fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
-        self.forget_requests();
+        self.discard_requests();
         self.session.let_go(end, services);
     }
 }

@@ -40,7 +40,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![not_started_text(why)],
+        JobError::NotStarted(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
         }
@@ -48,7 +48,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 }
 
 /// Returns the reason for a lost connection, or `None` if further requests are possible.
-pub fn loss(error: &JobError) -> Option<Text> {
+pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
 
@@ -280,9 +280,9 @@ mod tests {
         let address = RegisterAddress::BANK_SELECT;
         let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };
         for error in [gone, unclear] {
-            assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
+            assert_eq!(connection_loss_text(&JobError::Device(error)).unwrap().id(), "link.lost");
         }
-        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+        assert_eq!(connection_loss_text(&JobError::Device(Error::NeverSilent)), None);
         assert_eq!(job(&JobError::Device(Error::NeverSilent)).len(), 1);
     }
 }

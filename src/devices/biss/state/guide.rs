@@ -35,7 +35,7 @@ pub enum End {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reached {
+pub enum StepStatus {
     Done,
     Waits,
     Runs,
@@ -52,7 +52,7 @@ pub struct GuideStep<'a> {
     pub op: &'a Op,
     pub is_first: bool,
     pub step: ProcedureStep,
-    pub reached: Reached,
+    pub reached: StepStatus,
 }
 
 impl Guide {
@@ -77,7 +77,7 @@ impl Guide {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
-    pub fn demand(&self) -> Option<&OperatorPrompt> {
+    pub fn operator_prompt(&self) -> Option<&OperatorPrompt> {
         match self.detail()? {
             StepDetail::Demand(demand) => Some(demand),
             _ => None,
@@ -105,16 +105,16 @@ impl Guide {
                 passed &= !is_own && at.is_some_and(|(own, _)| number <= own);
                 let is_skipped = skipped.as_ref().is_some_and(|range| range.contains(&place));
                 let reached = match &self.end {
-                    Some(End::Done(_)) if is_skipped => Reached::Skipped,
-                    Some(End::Done(_)) => Reached::Done,
-                    Some(End::Failed { cancelled: true, .. }) if is_own => Reached::Cancelled,
-                    Some(End::Failed { .. }) if is_own => Reached::Failed,
-                    Some(End::Failed { .. }) if self.was_returned_to_operation(number, step) => Reached::Done,
-                    _ if is_own && self.demand().is_some() => Reached::Waits,
-                    _ if is_own => Reached::Runs,
-                    _ if passed && is_skipped => Reached::Skipped,
-                    _ if passed => Reached::Done,
-                    _ => Reached::Ahead,
+                    Some(End::Done(_)) if is_skipped => StepStatus::Skipped,
+                    Some(End::Done(_)) => StepStatus::Done,
+                    Some(End::Failed { cancelled: true, .. }) if is_own => StepStatus::Cancelled,
+                    Some(End::Failed { .. }) if is_own => StepStatus::Failed,
+                    Some(End::Failed { .. }) if self.was_returned_to_operation(number, step) => StepStatus::Done,
+                    _ if is_own && self.operator_prompt().is_some() => StepStatus::Waits,
+                    _ if is_own => StepStatus::Runs,
+                    _ if passed && is_skipped => StepStatus::Skipped,
+                    _ if passed => StepStatus::Done,
+                    _ => StepStatus::Ahead,
                 };
                 steps.push(GuideStep { op, is_first: place == 0, step, reached });
             }
@@ -162,7 +162,7 @@ mod tests {
     use crate::devices::biss::procedures::procedure::Run;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn step_status(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
+    fn step_status(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<StepStatus> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         reported
             .iter()
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn skipped_steps_are_not_marked_done() {
-        use Reached::{Ahead, Done, Runs, Skipped};
+        use StepStatus::{Ahead, Done, Runs, Skipped};
         let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
         let states = |guide: &Guide| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
         for (task, after, expected) in [
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn an_interrupted_procedure_shows_failed_and_remaining_steps() {
-        use Reached::{Ahead, Done, Failed};
+        use StepStatus::{Ahead, Done, Failed};
         let first = Run::CalibrationCounterclockwise;
         let (turn, run) = (ProcedureStep::Await(Task::Turn(first)), ProcedureStep::Run(first));
         let told = [ProcedureStep::Conditions, turn, ProcedureStep::Enter(DeviceMode::CALIBRATION), run];
@@ -224,6 +224,6 @@ mod tests {
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });
-        assert_eq!(guide.steps().first().map(|own| own.reached), Some(Reached::Cancelled));
+        assert_eq!(guide.steps().first().map(|own| own.reached), Some(StepStatus::Cancelled));
     }
 }

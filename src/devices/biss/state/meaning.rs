@@ -2,7 +2,7 @@
 //! access over the bus, the selected bank must be known.
 
 use crate::app::explain::plain;
-use crate::app::{Explained, Text, TraceFault};
+use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol as bridge;
 use crate::buses::bridge::state::traced as adapter;
@@ -25,8 +25,8 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
-        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
+        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
         let meaning = match entry.direction {
             Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
             Direction::Sent => {
@@ -56,10 +56,10 @@ impl Meaning {
 
     /// Decodes bytes received over the configuration pin after a request. After a damaged part, the reply may still
     /// follow.
-    fn reply(&mut self, bytes: &[u8]) -> Explained {
-        let broken = |damage| Explained::broken(words::damage_text(&damage));
+    fn reply(&mut self, bytes: &[u8]) -> FrameExplanation {
+        let broken = |damage| FrameExplanation::broken(words::damage_text(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
-        let Some(requested) = self.requested else { return Explained::default() };
+        let Some(requested) = self.requested else { return FrameExplanation::default() };
         let reply = match Reply::parse(&frame, requested.command()) {
             Ok(reply) => reply,
             Err(error) => return broken(Damage::Reply(error)),
@@ -69,7 +69,10 @@ impl Meaning {
             Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
             Reply::Written(Written::Refused) => {
-                return Explained { fault: Some(TraceFault::Reported), ..vec![TEXTS.text("trace.refused")].into() };
+                return FrameExplanation {
+                    fault: Some(TraceFault::Reported),
+                    ..vec![TEXTS.text("trace.refused")].into()
+                };
             }
             Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
             Reply::Position(word) => plain(format!("0x{:X}", word.word())),
@@ -88,7 +91,7 @@ impl Meaning {
     fn adapter_request_text(&mut self, request: &bridge::Request) -> Text {
         let place = |address| {
             let at = if address < RegisterAddress::BANK_SIZE {
-                self.bank.and_then(|bank| RegisterAddress::banked(bank, address))
+                self.bank.and_then(|bank| RegisterAddress::in_bank(bank, address))
             } else {
                 RegisterAddress::direct(address)
             };

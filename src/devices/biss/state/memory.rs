@@ -87,7 +87,7 @@ impl Memory {
     /// contain only some banks of an area.
     pub fn part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
-            let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
+            let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::in_bank(bank, offset));
             places.all(|at| at.is_some_and(|at| self.read(at).is_some()))
         };
         let mut best: Option<(u8, u8)> = None;
@@ -167,7 +167,7 @@ impl Memory {
 /// Returns the register addresses of an area in ascending order.
 pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
     area.banks().flat_map(|bank| {
-        (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::banked(bank, offset))
+        (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::in_bank(bank, offset))
     })
 }
 

@@ -30,7 +30,7 @@ pub use texts::TEXTS;
 pub use action::BissAction;
 pub use connect_form::{BissForm, BissLinkKind};
 pub use encoder::Encoder;
-pub use guide::{End, Guide, GuideStep, Reached};
+pub use guide::{End, Guide, GuideStep, StepStatus};
 pub use mark::Mark;
 pub use memory::{Memory, MemoryError, Runs, places};
 pub use record::{Record, Streamed};

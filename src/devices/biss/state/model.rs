@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::{BissAction, Encoder};
-use crate::app::action::Opened;
+use crate::app::action::OpenedConnection;
 use crate::app::services::{JobState, Services};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
@@ -14,7 +14,7 @@ impl DeviceModel for Encoder {
     type Action = BissAction;
     type Done = Infallible;
 
-    fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Biss>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();

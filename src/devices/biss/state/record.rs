@@ -11,7 +11,7 @@ use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Recorder, Scale, Series};
 use crate::app::track::{DeviceRecorder, Meaning, PositionSample, Watchable, WatchedValue};
 use crate::app::{Recording, Text};
-use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
+use crate::devices::biss::procedures::{ConsecutiveFrames, Error, PositionReading, Sample, WatchedReading};
 use crate::devices::biss::protocol::{Decoded, Register, ValueDecoding};
 use crate::devices::biss::state::explain as words;
 
@@ -111,7 +111,7 @@ impl Record {
     }
 
     /// Records streamed frames. Missing frames are counted and leave a gap in the recording.
-    fn add_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
+    fn add_frames(&mut self, run: &ConsecutiveFrames, batch: &mut Batch) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
         if run.is_stream_start() || missing > 0 {
@@ -119,7 +119,7 @@ impl Record {
             self.track.gap();
         }
         self.lost += missing;
-        let FrameRun { period_ns, clock_hz, is_limited, .. } = *run;
+        let ConsecutiveFrames { period_ns, clock_hz, is_limited, .. } = *run;
         self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
         let (multiturn, singleturn) = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
@@ -128,7 +128,7 @@ impl Record {
             self.append(batch);
         }
         batch.widths = Some(widths);
-        for (at, frame) in run.with_times() {
+        for (at, frame) in run.iter_with_times() {
             let Ok(reading) = frame else {
                 batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
@@ -272,9 +272,9 @@ mod tests {
     use crate::devices::biss::protocol::{Descriptions, Layout, PositionData, Role};
     use crate::units::Moment;
 
-    fn run(first: u64, count: u64, lost: u64) -> FrameRun {
+    fn run(first: u64, count: u64, lost: u64) -> ConsecutiveFrames {
         let frame = |at| Ok(PositionData { multiturn: 0, singleturn: at as u32, error: false, warning: false });
-        FrameRun {
+        ConsecutiveFrames {
             first,
             at: Moment::from_elapsed(Duration::from_micros(50 * first)),
             period_ns: 50_000,
@@ -292,14 +292,18 @@ mod tests {
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
-        record.add(vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
+        record.add(vec![Sample::Frames(ConsecutiveFrames { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
         let last = record.last().unwrap();
         assert_eq!((last.raw().to_string(), last.raw().bits), ("024698000".to_owned(), 33));
         assert_eq!((last.error, last.warning), (Some(false), Some(true)));
         let bare = Layout::new(0, 12, false, false, None).unwrap();
         let reading = PositionData { singleturn: 0x00A, ..PositionData::default() };
         record.add(
-            vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], layout: Arc::new(bare), ..run(1, 1, 0) })],
+            vec![Sample::Frames(ConsecutiveFrames {
+                frames: vec![Ok(reading)],
+                layout: Arc::new(bare),
+                ..run(1, 1, 0)
+            })],
             0,
         );
         let last = record.last().unwrap();
@@ -314,7 +318,7 @@ mod tests {
             let lines = record.recorder().lines();
             lines.iter().flat_map(|line| line.scales().iter().map(|scale| scale.unit.id().to_owned())).collect()
         };
-        record.add(vec![Sample::Frames(FrameRun { is_split_known: false, ..run(0, 10, 0) })], 0);
+        record.add(vec![Sample::Frames(ConsecutiveFrames { is_split_known: false, ..run(0, 10, 0) })], 0);
         assert_eq!(record.last().unwrap().angle(), None);
         assert_eq!(units(&record), ["unit.steps", "unit.steps_per_second", "unit.steps_per_second_squared"]);
         record.add(vec![Sample::Frames(run(10, 10, 0))], 0);
@@ -345,7 +349,7 @@ mod tests {
     #[test]
     fn missing_frames_are_counted_at_every_stage() {
         let mut record = Record::default();
-        let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
+        let add = |record: &mut Record, run: ConsecutiveFrames, dropped| record.add(vec![Sample::Frames(run)], dropped);
         add(&mut record, run(0, 100, 0), 0);
         assert_eq!(
             (record.positions(), record.dropped_count(), record.streamed().map(Streamed::frame_rate_hz)),
@@ -356,7 +360,7 @@ mod tests {
         add(&mut record, run(500, 10, 0), 3);
         assert_eq!((record.positions(), record.dropped_count()), (200, 310), "nobody took three runs of them");
         // The frame numbers of another stream start at zero.
-        let later = FrameRun { at: Moment::from_elapsed(Duration::from_secs(1)), ..run(5, 5, 5) };
+        let later = ConsecutiveFrames { at: Moment::from_elapsed(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
         assert_eq!((record.positions(), record.dropped_count()), (205, 315));
         record.poll(None, false);

@@ -121,7 +121,7 @@ impl RegisterEntry<'_> {
 fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     let size = RegisterAddress::BANK_SIZE;
     (0..size).filter_map(move |offset| match bank {
-        Some(bank) => RegisterAddress::banked(bank, offset),
+        Some(bank) => RegisterAddress::in_bank(bank, offset),
         None => RegisterAddress::direct(size + offset),
     })
 }

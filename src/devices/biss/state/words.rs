@@ -96,7 +96,7 @@ pub(super) fn explained_value_text(value: EdsValue) -> Option<Text> {
 
 /// Returns the name of a data sheet field as used in the manual.
 pub fn eds_field_name(bank: EdsBank, field: &EdsField) -> Text {
-    let at = RegisterAddress::banked(bank.number(), field.offset);
+    let at = RegisterAddress::in_bank(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }

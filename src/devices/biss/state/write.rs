@@ -91,7 +91,7 @@ impl HasMemory for Encoder {
         check_device(profile, &own.profile()).is_err()
     }
 
-    fn is_for_another_type(&self, change: &Change) -> bool {
+    fn is_for_other_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         other_type(&profile.identity, &own.profile()).is_some()
     }
@@ -138,7 +138,7 @@ impl HasMemory for Encoder {
         self.log_operations(what, prepared, services);
     }
 
-    fn forget_device(&mut self) {
+    fn discard_device_data(&mut self) {
         (self.survey, self.status, self.check, self.guide, self.refusal) = (None, None, None, None, None);
         self.memory.clear();
         self.record.forget();
@@ -172,7 +172,7 @@ impl HasProfile for Encoder {
         if !missing.is_empty() {
             return Some(Err(missing));
         }
-        let profile = profile_of(survey, data, survey.status.unsaved_mode());
+        let profile = profile_of(survey, data, survey.status.non_operational_mode());
         let remarks = unsaved_edits_remark(self.memory.count())
             .into_iter()
             .chain(words::unsaved_profile_warning(&profile))

@@ -10,7 +10,7 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card_with, empty_placeholder, enabled_button, encoder_page, paragraph, row};
+use crate::ui::controls::{card_with_trailing, empty_placeholder, enabled_button, encoder_page, paragraph, row};
 use crate::ui::{Theme, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -51,7 +51,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, theme, "encoder_card.title", read, |ui| {
+    card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
         if let Some(identity) = encoder.identity() {
             ui.label(theme.value(identity.description.name()));
             ui.add_space(theme.space.inside);
@@ -136,7 +136,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             actions.push(Action::device(encoder.session.id, Biss::ReadStatus));
         }
     };
-    card_with(ui, theme, "status_card.title", read, |ui| {
+    card_with_trailing(ui, theme, "status_card.title", read, |ui| {
         let Some(status) = &encoder.status else {
             ui.label(theme.label(say(theme, "biss_status.nothing")));
             return;
@@ -179,7 +179,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::device(encoder.session.id, Biss::Check));
         }
     };
-    card_with(ui, theme, "check_card.title", run, |ui| {
+    card_with_trailing(ui, theme, "check_card.title", run, |ui| {
         lines_ui(ui, theme, encoder.check.as_deref(), TEXTS.text("check_card.biss_nothing"));
     });
 }

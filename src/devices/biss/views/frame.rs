@@ -8,7 +8,7 @@ use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::devices::biss::state::{Encoder, TEXTS};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{enabled_button, folding_card_with, paragraph, row};
+use crate::ui::controls::{enabled_button, folding_card_with_trailing, paragraph, row};
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
 use crate::ui::{Theme, icons};
 
@@ -20,7 +20,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             actions.push(Action::Command(encoder.session.id, DeviceCommand::ReadPosition));
         }
     };
-    folding_card_with(ui, theme, TEXTS.text("frame_card.title"), read, |ui| {
+    folding_card_with_trailing(ui, theme, TEXTS.text("frame_card.title"), read, |ui| {
         let reading = encoder.record.last();
         let (fields, bits) = strip(theme, &identity.layout, reading);
         let label = say(theme, "frame_card.title");

@@ -45,7 +45,7 @@ pub(super) fn page_ui(
     }
     let beside = ui.available_width() >= BESIDE;
     super::messages_ui(ui, theme, encoder, actions);
-    head_ui(ui, theme, encoder, (&groups, beside), view, actions);
+    header_ui(ui, theme, encoder, (&groups, beside), view, actions);
     ui.add_space(theme.space.inside);
     let height = ui.available_height();
     if !beside {
@@ -61,7 +61,7 @@ pub(super) fn page_ui(
     });
 }
 
-fn head_ui(
+fn header_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

@@ -7,7 +7,7 @@ use crate::app::{Action, Severity};
 use crate::devices::biss::procedures::procedure::{Advice, Answer, OperatorPrompt, Run, StepDetail, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
-use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, Reached, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, StepStatus, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{button, card, paragraph, severity};
 use crate::ui::widgets::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
@@ -33,7 +33,7 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
     card(ui, theme, TEXTS.text("guide.title"), |ui| {
         let list: Vec<StepRow> =
             guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
-        let demand = guide.demand();
+        let demand = guide.operator_prompt();
         let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker_text(*own)));
         let word = say(
             theme,
@@ -65,33 +65,33 @@ fn step(
     op: &Op,
     is_first: bool,
     own: crate::devices::biss::procedures::procedure::ProcedureStep,
-    reached: Reached,
+    reached: StepStatus,
 ) -> StepRow {
     let what = theme.words(&says::step(own));
     let title = if is_first { format!("{} · {what}", theme.words(&says::procedure(op))) } else { what };
     let (state, word) = match reached {
-        Reached::Done => (StepState::Done, "guide.done"),
-        Reached::Waits => (StepState::Waiting, "guide.waits"),
-        Reached::Runs => (StepState::Running, "guide.runs"),
-        Reached::Skipped => (StepState::Skipped, "guide.left_out"),
-        Reached::Failed => (StepState::Failed, "guide.failed"),
-        Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
-        Reached::Ahead => (StepState::ToCome, "guide.ahead"),
+        StepStatus::Done => (StepState::Done, "guide.done"),
+        StepStatus::Waits => (StepState::Waiting, "guide.waits"),
+        StepStatus::Runs => (StepState::Running, "guide.runs"),
+        StepStatus::Skipped => (StepState::Skipped, "guide.left_out"),
+        StepStatus::Failed => (StepState::Failed, "guide.failed"),
+        StepStatus::Cancelled => (StepState::Skipped, "guide.cancelled"),
+        StepStatus::Ahead => (StepState::ToCome, "guide.ahead"),
     };
     let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
     match (reached, guide.detail()) {
-        (Reached::Waits, Some(StepDetail::Demand(demand))) => {
+        (StepStatus::Waits, Some(StepDetail::Demand(demand))) => {
             // The recommended speed is marked on the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice_text(*own))).collect();
             step.note = notes.join("\n");
             step.gauges = speed_gauges(theme, demand);
         }
-        (Reached::Runs, Some(StepDetail::Count { done, total })) => {
+        (StepStatus::Runs, Some(StepDetail::Count { done, total })) => {
             step.progress = Some(*done as f32 / (*total).max(1) as f32);
             step.note = format!("{done}/{total}");
         }
-        (Reached::Runs, Some(StepDetail::Lasts { elapsed, expected })) => {
+        (StepStatus::Runs, Some(StepDetail::Lasts { elapsed, expected })) => {
             step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
             step.note = format!("{} s", theme.number(elapsed.as_secs_f64(), 0));
         }

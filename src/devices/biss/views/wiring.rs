@@ -52,13 +52,13 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
 mod tests {
     use super::{NOTES, PINS};
     use crate::devices::biss::state::TEXTS;
-    use crate::ui::wiring::{check_notes, check_wires};
+    use crate::ui::wiring::{assert_notes, assert_wires};
 
     /// Issue 22.23: kit encoder manual, tables 1 (pins), 2 (supply) and 14 (preset), sections 2.1 (connector) and 2.3
     /// (point to point, RS-422); UBICOM at 115200 baud.
     #[test]
     fn the_wiring_card_matches_the_manual() {
-        check_wires(
+        assert_wires(
             &TEXTS,
             &PINS,
             &[
@@ -72,6 +72,6 @@ mod tests {
                 ("8 VCC", &["4.75…12.5 V (00B)", "15 V (01B, 03B)"]),
             ],
         );
-        check_notes(&TEXTS, &NOTES, &["BM08B-GHS", "Point-to-point"]);
+        assert_notes(&TEXTS, &NOTES, &["BM08B-GHS", "Point-to-point"]);
     }
 }

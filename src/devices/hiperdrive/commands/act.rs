@@ -23,7 +23,7 @@ const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test 
 
 pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
-    let action = act.action_of(KIND, ACTIONS);
+    let action = act.parse_action(KIND, ACTIONS);
     let of_drive = matches!(action, Ok(HiperdriveAction::Acknowledge | HiperdriveAction::SetPosition));
     let DoOptions { of, all } = act.own.read()?;
     let mine = [

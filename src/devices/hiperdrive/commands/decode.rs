@@ -9,7 +9,7 @@ use super::meaning::{self, DecodeContext, WordMeaning, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
 use crate::cli::args::DecodeArgs;
-use crate::cli::decode::{Explained, frames, show};
+use crate::cli::decode::{FrameExplanation, frames, show};
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::protocol::{KIND, Layout};
@@ -18,7 +18,7 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
     let options: WordOptions = arguments.own.read()?;
     let known =
         DecodeContext { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
-    let explained: Vec<Explained> =
+    let explained: Vec<FrameExplanation> =
         parse_captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
     show(output, &explained)
 }
@@ -46,11 +46,11 @@ fn parse_captured(arguments: &[String]) -> Result<Vec<Captured>> {
     }
 }
 
-fn explain(captured: &Captured, known: &DecodeContext) -> Explained {
+fn explain(captured: &Captured, known: &DecodeContext) -> FrameExplanation {
     let (shown, compact, meaning_lines) = match captured {
         Captured::Word(word) => {
             let text = format!("{word:04X}");
-            (text.clone(), text, meaning::of_word(*word, known).map(|readings| lines(&readings)))
+            (text.clone(), text, meaning::from_word(*word, known).map(|readings| lines(&readings)))
         }
         Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), decode_bytes(bytes, known)),
     };
@@ -59,7 +59,7 @@ fn explain(captured: &Captured, known: &DecodeContext) -> Explained {
         Err(why) => (Err(why), Map::new()),
     };
     more.insert("device".to_owned(), json!(KIND));
-    Explained { shown, compact, meaning, more }
+    FrameExplanation { shown, compact, meaning, more }
 }
 
 fn lines(readings: &[WordMeaning]) -> DecodedBytes {

@@ -44,7 +44,7 @@ impl WordMeaning {
 ///
 /// # Errors
 /// Returns the reason why the word must not be sent, if its direction makes it a control word.
-pub(super) fn of_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn from_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
         (Some(Direction::Out), Err(why)) => Err(why.to_string()),

@@ -64,7 +64,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     result_of!(runner.run(HiperdriveJob::Take)?, HiperdriveOutput::Taken => {});
     let came =
         carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
-    let stood = leave_operation(&runner, drive);
+    let stood = stop_and_switch_off(&runner, drive);
     // Control is released even after a lost connection; that loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
@@ -174,7 +174,7 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
 }
 
 /// Stops the drive, switches it off, and returns its last known state.
-fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
+fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
     let motion = &runner.kept;
     let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
     let until = Instant::now() + END;

@@ -63,7 +63,7 @@ impl Runs for Hiperdrive {
         Box::new(move |again| {
             motion.stop();
             let until = Instant::now() + STOPPED;
-            while !motion.is_standing() && Instant::now() < until {
+            while !motion.is_at_rest() && Instant::now() < until {
                 sleep(LOOKS);
             }
             if again {

@@ -1,11 +1,11 @@
 //! Execution of plans on a device.
 
 use super::{ChangeKind, Commit, Committed, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
-use crate::devices::hiperdrive::procedures::write::DeviceWrite;
+use crate::devices::hiperdrive::procedures::write::DeviceWriter;
 use crate::devices::hiperdrive::profile::{Base, HiperdriveProfile, Op};
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -15,7 +15,7 @@ pub(super) fn commit(
     tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-    let mut write = DeviceWrite { master: device.master(context), identity: &commit.prepared.identity };
+    let mut write = DeviceWriter { master: device.master(context), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
         tell(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
@@ -26,9 +26,9 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHead<'_, Self> {
+    fn head(&self) -> PlanHeader<'_, Self> {
         // The manual gives no limit (`U`). Saves are counted and reported, and refused only if counting fails.
-        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
+        PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -44,6 +44,6 @@ impl Planned for Prepared {
     }
 
     fn before_image(&self) -> String {
-        backup_of(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
+        backup_document(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
     }
 }

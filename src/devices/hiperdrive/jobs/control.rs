@@ -74,7 +74,7 @@ impl CyclicControl {
     }
 
     /// Stops the drives after explicit messaging was lost.
-    pub(super) fn mark_session_lost(&self) {
+    pub(super) fn stop_after_session_loss(&self) {
         if let Some(open) = &self.open {
             open.cyclic.lose(ConnectionLoss::Session);
         }
@@ -173,7 +173,7 @@ impl Hiperdrive {
     }
 
     /// Returns whether the program is shutting down while drives are still under control.
-    pub(super) fn should_end(&self) -> bool {
+    pub(super) fn should_release_control(&self) -> bool {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
@@ -181,9 +181,9 @@ impl Hiperdrive {
     /// counts too, because motion is not allowed without access to the parameters.
     pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
-            self.control.mark_session_lost();
+            self.control.stop_after_session_loss();
         }
-        if self.should_end() {
+        if self.should_release_control() {
             return self.end(context);
         }
         if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {

@@ -13,10 +13,10 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::motion::Motion;
-use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::OpenedConnection;
 use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
-use crate::link::{Clock, DatagramChannel, wake_before_others};
+use crate::link::{Clock, DatagramChannel, request_realtime_priority};
 
 /// A cyclic connection that runs on its own thread. Dropping it stops the drives and ends the thread;
 /// [`close`](Self::close) also waits until the thread has ended.
@@ -60,7 +60,7 @@ impl Cyclic {
     /// Fails if the system cannot create a thread; nothing has been sent in that case.
     pub fn start(
         port: Box<dyn DatagramChannel>,
-        opened: &Opened,
+        opened: &OpenedConnection,
         drives: &[DriveNumber],
         clock: Arc<dyn Clock>,
         motion: &Motion,
@@ -71,7 +71,7 @@ impl Cyclic {
         let failed = motion.clone();
         let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
             let _alive: crossbeam_channel::Sender<Never> = alive;
-            failed.set_realtime_priority(wake_before_others());
+            failed.set_realtime_priority(request_realtime_priority());
             let turned = catch_unwind(AssertUnwindSafe(|| while pump.turn() {}));
             if turned.is_err() {
                 failed.fail();
@@ -115,7 +115,7 @@ impl CyclicRunner {
     /// Creates the runner for a newly opened connection. `port` must be directed at the target.
     pub fn new(
         port: Box<dyn DatagramChannel>,
-        opened: &Opened,
+        opened: &OpenedConnection,
         drives: &[DriveNumber],
         clock: Arc<dyn Clock>,
         motion: &Motion,
@@ -143,16 +143,20 @@ impl CyclicRunner {
                     late += usize::from(now >= due);
                 }
                 Ok(false) => break,
-                Err(error) => return self.is_gone(error.into()),
+                Err(error) => {
+                    self.report_loss(error.into());
+                    return false;
+                }
             }
         }
         self.apply_commands();
         self.drives.watch_parameters(&self.motion.watched_parameters());
         let now = self.clock.now();
-        let packet = self.motion.use_motion_intent(|intent, permit| self.drives.poll(now, intent, permit));
+        let packet = self.motion.with_motion_intent(|intent, permit| self.drives.poll(now, intent, permit));
         let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));
         if let Err(error) = sent {
-            return self.is_gone(error.into());
+            self.report_loss(error.into());
+            return false;
         }
         self.motion.publish_drive_states(&self.drives);
         !self.drives.is_finished()
@@ -168,9 +172,8 @@ impl CyclicRunner {
         }
     }
 
-    fn is_gone(&mut self, why: ConnectionLoss) -> bool {
+    fn report_loss(&mut self, why: ConnectionLoss) {
         self.drives.connection_lost(self.clock.now(), why);
         self.motion.publish_drive_states(&self.drives);
-        false
     }
 }

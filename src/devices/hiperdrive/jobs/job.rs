@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::procedures::check::{CheckStep, HiperdriveStepRes
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
 use crate::devices::hiperdrive::procedures::{DriveReading, Error, Identity, Network, Status, Survey};
 use crate::devices::hiperdrive::profile::{
-    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
+    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, PlanError, RestoreOptions, Service, TypeMismatch,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
 use crate::store::{DeviceKey, EntryKind};
@@ -111,7 +111,7 @@ pub struct Prepared {
     /// Parameters that depend on the mounting of the drive and differ, but are left unchanged.
     pub mounting_left: Vec<Item>,
     /// Type differences between the profile and the device or its drives.
-    pub other_types: Vec<OtherType>,
+    pub other_types: Vec<TypeMismatch>,
     /// Parameters that depend on the mounting and come from another device's profile. They must be set up again after
     /// writing.
     pub mounting_written: Vec<Item>,

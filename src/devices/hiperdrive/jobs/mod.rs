@@ -173,12 +173,12 @@ impl Device for Hiperdrive {
         Ok(if reading.celsius.is_some() { Watched::Sample(sample) } else { Watched::Refused(sample) })
     }
 
-    fn take_remark(&mut self) -> Option<DeviceMessage> {
+    fn take_device_message(&mut self) -> Option<DeviceMessage> {
         self.remark.take()
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check().inspect_err(|_| self.control.mark_session_lost())
+        self.wire.check().inspect_err(|_| self.control.stop_after_session_loss())
     }
 
     fn idle_interval(&self) -> Duration {
@@ -197,6 +197,6 @@ impl Device for Hiperdrive {
     }
 
     fn is_urgent(&self) -> bool {
-        self.should_end()
+        self.should_release_control()
     }
 }

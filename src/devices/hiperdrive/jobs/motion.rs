@@ -179,7 +179,7 @@ impl Motion {
     }
 
     /// Allows or forbids an endless run of a drive, which requires factory limits and scaling.
-    pub fn allow_endless(&self, drive: DriveNumber, allowed: bool) {
+    pub fn allow_endless_run(&self, drive: DriveNumber, allowed: bool) {
         let mut cell = self.lock();
         if allowed {
             cell.experts.insert(drive);
@@ -222,7 +222,7 @@ impl Motion {
     }
 
     /// Passes the current request to the closure that builds the next packet.
-    pub(super) fn use_motion_intent<T>(
+    pub(super) fn with_motion_intent<T>(
         &self,
         make: impl FnOnce(&MotionIntent, &dyn Fn(DriveNumber) -> Permit) -> T,
     ) -> T {
@@ -306,9 +306,9 @@ impl Motion {
 
     /// Returns whether every drive was told to stop, which means that the last control word sent to it is a stop.
     /// Returns `true` without a connection.
-    pub fn is_standing(&self) -> bool {
+    pub fn is_at_rest(&self) -> bool {
         let cell = self.lock();
-        !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
+        !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_at_rest())
     }
 
     fn lock(&self) -> MutexGuard<'_, Cell> {
@@ -344,7 +344,7 @@ mod tests {
     fn stale_intents_are_not_repeated() {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
-        let is_stale = || motion.use_motion_intent(|intent, _| intent.is_stale(clock.now()));
+        let is_stale = || motion.with_motion_intent(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
         motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
         for _ in 0..3 {

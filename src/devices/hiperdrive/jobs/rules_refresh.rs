@@ -95,7 +95,7 @@ impl Hiperdrive {
         self.control.motion().invalidate_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
             // The device can no longer be queried, which counts as a loss.
-            return self.control.mark_session_lost();
+            return self.control.stop_after_session_loss();
         }
         if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
             self.control.motion().stop();

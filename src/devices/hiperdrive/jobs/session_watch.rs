@@ -198,7 +198,7 @@ mod tests {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
         let locked = || {
-            let locks = motion.use_motion_intent(|_, permit| permit(DriveNumber::FIRST).locks);
+            let locks = motion.with_motion_intent(|_, permit| permit(DriveNumber::FIRST).locks);
             assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
             locks.contains(&Lock::NoAnswer)
         };

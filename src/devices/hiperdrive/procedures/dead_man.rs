@@ -3,7 +3,7 @@
 //!
 //! Invariants for any input:
 //! - A word that could start a motion is sent only while a fresh action of the user requests that motion. All other
-//!   words are standing words ([`ControlWord::is_standing`]). They start nothing for any report of the drive, even a
+//!   words are standing words ([`ControlWord::is_at_rest`]). They start nothing for any report of the drive, even a
 //!   late one.
 //! - The call that receives a reason to stop returns a standing word.
 //! - An action that has ended never starts again. Neither does one that was not refreshed until it could start.
@@ -213,7 +213,7 @@ impl DeadMan {
         self.is_out_of_contact = false;
         self.received = Some((now, actual));
         self.first = self.first.or(Some(now));
-        let below = TargetState::of_word(self.sent.control) < TargetState::Operational;
+        let below = TargetState::from_word(self.sent.control) < TargetState::Operational;
         let forgotten = |bit| !actual.status.has(bit);
         if below && forgotten(StatusBit::Operational) && forgotten(StatusBit::SetpointAcknowledged) {
             self.after_run = false;
@@ -305,7 +305,7 @@ impl DeadMan {
     /// safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
-        if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
+        if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::standing(actual) }
     }
 
     const fn mark(&self, now: Moment) -> Mark {

@@ -136,7 +136,7 @@ impl DriveLimits {
     }
 
     /// Returns whether scale and limits have factory values, so that an endless run is possible.
-    pub const fn allows_endless(&self) -> bool {
+    pub const fn is_endless_run_allowed(&self) -> bool {
         self.is_factory
     }
 
@@ -245,7 +245,7 @@ mod tests {
             assert!(!limits.permit(at(0), false).endless, "{label}: only for an expert");
         }
         let other = DriveLimits::of(rules(&[]), (Topology::Adapter, Variant::OTHER), at(0));
-        assert!(!other.allows_endless(), "its factory values are not known");
+        assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
     /// Issue 21.3: an invalid scale, range or time-out counts as not read. Types and ranges are those of the manual:

@@ -9,7 +9,7 @@ mod refused;
 
 use std::time::Duration;
 
-pub use connection::Opened;
+pub use connection::OpenedConnection;
 
 use super::error::{Damage, LateReplyError, Refusal, RequestedItem, WrongLength};
 use super::{Error, Station};
@@ -319,7 +319,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    fn trace_remaining(&mut self) {
+    fn trace_unparsed_bytes(&mut self) {
         let (now, rest) = (self.line.now(), self.station.receiver.take_unparsed_bytes());
         self.line.show(now, MaskedBytes::clear(&rest));
     }
@@ -353,7 +353,7 @@ impl<'a> Master<'a> {
                     }
                     Ok(None) => break,
                     Err(cause) => {
-                        self.trace_remaining();
+                        self.trace_unparsed_bytes();
                         self.line.wait_for_silence(&mut self.station.line, QUIET)?;
                         self.station.receiver = Receiver::default();
                         return Ok(Err(cause.into()));
@@ -363,7 +363,7 @@ impl<'a> Master<'a> {
             let now = self.line.now();
             if now >= deadline {
                 let bytes = self.station.receiver.pending();
-                self.trace_remaining();
+                self.trace_unparsed_bytes();
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
             }

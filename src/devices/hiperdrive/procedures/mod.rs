@@ -27,7 +27,7 @@ pub use identify::{
     DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,
 };
 pub use limits::{DisplayedLimits, DriveLimits};
-pub use master::{Master, Opened};
+pub use master::{Master, OpenedConnection};
 pub use network::{Network, network, settings};
 pub use rules::{GROUPS, MotionLimitParameters, read_rule_group, read_rules};
 pub use save::{read_state, save};

@@ -35,12 +35,12 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Wait before the first read after an operation that includes a reset. The reset may not have started before that.
 const BEGINS: Duration = Duration::from_millis(100);
 
-pub struct DeviceWrite<'w, 'm> {
+pub struct DeviceWriter<'w, 'm> {
     pub master: Master<'m>,
     pub identity: &'w Identity,
 }
 
-impl Write for DeviceWrite<'_, '_> {
+impl Write for DeviceWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;
@@ -80,7 +80,7 @@ impl Write for DeviceWrite<'_, '_> {
     }
 
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
-        if !interrupts_scale_or_limits(&confirmed.plan().ops, done.ops) {
+        if !are_scale_or_limits_incomplete(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
         self.master.run_uncancellable(|master| perform(master, op, done))?;
@@ -110,7 +110,7 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
 
 /// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
 /// there, because the same limits denote other positions under another scale.
-fn interrupts_scale_or_limits(ops: &[Op], at: usize) -> bool {
+fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
         _ => None,

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Va
 /// A type difference between profile and device. Either the adapter or hub differs (parameter 13), or the variant of a
 /// drive (parameter 120). The variant determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum OtherType {
+pub enum TypeMismatch {
     /// The profile is for another type of device. Adapters, hubs with four ports and hubs with eight ports are different
     /// types.
     #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
@@ -59,7 +59,7 @@ pub enum PlanError {
     },
     /// The profile was read from another type of device or drive.
     #[error(transparent)]
-    OtherType(#[from] OtherType),
+    TypeMismatch(#[from] TypeMismatch),
     /// The value is outside the range of the parameter.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

@@ -19,7 +19,7 @@ mod warning;
 
 pub use edit::{Positions, plan_edits, plan_service, plan_set_position};
 pub use entry_error::EntryError;
-pub use error::{OtherType, PlanError};
+pub use error::{PlanError, TypeMismatch};
 pub use image::Image;
 pub use item::{Item, ItemError};
 pub use network::{NetworkSettings, plan_network};

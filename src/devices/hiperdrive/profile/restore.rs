@@ -4,7 +4,7 @@
 pub use crate::profile::RestoreOptions;
 
 use super::{
-    HiperdrivePlan, HiperdriveProfile, Image, Item, OtherType, PlanError, Positions, ProfileDrive, ProfileIdentity,
+    HiperdrivePlan, HiperdriveProfile, Image, Item, PlanError, Positions, ProfileDrive, ProfileIdentity, TypeMismatch,
     plan_edits,
 };
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -69,19 +69,19 @@ pub fn plan_restore(
 /// fits any device. An empty port is accepted.
 ///
 /// # Errors
-/// Returns [`PlanError::OtherType`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first difference.
+/// Returns [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`] or [`PlanError::OtherDrive`] for the first difference.
 pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
 
 /// Returns the type differences between a profile and a device, first for the device itself and then for each drive.
-pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
+pub fn type_differences(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<TypeMismatch> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
         let (profile, device) = own.variant.zip(find_drive(device, own.number)?.variant)?;
-        (profile != device).then_some(OtherType::Drive { drive: own.number, profile, device })
+        (profile != device).then_some(TypeMismatch::Drive { drive: own.number, profile, device })
     });
-    whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
+    whole.into_iter().map(|(profile, device)| TypeMismatch::Device { profile, device }).chain(drives).collect()
 }
 
 /// Refuses a device other than the one in the profile, unless the options allow it.
@@ -121,15 +121,15 @@ fn is_unchanged_on_device(
 
 /// Returns whether an item depends on the mounting of another device or drive.
 fn depends_on_other_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
-    profile.depends_on_mounting(item) && !is_same_place(profile, device, item)
+    profile.depends_on_mounting(item) && !is_same_location(profile, device, item)
 }
 
 /// Returns whether the profile was read from this device and the parameter from this drive.
-fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+fn is_same_location(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = type_differences(&profile.identity, device);
-    let is_other = |own: &OtherType| match own {
-        OtherType::Device { .. } => true,
-        OtherType::Drive { drive, .. } => item.0.drive() == Some(*drive),
+    let is_other = |own: &TypeMismatch| match own {
+        TypeMismatch::Device { .. } => true,
+        TypeMismatch::Drive { drive, .. } => item.0.drive() == Some(*drive),
     };
     if types.iter().any(is_other) {
         return false;

@@ -240,7 +240,7 @@ impl ControlWord {
 
     /// Returns whether this control word starts no motion and brings a moving drive to a standstill. This holds for any
     /// status that the drive reports, even late.
-    pub const fn is_standing(self) -> bool {
+    pub const fn is_at_rest(self) -> bool {
         let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
         let moves = if self.has(ControlBit::SpeedMode) {
             self.has(ControlBit::Start)

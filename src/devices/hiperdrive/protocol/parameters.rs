@@ -73,7 +73,7 @@ const fn slow_for_all_drives(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
-const fn one_drive(value: i64) -> SlowValue {
+const fn slow_for_one_drive(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
@@ -82,9 +82,9 @@ const fn one_drive(value: i64) -> SlowValue {
 const SAVE_AND_RESET: &[SlowValue] =
     &[slow_for_all_drives(-4), slow_for_all_drives(-3), slow_for_all_drives(-2), slow_for_all_drives(-1), stores(1)];
 /// Slow values of parameter 152. A change from 0 to 1 resets the drive. The time is derived (`D`).
-const REQUEST: &[SlowValue] = &[one_drive(1)];
+const REQUEST: &[SlowValue] = &[slow_for_one_drive(1)];
 /// Slow values of parameter 199. The time is derived (`D`).
-const RESET_DRIVE: &[SlowValue] = &[one_drive(0), one_drive(1)];
+const RESET_DRIVE: &[SlowValue] = &[slow_for_one_drive(0), slow_for_one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
     read(number, name, Text, unit)

@@ -128,7 +128,7 @@ impl State {
     }
 
     /// Returns whether the keys on the drive can move the drive in this state.
-    pub const fn can_move_by_keys(self) -> bool {
+    pub const fn can_be_moved_with_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }
 }

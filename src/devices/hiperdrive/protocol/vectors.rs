@@ -197,7 +197,7 @@ fn the_state_machine_matches_the_reference() {
     ] {
         assert_eq!(from.by(trigger), to, "{from}");
     }
-    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_move_by_keys()).collect();
+    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_be_moved_with_keys()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
     // The word of a row has the effect of the row, starting from the word that keeps its state.
     for (state, kept) in

@@ -92,7 +92,7 @@ impl Axis {
         self.speed / TURN * 60.0
     }
 
-    pub(super) const fn is_standing(&self) -> bool {
+    pub(super) const fn is_at_rest(&self) -> bool {
         self.speed == 0.0
     }
 
@@ -125,7 +125,7 @@ impl Axis {
                 (self.place, self.speed) = (at, 0.0);
                 TickOutcome::There
             }
-            AxisSetpoint::Rest if self.is_standing() => TickOutcome::There,
+            AxisSetpoint::Rest if self.is_at_rest() => TickOutcome::There,
             _ => TickOutcome::OnTheWay,
         }
     }
@@ -158,7 +158,7 @@ mod tests {
         let mut axis = Axis::default();
         let speed = 35.0 / 60.0 * TURN;
         let (ticks, came) = ticks_until(&mut axis, AxisSetpoint::Place { at: TURN, speed }, &SpindleLoad::default());
-        assert_eq!((came, axis.place(), axis.is_standing()), (TickOutcome::There, TURN, true));
+        assert_eq!((came, axis.place(), axis.is_at_rest()), (TickOutcome::There, TURN, true));
         assert!((1800..=1830).contains(&ticks), "{ticks} ms where 1814 were expected");
     }
 

@@ -223,7 +223,7 @@ mod tests {
     }
 
     /// Moves the first drive as far as possible towards a target. Returns its last status and newest error.
-    fn driven(query: &str) -> (u16, Option<ErrorCode>) {
+    fn move_to_target(query: &str) -> (u16, Option<ErrorCode>) {
         let mut station = Station::of(&read(query).unwrap());
         let mut now = Moment::START;
         station.open(now, Duration::from_secs(60));
@@ -255,7 +255,7 @@ mod tests {
             ("requested=0", 0x2A30, None),
             ("s3=1", 0x2A30, None),
         ] {
-            assert_eq!(driven(query), (status, error), "{query}");
+            assert_eq!(move_to_target(query), (status, error), "{query}");
         }
     }
 

@@ -183,7 +183,7 @@ impl Drive {
             (StatusBit::Warning, self.faults > 0),
             (StatusBit::TargetReached, self.target_reached),
             (StatusBit::SetpointAcknowledged, self.acknowledged),
-            (StatusBit::StandingStill, self.is_standing()),
+            (StatusBit::StandingStill, self.is_at_rest()),
             (StatusBit::OverCurrent, self.over_current),
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
@@ -192,8 +192,8 @@ impl Drive {
     }
 
     /// Returns whether nothing is moving or is going to move.
-    pub(super) fn is_standing(&self) -> bool {
-        self.axis.is_standing() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.axis.is_at_rest() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
 
     /// Returns the position in scaled steps.
@@ -261,7 +261,7 @@ impl Drive {
     /// Returns whether everything except the temperature is constant.
     fn is_settled(&self) -> bool {
         let begins = self.control.motion_start(self.control, self.status()).is_some();
-        self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
+        self.motion == Motion::Rest && self.axis.is_at_rest() && !begins && self.next(self.control) == self.state
     }
 
     /// Returns the state to which the current control word leads after the given one.
@@ -287,7 +287,7 @@ impl Drive {
         let weak = wants && torque < self.load.percent;
         let wanted = if weak { AxisSetpoint::Rest } else { self.wanted() };
         let came = self.axis.tick(wanted, &self.load);
-        self.heat_up(if self.is_standing() { 0 } else { torque }, ticks);
+        self.heat_up(if self.is_at_rest() { 0 } else { torque }, ticks);
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {

@@ -31,5 +31,5 @@ pub use config::Config;
 pub use drive::Drive;
 pub use parameters::Refused;
 pub use station::{Station, StationConfig};
-pub use target::{Figures, Target};
+pub use target::{Target, TrafficCounters};
 pub use write_fault::WriteFault;

@@ -138,7 +138,7 @@ impl Drive {
         let inside = |position: &i32| (low..=high).contains(position);
         let position = i32::try_from(value).ok().and_then(nearest_reference).filter(inside);
         let Some(position) = position else { return Err(self.refuses()) };
-        if !self.is_standing() {
+        if !self.is_at_rest() {
             return Err(Refused::State);
         }
         self.offset = f64::from(position) / self.scale().steps_per_turn() * TURN - self.axis.place();

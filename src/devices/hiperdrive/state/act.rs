@@ -91,18 +91,18 @@ impl Unit {
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
             Motor::Expert(expert) => return self.moves.set_endless_allowed(drive, expert),
-            Motor::FreeOutward(direction) => return self.enable_outward(drive, direction, services),
+            Motor::FreeOutward(direction) => return self.enable_outward_jog(drive, direction, services),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;
             }
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
-                let outward = self.moves.is_outward_enabled(drive, direction);
+                let outward = self.moves.is_outward_jog_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: self.moves.jog_effort(drive), outward }
             }
             Motor::SlowJogPress { direction, .. } => {
-                let outward = self.moves.is_outward_enabled(drive, direction);
+                let outward = self.moves.is_outward_jog_enabled(drive, direction);
                 MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward }
             }
             Motor::Lead(goal) => MotionRequest::Lead(goal),

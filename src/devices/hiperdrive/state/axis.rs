@@ -61,7 +61,7 @@ pub enum AxisStep {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reached {
+pub enum StepStatus {
     Done,
     Now,
     Skipped,
@@ -155,7 +155,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
 
-    pub const fn may_be_skipped(self) -> bool {
+    pub const fn is_optional(self) -> bool {
         matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }
 
@@ -218,7 +218,7 @@ impl Axis {
     }
 
     /// Returns the facts known when the set-up ended, or the present facts while it is running.
-    pub fn facts_to_show<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
+    pub fn displayed_facts<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
 
@@ -252,7 +252,7 @@ impl Axis {
         self.outcomes.get(place as usize).copied().flatten()
     }
 
-    pub fn going(&self) -> Option<TestTarget> {
+    pub fn running_test_target(&self) -> Option<TestTarget> {
         self.going.map(|(place, ..)| place)
     }
 
@@ -266,22 +266,22 @@ impl Axis {
         self.chain.end().filter(|step| *step < self.step)
     }
 
-    pub fn step_status(&self, step: AxisStep) -> Reached {
+    pub fn step_status(&self, step: AxisStep) -> StepStatus {
         let is_shown = step == self.step && self.over.is_none();
         match step {
-            AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => {
-                Reached::Failed
+            AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.has_survived() => {
+                StepStatus::Failed
             }
-            _ if self.invalidated_step() == Some(step) => Reached::Failed,
-            _ if is_shown => Reached::Now,
-            _ if self.chain.is_skipped(step) => Reached::Skipped,
-            _ if self.chain.holds(step) => Reached::Done,
-            _ => Reached::Ahead,
+            _ if self.invalidated_step() == Some(step) => StepStatus::Failed,
+            _ if is_shown => StepStatus::Now,
+            _ if self.chain.is_skipped(step) => StepStatus::Skipped,
+            _ if self.chain.holds(step) => StepStatus::Done,
+            _ => StepStatus::Ahead,
         }
     }
 
     /// Returns whether the supply was off, the saved values are present, and the axis has not moved.
-    pub fn survived(&self) -> bool {
+    pub fn has_survived(&self) -> bool {
         self.power.is_some_and(Power::has_survived_power_cycle)
     }
 

@@ -57,7 +57,7 @@ impl VirtualHub {
         }
     }
 
-    fn of_word(word: &str) -> Option<Self> {
+    fn from_word(word: &str) -> Option<Self> {
         [VirtualHub::Four, VirtualHub::Eight].into_iter().find(|hub| hub.word() == Some(word))
     }
 }
@@ -123,7 +123,7 @@ impl HiperdriveForm {
     /// Fills in the entry for a parameter. Returns `false` if no entry can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
-            let hub = VirtualHub::of_word(value);
+            let hub = VirtualHub::from_word(value);
             self.hub = hub.unwrap_or(self.hub);
             return hub.is_some();
         }
@@ -160,7 +160,7 @@ impl HiperdriveForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::connect::parameters::tests::assert_comes_back;
+    use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
     fn links_round_trip_through_the_form() {
@@ -173,7 +173,7 @@ mod tests {
             "enip:192.168.1.5:50123?rpi=5&order=big&udp=2222&timeout=250",
             "replay:monday.trace",
         ];
-        assert_comes_back(&links, |url| HiperdriveForm::from_url(url).url());
+        assert_round_trip(&links, |url| HiperdriveForm::from_url(url).url());
     }
 
     #[test]

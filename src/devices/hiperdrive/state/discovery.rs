@@ -110,7 +110,7 @@ impl Finder for DiscoveryFinder {
     fn act(&mut self, action: DiscoveryAction, form: &mut HiperdriveForm, context: &mut FinderContext<'_>) {
         match action {
             DiscoveryAction::Discover => {
-                let number = context.new_number();
+                let number = context.next_number();
                 self.discovery = Some(Discovery { number, found: None });
                 let services = context.services();
                 let given = services.world.given.get::<DiscoveryStub>().cloned();

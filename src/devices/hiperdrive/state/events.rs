@@ -6,7 +6,7 @@ use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::Explained;
+use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::Services;
 use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents};
@@ -80,7 +80,7 @@ impl Kind for Hiperdrive {
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
-        words::loss(error)
+        words::connection_loss_text(error)
     }
 }
 
@@ -108,7 +108,7 @@ impl Unit {
         }
     }
 
-    fn control_lost(&mut self, services: &mut Services) {
+    fn handle_control_loss(&mut self, services: &mut Services) {
         self.moves.stop();
         // The last data of the drives, including those not yet taken, are from before the loss. The present state is
         // not known.
@@ -168,7 +168,7 @@ impl SessionEvents for Unit {
         }
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.decoder.explain(frame)
     }
 
@@ -195,7 +195,7 @@ impl SessionEvents for Unit {
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            DeviceMessage::ControlLost => self.control_lost(services),
+            DeviceMessage::ControlLost => self.handle_control_loss(services),
             DeviceMessage::RulesUnread(why) => {
                 self.moves.stop();
                 let texts = vec![TEXTS.text(RULES), words::device(&why)];
@@ -240,7 +240,7 @@ impl SessionEvents for Unit {
             }
             HiperdriveOutput::Saved(profile) => self.saved(*profile, services),
             HiperdriveOutput::Prepared(prepared) => self.planned(prepared, services),
-            HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
+            HiperdriveOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.send_heartbeat();
                 self.handle_limit_change();
@@ -265,14 +265,14 @@ impl SessionEvents for Unit {
         }
     }
 
-    fn means_no_response(&self, error: &JobError) -> bool {
-        words::means_no_response(error)
+    fn is_no_response(&self, error: &JobError) -> bool {
+        words::is_no_response(error)
     }
 
-    fn forget_requests(&mut self) {
+    fn discard_requests(&mut self) {
         self.forget_readings();
         self.target = None;
-        self.forget_plan();
+        self.discard_plan();
     }
 
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {

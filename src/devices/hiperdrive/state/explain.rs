@@ -30,7 +30,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![crate::app::explain::not_started_text(why)],
+        JobError::NotStarted(why) => vec![crate::app::explain::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
         }
@@ -38,7 +38,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 }
 
 /// Returns why the connection failed, or `None` if further requests are possible over it.
-pub fn loss(error: &JobError) -> Option<Text> {
+pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
         _ => None,
@@ -46,7 +46,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
 }
 
 /// Returns whether the error means that the link is open but no device replies.
-pub fn means_no_response(error: &JobError) -> bool {
+pub fn is_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 

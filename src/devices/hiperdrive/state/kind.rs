@@ -1,6 +1,6 @@
 //! HIPERDRIVE as a kind of device for the studio, before a device is open.
 
-use super::staged::Staged;
+use super::staged::StagedEdits;
 use super::{HiperdriveForm, Unit};
 use crate::app::services::Services;
 use crate::app::session::Session;
@@ -36,7 +36,7 @@ impl DeviceType for Unit {
     fn begin(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
         let mut unit = Unit::with(session);
         if let Some((profile, ())) = profile {
-            unit.staged = Staged::for_profile(profile.image.clone());
+            unit.staged = StagedEdits::for_profile(profile.image.clone());
             let drives = profile.identity.drives.iter();
             unit.staged.set_families(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
             unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);

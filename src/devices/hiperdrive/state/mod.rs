@@ -47,5 +47,5 @@ pub use request_state::RequestState;
 pub use review::{Review, ReviewState};
 pub use rows::Row;
 pub use ruler::{PositionRangeError, PositionUnit, Ruler};
-pub use staged::{Differs, Edit, EditError, LimitsPolicy, Mark, SavedEdit, Staged, is_editable};
+pub use staged::{Edit, EditError, LimitsPolicy, Mark, SavedEdit, StagedEdits, ValueDifference, is_editable};
 pub use unit::Unit;

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::{HiperdriveAction, Unit};
-use crate::app::action::Opened;
+use crate::app::action::OpenedConnection;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobState, Services};
@@ -19,7 +19,7 @@ impl DeviceModel for Unit {
     type Action = HiperdriveAction;
     type Done = Infallible;
 
-    fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Hiperdrive>, services: &mut Services) {
         SessionEvents::let_go(self, JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));
@@ -32,7 +32,7 @@ impl DeviceModel for Unit {
         self.session.attach_connection(opened, services);
         self.request_temperatures();
         if let Some(line) = self.session.line() {
-            services.brakes.add(Box::new(motion), line.stopper());
+            services.brakes.add(Box::new(motion), line.stop_handle());
         }
         // The identity is read first, then everything else. Nothing is set, and nothing moves.
         self.submit(HiperdriveJob::Hello, services);

@@ -230,7 +230,7 @@ impl DriveMotion {
     }
 
     /// Returns whether the next or current jog in this direction may lead further outside the limits.
-    pub fn is_outward_enabled(&self, drive: DriveNumber, direction: Direction) -> bool {
+    pub fn is_outward_jog_enabled(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
     }
@@ -289,7 +289,7 @@ impl DriveMotion {
             self.experts.remove(&drive);
         }
         if let Some(motion) = &self.motion {
-            motion.allow_endless(drive, expert);
+            motion.allow_endless_run(drive, expert);
         }
     }
 
@@ -367,7 +367,7 @@ impl DriveMotion {
     }
 
     /// Returns the action number and direction of a held jog button of a drive.
-    pub fn held_motion(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
+    pub fn held_jog(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
             Phase::Moving(MotionKind::Run { direction, .. }) => Some((act.number, direction)),

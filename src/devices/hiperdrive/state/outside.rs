@@ -48,24 +48,24 @@ impl Unit {
     ///
     /// # Errors
     /// Returns the reason if the drive may not be jogged.
-    pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
-        let outward = self.moves.is_outward_enabled(drive, direction);
+    pub fn check_can_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
+        let outward = self.moves.is_outward_jog_enabled(drive, direction);
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward })
     }
 
     /// Returns whether this direction may lead further outside the limits and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
-        is_outward && !self.moves.is_outward_enabled(drive, direction)
+        is_outward && !self.moves.is_outward_jog_enabled(drive, direction)
     }
 
     /// Returns whether this direction is blocked but can be enabled for one press.
-    pub fn can_enable_outward(&self, drive: DriveNumber, direction: Direction) -> bool {
+    pub fn can_enable_outward_jog(&self, drive: DriveNumber, direction: Direction) -> bool {
         self.may_move_until_stopped(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
-    pub(super) fn enable_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
-        if self.can_enable_outward(drive, direction) {
+    pub(super) fn enable_outward_jog(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
+        if self.can_enable_outward_jog(drive, direction) {
             return self.moves.free(drive, direction);
         }
         let why = self.may_move_until_stopped(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));

@@ -93,7 +93,7 @@ impl Unit {
     ///
     /// # Errors
     /// Returns the reason if the drive may not do so.
-    pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+    pub fn check_can_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move_until_stopped(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -103,8 +103,8 @@ impl Unit {
     ///
     /// # Errors
     /// Returns the reason if an endless run cannot be enabled.
-    pub fn check_can_allow_endless(&self, drive: DriveNumber) -> Result<(), Text> {
-        let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
+    pub fn check_can_allow_endless_run(&self, drive: DriveNumber) -> Result<(), Text> {
+        let could = self.moves.limits(drive).is_some_and(DriveLimits::is_endless_run_allowed);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
@@ -125,7 +125,7 @@ impl Unit {
         };
         self.check_may_end_motion(drive, request)?;
         match request {
-            MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
+            MotionRequest::Run { end: RunEnd::Endless, .. } => self.check_can_run_endlessly(drive)?,
             MotionRequest::Run { .. } | MotionRequest::Jog { .. } => self.may_move_until_stopped(drive)?,
             _ if request.moves() => self.may_move(drive)?,
             _ => self.check_controllable()?,
@@ -194,7 +194,7 @@ impl Unit {
             let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
             Some(text.with_text("unit", TEXTS.text(own.unit())))
         };
-        ruler.available_measures().filter(wanted).filter_map(place).collect()
+        ruler.available_units().filter(wanted).filter_map(place).collect()
     }
 
     /// Formats a range between two positions with the unit.

@@ -27,7 +27,7 @@ impl Ruler {
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
     /// Returns the number of steps per unit, or `None` for millimetres without a pitch.
-    fn steps_per_measure(self, measure: PositionUnit) -> Option<f64> {
+    fn steps_per_unit(self, measure: PositionUnit) -> Option<f64> {
         let turn = self.scale.steps_per_turn();
         match measure {
             PositionUnit::Steps => Some(1.0),
@@ -39,13 +39,13 @@ impl Ruler {
         }
     }
 
-    pub fn available_measures(self) -> impl Iterator<Item = PositionUnit> {
-        PositionUnit::ALL.into_iter().filter(move |measure| self.steps_per_measure(*measure).is_some())
+    pub fn available_units(self) -> impl Iterator<Item = PositionUnit> {
+        PositionUnit::ALL.into_iter().filter(move |measure| self.steps_per_unit(*measure).is_some())
     }
 
     /// Converts steps to a unit. Returns `None` for millimetres without a pitch.
     pub fn of(self, steps: i64, measure: PositionUnit) -> Option<f64> {
-        Some(steps as f64 / self.steps_per_measure(measure)?)
+        Some(steps as f64 / self.steps_per_unit(measure)?)
     }
 
     /// Returns the step nearest to a position.
@@ -53,7 +53,7 @@ impl Ruler {
     /// # Errors
     /// Returns [`PositionRangeError`] if there is none.
     pub fn steps(self, value: f64, measure: PositionUnit) -> Result<i32, PositionRangeError> {
-        let unit = self.steps_per_measure(measure).ok_or(PositionRangeError::NoPitch)?;
+        let unit = self.steps_per_unit(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
         // Within the range the cast is exact.
@@ -66,7 +66,7 @@ impl Ruler {
 
     /// Returns the number of decimals that distinguishes all steps.
     pub fn decimals(self, measure: PositionUnit) -> usize {
-        let unit = self.steps_per_measure(measure).unwrap_or(1.0);
+        let unit = self.steps_per_unit(measure).unwrap_or(1.0);
         // At most 9: steps per turn have five digits in addition to those of 256.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
@@ -100,8 +100,8 @@ mod tests {
         assert_eq!(of(SPINDLE, 163_840, PositionUnit::Millimetres), 10.0);
         assert_eq!(of(hundredths(), 1234, PositionUnit::Millimetres), 12.34);
         assert_eq!(Ruler::FACTORY.of(1, PositionUnit::Millimetres), None);
-        assert_eq!(Ruler::FACTORY.available_measures().count(), 3);
-        assert_eq!(SPINDLE.available_measures().count(), 4);
+        assert_eq!(Ruler::FACTORY.available_units().count(), 3);
+        assert_eq!(SPINDLE.available_units().count(), 4);
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl Unit {
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
             moves: self.is_moving() || self.moves.is_motion_active(),
-            held: self.moves.held_motion(drive),
+            held: self.moves.held_jog(drive),
             actual,
             actual_at: self.last_report_time(drive),
             position,
@@ -212,7 +212,7 @@ impl Unit {
                 }
                 let act = self.moves.request_motion(drive, request);
                 if let (Some(act), AxisButton::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
-                    axis.note_test_move(place, *target, act);
+                    axis.record_test_move_start(place, *target, act);
                 }
                 return;
             }

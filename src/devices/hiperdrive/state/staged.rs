@@ -18,7 +18,7 @@ pub use edit::{Edit, EditError, LimitsPolicy};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{EditHistoryParts, SteppedEdits};
+use crate::app::{EditHistoryParts, SnapshotEdits};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
@@ -34,7 +34,7 @@ enum BaseSource {
 
 /// The base values, the edited values, and the undo and redo history.
 #[derive(Clone, Debug, Default)]
-pub struct Staged {
+pub struct StagedEdits {
     base_source: BaseSource,
     /// Values of the device or the profile. They are present exactly if the edited values are.
     base: Option<Image>,
@@ -54,7 +54,7 @@ pub(super) type Families = BTreeMap<DriveNumber, Family>;
 pub struct SavedEdit(pub u16, pub Option<i64>);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Differs {
+pub struct ValueDifference {
     pub number: ParameterNumber,
     /// Present value, or `None` if it is not in the profile.
     pub from: Option<i64>,
@@ -69,10 +69,15 @@ pub fn is_editable(row: &ParameterRow) -> bool {
     row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
 }
 
-impl Staged {
+impl StagedEdits {
     /// Creates the edits of a profile, to which missing values can be added.
     pub fn for_profile(image: Image) -> Self {
-        Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
+        StagedEdits {
+            base_source: BaseSource::Profile,
+            wanted: Some(image.clone()),
+            base: Some(image),
+            ..StagedEdits::default()
+        }
     }
 
     /// Sets the families of the drives. Their travel limits later entries of positions.
@@ -118,7 +123,7 @@ impl Staged {
 
     /// Discards all values and edits, for another device.
     pub fn clear(&mut self) {
-        *self = Staged { base_source: self.base_source, ..Staged::default() };
+        *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
 
     /// Returns the values of the device or the profile, or `None` if nothing was read.
@@ -143,13 +148,13 @@ impl Staged {
     }
 
     /// Returns how the edited value of a parameter differs, or `None` if it does not.
-    pub fn differs(&self, number: ParameterNumber) -> Option<Differs> {
+    pub fn differs(&self, number: ParameterNumber) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.get(number), wanted.get(number));
-        (from != to).then_some(Differs { number, from, to })
+        (from != to).then_some(ValueDifference { number, from, to })
     }
 
-    pub fn differences(&self) -> Vec<Differs> {
+    pub fn differences(&self) -> Vec<ValueDifference> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let numbers: std::collections::BTreeSet<_> = base.values.keys().chain(wanted.values.keys()).copied().collect();
         numbers.into_iter().filter_map(|number| self.differs(number)).collect()
@@ -157,7 +162,7 @@ impl Staged {
 
     /// Returns the edited values that differ from the device, as the basis of a plan.
     pub fn edited(&self) -> Image {
-        let wanted = |differs: Differs| Some((differs.number, differs.to?));
+        let wanted = |differs: ValueDifference| Some((differs.number, differs.to?));
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
 
@@ -218,7 +223,7 @@ impl Staged {
     }
 }
 
-impl SteppedEdits for Staged {
+impl SnapshotEdits for StagedEdits {
     type Values = Image;
 
     fn differences_count(&self) -> usize {

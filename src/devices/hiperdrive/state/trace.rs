@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::app::explain::plain;
-use crate::app::{Explained, Text, TraceFault};
+use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::buses::ethernet_ip::protocol::{
     Command, EncapsulationStatus, Frame, GeneralStatus, LogicalKind, Reply, Request, Service,
 };
@@ -24,9 +24,9 @@ impl FrameDecoder {
     /// Maximum number of remembered requests. The host sends the next request after the reply or its time-out.
     const REMEMBERED: usize = 8;
 
-    pub(super) fn explain(&mut self, entry: &TraceEntry) -> Explained {
-        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
-        let broken = |error| Explained::broken(explained::damage_text(&Damage::Packet(error)));
+    pub(super) fn explain(&mut self, entry: &TraceEntry) -> FrameExplanation {
+        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
+        let broken = |error| FrameExplanation::broken(explained::damage_text(&Damage::Packet(error)));
         let frame = match Frame::parse(&bytes) {
             Ok(frame) => frame,
             Err(error) => return broken(error),
@@ -45,12 +45,16 @@ impl FrameDecoder {
             Err(_) => return name.into(),
         };
         let Some(message) = body.message() else {
-            return if is_reply { Explained::broken(explained::damage_text(&Damage::Empty)) } else { name.into() };
+            return if is_reply {
+                FrameExplanation::broken(explained::damage_text(&Damage::Empty))
+            } else {
+                name.into()
+            };
         };
         let explained = match (is_reply, Request::parse(message), Reply::parse(message)) {
             (false, Ok(request), _) => {
                 let meaning = request_texts(&request);
-                self.remember(frame, request);
+                self.remember_request(frame, request);
                 meaning.into()
             }
             (false, Err(_), _) => name.into(),
@@ -59,10 +63,10 @@ impl FrameDecoder {
         };
         // In front of the message are the headers of the frame and of its items.
         let header = if bytes.ends_with(message) { bytes.len() - message.len() } else { 0 };
-        Explained { header, ..explained }
+        FrameExplanation { header, ..explained }
     }
 
-    fn remember(&mut self, frame: Frame, request: Request) {
+    fn remember_request(&mut self, frame: Frame, request: Request) {
         self.requests.truncate(Self::REMEMBERED - 1);
         self.requests.push_front((frame, request));
     }
@@ -74,20 +78,20 @@ impl FrameDecoder {
     }
 }
 
-fn reply_meaning(reply: &Reply, request: Option<&Request>) -> Explained {
+fn reply_meaning(reply: &Reply, request: Option<&Request>) -> FrameExplanation {
     if reply.status != GeneralStatus::OK {
         return reported_fault(plain(reply.status));
     }
     let read = request.filter(|request| request.service == Service::GET && reply.service == Service::GET);
     match read.and_then(parameter_of).and_then(|number| value_texts(number, &reply.data)) {
         Some(Ok(texts)) => texts.into(),
-        Some(Err(error)) => Explained::broken(explained::damage_text(&Damage::Value(error))),
+        Some(Err(error)) => FrameExplanation::broken(explained::damage_text(&Damage::Value(error))),
         None => vec![TEXTS.text("hd_trace.done")].into(),
     }
 }
 
-fn reported_fault(text: Text) -> Explained {
-    Explained { fault: Some(TraceFault::Reported), ..vec![text].into() }
+fn reported_fault(text: Text) -> FrameExplanation {
+    FrameExplanation { fault: Some(TraceFault::Reported), ..vec![text].into() }
 }
 
 fn parameter_of(request: &Request) -> Option<ParameterNumber> {
@@ -158,7 +162,7 @@ mod tests {
         ];
         for (label, text, fault) in cases {
             let told = FrameDecoder::default().explain(&entry(Direction::Received, &text));
-            let words = words_of(&told);
+            let words = english_texts(&told);
             assert_eq!(told.fault, fault, "{label}: {words:?}");
             assert!(!words.concat().is_empty(), "{label}");
         }
@@ -169,7 +173,7 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes }
     }
 
-    fn words_of(explained: &Explained) -> Vec<String> {
+    fn english_texts(explained: &FrameExplanation) -> Vec<String> {
         explained.meaning.iter().map(|text| text.words(Language::English)).collect()
     }
 
@@ -190,7 +194,7 @@ mod tests {
         let mut frame = |direction, context, message: &str| {
             let told = decoder.explain(&entry(direction, &around(context, message)));
             assert_eq!(told.header, 40, "{message}");
-            (words_of(&told), told.fault)
+            (english_texts(&told), told.fault)
         };
         let (sent, received) = (Direction::Sent, Direction::Received);
         let (words, _) = frame(sent, 1, "0E 03 20 65 24 01 30 6B");

@@ -10,7 +10,7 @@ use super::moves::DriveMotion;
 use super::record::Record;
 use super::remembered::ExchangedValues;
 use super::ruler::{PositionUnit, Ruler};
-use super::staged::{Mark, Staged};
+use super::staged::{Mark, StagedEdits};
 use super::trace::FrameDecoder;
 use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
@@ -36,7 +36,7 @@ pub struct Unit {
     pub survey: Option<Survey>,
     pub status: Option<Status>,
     pub check: Option<Vec<CheckLine>>,
-    pub staged: Staged,
+    pub staged: StagedEdits,
     pub record: Record,
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// Start of the session, to which the times of recordings refer.
@@ -81,7 +81,7 @@ impl Unit {
             survey: None,
             status: None,
             check: None,
-            staged: Staged::default(),
+            staged: StagedEdits::default(),
             record: Record::default(),
             records: BTreeMap::new(),
             began: None,

@@ -39,7 +39,7 @@ impl HasMemory for Unit {
         check_device(profile, &own.profile()).is_err()
     }
 
-    fn is_for_another_type(&self, change: &Change) -> bool {
+    fn is_for_other_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         !type_differences(&profile.identity, &own.profile()).is_empty()
     }
@@ -65,7 +65,7 @@ impl HasMemory for Unit {
         self.moves.let_go();
     }
 
-    fn forget_device(&mut self) {
+    fn discard_device_data(&mut self) {
         (self.survey, self.status, self.check, self.refusal) = (None, None, None, None);
         self.staged.clear();
         self.moves.forget();

@@ -13,12 +13,13 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, Reached, words, write_outcome_lines,
+    Axis, AxisAction as Run, AxisButton, AxisStep, DriveFacts, End, Entries, StepStatus, words, write_outcome_lines,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    button, button_with_reason, card, card_with, enabled_button, paragraph, primary_button, row, severity, split,
+    button, button_with_reason, card, card_with_trailing, enabled_button, paragraph, primary_button, row, severity,
+    split,
 };
 use crate::ui::widgets::{StepRow as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
@@ -145,16 +146,16 @@ fn step_list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.step_status(step);
         let state = match reached {
-            Reached::Done => StepState::Done,
-            Reached::Now => StepState::Waiting,
-            Reached::Skipped => StepState::Skipped,
-            Reached::Failed => StepState::Failed,
-            Reached::Ahead => StepState::ToCome,
+            StepStatus::Done => StepState::Done,
+            StepStatus::Now => StepState::Waiting,
+            StepStatus::Skipped => StepState::Skipped,
+            StepStatus::Failed => StepState::Failed,
+            StepStatus::Ahead => StepState::ToCome,
         };
-        let has_result = matches!(reached, Reached::Done | Reached::Failed);
+        let has_result = matches!(reached, StepStatus::Done | StepStatus::Failed);
         let found = match (step, reached) {
-            (AxisStep::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.axis.facts_to_show(shown.seen)).filter(|_| has_result),
+            (AxisStep::Reference, StepStatus::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
+            _ => words::found(shown.axis, step, shown.axis.displayed_facts(shown.seen)).filter(|_| has_result),
         };
         Line {
             title: theme.words(&words::title(step)),
@@ -185,7 +186,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
             ui.label(theme.caption(theme.words(&drive)));
         }
     };
-    card_with(ui, theme, words::title(step), aside, |ui| {
+    card_with_trailing(ui, theme, words::title(step), aside, |ui| {
         paragraph(ui, with_nonbreaking_spaces(theme.words(&words::step_instructions(step, seen))));
         ui.add_space(theme.space.between);
         live_ui(ui, theme, shown);
@@ -277,7 +278,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
 
 fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
-    if step.may_be_skipped() {
+    if step.is_optional() {
         let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
         let allowed = Axis::check_step_settled(shown.looked_at).is_ok() && shown.axis.can_skip(shown.seen);
         if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button_with_reason, message_label, name, paragraph};
-use crate::ui::stop_debounce::{goes_down, press_time, register_stop_press};
+use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 use crate::ui::{Theme, icons};
 
 /// Size of the STOP button, wide enough for a flat hand.
@@ -70,7 +70,7 @@ fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     let response = response
         .on_hover_text(theme.say("hd_bar.stop_hint"))
         .on_disabled_hover_text(say(theme, "hd_bar.stop_without_control"));
-    let pressed = goes_down(ui, &response);
+    let pressed = press_began(ui, &response);
     if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
         register_stop_press(ui.ctx(), studio.is_turned_by_hand(), press_time(ui, pressed));

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, U
 use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
-    card, card_with, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
+    card, card_with_trailing, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -55,7 +55,7 @@ fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action
             actions.push(Action::Command(unit.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, theme, TEXTS.text("hd_device.title"), read, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("hd_device.title"), read, |ui| {
         let Some(identity) = unit.identity() else {
             empty_placeholder(ui, theme, &say(theme, "hd_device.nothing"), None);
             return;
@@ -109,7 +109,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
             actions.push(Action::device(unit.session.id, Hiperdrive::Check));
         }
     };
-    card_with(ui, theme, "check_card.title", run, |ui| {
+    card_with_trailing(ui, theme, "check_card.title", run, |ui| {
         lines_ui(ui, theme, unit.check.as_deref(), TEXTS.text("hd_check.nothing"));
     });
 }
@@ -153,7 +153,7 @@ fn keep_pins_together(text: &str) -> String {
 mod tests {
     use super::{WIRING, keep_pins_together};
     use crate::devices::hiperdrive::state::TEXTS;
-    use crate::ui::wiring::check_notes;
+    use crate::ui::wiring::assert_notes;
 
     #[test]
     fn a_pin_stays_on_the_line_of_its_signal() {
@@ -165,11 +165,11 @@ mod tests {
     /// 4.2 (bus adapter).
     #[test]
     fn the_wiring_card_matches_the_manual() {
-        check_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
-        check_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
-        check_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
-        check_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
-        check_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
-        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be set to 0"]);
+        assert_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
+        assert_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
+        assert_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
+        assert_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
+        assert_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
+        assert_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be set to 0"]);
     }
 }

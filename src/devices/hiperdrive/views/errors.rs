@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{card, card_with, empty_placeholder, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card, card_with_trailing, empty_placeholder, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
@@ -39,7 +39,7 @@ fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
             actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
         }
     };
-    card_with(ui, theme, TEXTS.text("hd_errors.title"), read, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("hd_errors.title"), read, |ui| {
         let Some(status) = unit.drive_status(drive) else {
             empty_placeholder(ui, theme, &say(theme, "hd_errors.unread"), None);
             return;

@@ -10,10 +10,10 @@ use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    button_with_reason, card, card_with, choice, empty_placeholder, enabled_button, entry, folding_card, message_label,
-    options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
+    button_with_reason, card, card_with_trailing, choice, empty_placeholder, enabled_button, entry, folding_card,
+    message_label, options, paragraph, row, show_error_below, show_error_beside, text_entry, two_columns,
 };
-use crate::ui::stop_debounce::{goes_down, press_time, register_stop_press};
+use crate::ui::stop_debounce::{press_began, press_time, register_stop_press};
 
 use crate::ui::{Theme, icons};
 
@@ -68,8 +68,9 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
             theme,
             (Ok(()), &mut *view, &mut *actions),
             |ui, (allowed, view, actions)| {
-                *allowed =
-                    card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position_ui(ui, theme, unit, view, actions));
+                *allowed = card(ui, theme, TEXTS.text("hd_move.title"), |ui| {
+                    move_to_position_ui(ui, theme, unit, view, actions)
+                });
             },
             |ui, (allowed, view, actions)| {
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
@@ -133,7 +134,7 @@ fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
             status_ui(ui, theme, unit, &mut acts);
         }
     };
-    card_with(ui, theme, TEXTS.text("hd_states.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("hd_states.title"), aside, |ui| {
         let drive = unit.drive();
         let actual = unit.actual(drive);
         let present = actual.map(|actual| actual.status.state());
@@ -181,7 +182,7 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
 }
 
 /// Draws the controls for a move to a position. Returns whether the drive may be moved with the entered effort.
-fn to_position_ui(
+fn move_to_position_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,
@@ -213,7 +214,7 @@ fn to_position_ui(
             Some(Phase::Paused { .. }) => {
                 let response =
                     button_with_reason(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
-                let pressed = goes_down(ui, &response);
+                let pressed = press_began(ui, &response);
                 // The button replaces the pause button. A hasty second click was meant for that one.
                 if response.clicked() && !register_stop_press(ui.ctx(), false, press_time(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
@@ -254,7 +255,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     });
     let words = if expert { "hd_run.endless_words" } else { "hd_run.words" };
     paragraph(ui, theme.caption(move_effort_text(theme, unit, words)));
-    let endless = unit.check_can_allow_endless(unit.drive());
+    let endless = unit.check_can_allow_endless_run(unit.drive());
     // The option can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
         if ui.checkbox(&mut expert, say(theme, "hd_run.expert")).changed() {
@@ -407,7 +408,7 @@ pub(super) fn position_entry_ui(
     let mut measure = unit.measure;
     entry(ui, theme, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
-        let measures = ruler.available_measures().map(|own| (own, say(theme, own.unit())));
+        let measures = ruler.available_units().map(|own| (own, say(theme, own.unit())));
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
             if choice(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {

@@ -11,8 +11,8 @@ use crate::devices::hiperdrive::state::network::{self, Form};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    button_with_reason, empty_placeholder, enabled_button, entry, folding_card, folding_card_with, mono_entry, options,
-    paragraph, problem, row, severity, split,
+    button_with_reason, empty_placeholder, enabled_button, entry, folding_card, folding_card_with_trailing, mono_entry,
+    options, paragraph, problem, row, severity, split,
 };
 use crate::ui::{Theme, icons};
 
@@ -49,7 +49,7 @@ fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiStat
             asked.push(Action::Command(id, DeviceCommand::Read));
         }
     };
-    folding_card_with(ui, theme, TEXTS.text("hd_net.title"), read, |ui| {
+    folding_card_with_trailing(ui, theme, TEXTS.text("hd_net.title"), read, |ui| {
         let Some(now) = unit.network_settings() else {
             empty_placeholder(ui, theme, &say(theme, "hd_net.nothing"), None);
             return;

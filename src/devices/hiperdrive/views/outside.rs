@@ -44,7 +44,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         });
         let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
         let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
-        let freed = ways.iter().copied().find(|way| unit.moves.is_outward_enabled(drive, *way));
+        let freed = ways.iter().copied().find(|way| unit.moves.is_outward_jog_enabled(drive, *way));
         let words = match (freed, outside.outside) {
             (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
             (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",

@@ -51,7 +51,7 @@ pub(super) fn page_ui(
     view: &mut DriveParametersUiState,
     actions: &mut Vec<Action>,
 ) {
-    head_ui(ui, theme, view);
+    header_ui(ui, theme, view);
     if let Some(refusal) = &unit.refusal {
         paragraph(ui, RichText::new(theme.words(refusal)).color(theme.palette.bad));
     }
@@ -94,7 +94,7 @@ pub(super) fn page_ui(
 }
 
 /// Draws the search and the filter.
-fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
+fn header_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = say(theme, "hd_params.seek");
         if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == ParameterFilter::Scale

@@ -85,7 +85,13 @@ pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'
         if let Some(hint) = hint {
             response = response.on_hover_text(hint);
         }
-        box_ui(ui.painter(), theme, place, name, look(theme, state, is_present, is_reachable, response.hovered()));
+        state_box_ui(
+            ui.painter(),
+            theme,
+            place,
+            name,
+            look(theme, state, is_present, is_reachable, response.hovered()),
+        );
         if response.has_focus() {
             focus_ring(ui.painter(), theme, place, theme.radius);
         }
@@ -122,7 +128,7 @@ fn look(theme: &Theme, state: State, is_present: bool, is_reachable: bool, hover
     BoxStyle { fill, edge: Stroke::new(1.0, edge), ink: ink.into(), strong: false }
 }
 
-fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxStyle) {
+fn state_box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxStyle) {
     painter.rect_filled(rect, theme.radius, look.fill);
     painter.rect_stroke(rect, theme.radius, look.edge, StrokeKind::Inside);
     let font = |size| if look.strong { theme.bold_font(size) } else { FontId::proportional(size) };

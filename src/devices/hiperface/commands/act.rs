@@ -5,7 +5,7 @@ use serde_json::json;
 use super::args::{DoOptions, HiperfaceAction};
 use super::codes::parse_code;
 use super::inspect::codes_text;
-use super::write::{change_and_show, settings};
+use super::write::{execute_change, settings};
 use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
@@ -24,11 +24,11 @@ const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, re
 pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    let change = match (act.action_of::<HiperfaceAction>(KIND, ACTIONS)?, words.as_slice()) {
+    let change = match (act.parse_action::<HiperfaceAction>(KIND, ACTIONS)?, words.as_slice()) {
         (HiperfaceAction::Reset, []) => return reset(common, output),
         (HiperfaceAction::Check, []) => return check_device(common, output, false),
         (HiperfaceAction::Check, ["restart"]) => return check_device(common, output, true),
-        (HiperfaceAction::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
+        (HiperfaceAction::ConfigureForNow, [value]) => return set_temporary_settings(common, output, value),
         (HiperfaceAction::SetPosition, [wanted]) => set_position(act, wanted, false)?,
         (HiperfaceAction::Synchronise, [wanted]) => set_position(act, wanted, true)?,
         (HiperfaceAction::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
@@ -60,7 +60,7 @@ pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Res
             return Err(usage("NUMBER HEX; specify the present code with --code NUMBER=HEX"));
         }
     };
-    change_and_show(common, output, change, &act.consent, &act.action)
+    execute_change(common, output, change, &act.consent, &act.action)
 }
 
 fn set_position(act: &ActionArgs, text: &str, synchronise: bool) -> Result<Change> {
@@ -145,7 +145,7 @@ fn reset(common: &CommonArgs, output: &Output) -> Result {
     }
 }
 
-fn configure_for_now(common: &CommonArgs, output: &Output, value: &str) -> Result {
+fn set_temporary_settings(common: &CommonArgs, output: &Output, value: &str) -> Result {
     let settings = settings(value)?;
     match Runner::open(common)?.run(HiperfaceJob::ConfigureForNow(settings))? {
         HiperfaceOutput::Configured => {

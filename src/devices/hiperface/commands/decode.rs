@@ -4,7 +4,7 @@ use serde_json::Map;
 
 use crate::bits::{hex, hex_compact};
 use crate::cli::Result;
-use crate::cli::decode::{Explained, frames, show};
+use crate::cli::decode::{FrameExplanation, frames, show};
 use crate::cli::output::Output;
 use crate::devices::hiperface::protocol::{Frame, Request, describe};
 use crate::devices::hiperface::state::explain as words;
@@ -15,7 +15,7 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     for bytes in &frames(words)? {
         let words = describe(bytes, request.as_ref());
         let meaning = words.map(|facts| facts.iter().map(|facts| words::frame(facts).terminal_text()).collect());
-        explained.push(Explained {
+        explained.push(FrameExplanation {
             shown: hex(bytes),
             compact: hex_compact(bytes),
             meaning: meaning.map_err(|error| error.to_string()),

@@ -12,7 +12,7 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected_output};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperface::commands::run::{Runner, announced_codes};
+use crate::devices::hiperface::commands::run::{Runner, reported_codes};
 use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
@@ -206,7 +206,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
         output.print(table.header())?;
     }
     // A status code announced during identification also applies to this position.
-    let mut codes_before = announced_codes(&runner);
+    let mut codes_before = reported_codes(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {
         show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
@@ -233,7 +233,7 @@ fn show(
         Err(error) if error.is_without_position() => match table {
             Some(table) => {
                 output.remark(&position_error_text(&error));
-                output.print(&table.row_without_position(&announced_codes(runner)))
+                output.print(&table.row_without_position(&reported_codes(runner)))
             }
             None => show_no_position(output, &error),
         },

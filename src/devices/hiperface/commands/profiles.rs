@@ -50,7 +50,7 @@ impl ProfileCommands for HiperfaceCommands {
             output.remark(&words::other_type(types).terminal_text());
         }
         check_copy_decisions(output, &prepared, restore.dry_run)?;
-        if let Some(text) = words::created_left(&prepared.created_left) {
+        if let Some(text) = words::remaining_created_fields_text(&prepared.created_left) {
             output.remark(&text.terminal_text());
         }
         for item in &prepared.missing {

@@ -36,7 +36,7 @@ impl Runs for Hiperface {
     /// Prints each announced status code on its own line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
-            say(&format!("{}\n", words::codes_unheard(*count).terminal_text()));
+            say(&format!("{}\n", words::unanswered_codes(*count).terminal_text()));
         }
         for code in codes(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };
@@ -49,7 +49,7 @@ impl Runs for Hiperface {
     }
 }
 
-pub(super) fn announced_codes(runner: &Runner) -> Vec<StatusCode> {
+pub(super) fn reported_codes(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }
 

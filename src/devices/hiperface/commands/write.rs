@@ -9,7 +9,7 @@ use crate::cli::consent::{check_wear, confirm_plan, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
 use crate::cli::plan::{self, WriteSummary};
-use crate::cli::profiles::show_changed;
+use crate::cli::profiles::show_changes;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared};
@@ -21,11 +21,11 @@ use crate::result_of;
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
     let change = parse_change(item, &write.value)?;
-    change_and_show(common, output, change, &write.consent, &item.to_string())
+    execute_change(common, output, change, &write.consent, &item.to_string())
 }
 
 /// Prepares a change, asks for consent, executes it and prints the result.
-pub(super) fn change_and_show(
+pub(super) fn execute_change(
     common: &CommonArgs,
     output: &Output,
     change: Change,
@@ -42,7 +42,7 @@ pub(super) fn change_and_show(
     if changes_code {
         output.remark("An access code cannot be read back; the encoder acknowledged it.");
     }
-    show_changed(output, item, &operations, &changes, &spent)
+    show_changes(output, item, &operations, &changes, &spent)
 }
 
 fn parse_change(item: Item, value: &str) -> Result<Change> {
@@ -59,11 +59,11 @@ fn parse_change(item: Item, value: &str) -> Result<Change> {
             Ok(Change::Store(vec![(range, bytes)]))
         }
         Item::Status(number) => {
-            let status = DataFieldStatus::from_byte(byte_within(item, value, 0x80..=0xFF)?);
+            let status = DataFieldStatus::from_byte(parse_byte_in_range(item, value, 0x80..=0xFF)?);
             Ok(Change::Redefine { number, status })
         }
         Item::Address => {
-            let byte = byte_within(item, value, 0x40..=0x5F)?;
+            let byte = parse_byte_in_range(item, value, 0x40..=0x5F)?;
             let address = DeviceAddress::new(byte).ok_or_else(|| out_of_range(item, value, 0x40, 0x5F))?;
             Ok(Change::SetAddress(address))
         }
@@ -80,7 +80,7 @@ fn parse_change(item: Item, value: &str) -> Result<Change> {
 
 /// Parses a settings byte. Reserved values are refused.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
-    let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
+    let settings = LineSettings::from_byte(parse_byte_in_range(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
         return Ok(settings);
     }
@@ -91,7 +91,7 @@ pub(super) fn settings(value: &str) -> Result<LineSettings> {
     )]))
 }
 
-fn byte_within(item: Item, value: &str, range: std::ops::RangeInclusive<u8>) -> Result<u8> {
+fn parse_byte_in_range(item: Item, value: &str, range: std::ops::RangeInclusive<u8>) -> Result<u8> {
     let number = number(item, value)?;
     u8::try_from(number)
         .ok()

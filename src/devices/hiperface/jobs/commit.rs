@@ -1,13 +1,13 @@
 //! Execution of a plan.
 
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
-use crate::devices::hiperface::procedures::write::EncoderWrite;
+use crate::devices::hiperface::procedures::write::EncoderWriter;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
 use crate::devices::hiperface::profile::{Base, Op, Recorded, SingleValue, created_fields};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -17,7 +17,7 @@ pub(super) fn commit(
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-    let mut write = EncoderWrite::new(encoder.master(context), &commit.prepared.identity);
+    let mut write = EncoderWriter::new(encoder.master(context), &commit.prepared.identity);
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
 }
 
@@ -31,8 +31,8 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHead<'_, Self> {
-        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
+    fn head(&self) -> PlanHeader<'_, Self> {
+        PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -62,6 +62,6 @@ impl Planned for Prepared {
         }
         let mut profile = profile_of(&self.identity, base.fields.clone(), recorded);
         profile.created = created_fields(&self.plan);
-        backup_of(Body::new(profile)).emit()
+        backup_document(Body::new(profile)).emit()
     }
 }

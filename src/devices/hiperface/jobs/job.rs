@@ -156,14 +156,14 @@ pub struct Prepared {
     /// Data fields that the undone write created and that remain in place. They have changed since, or are not the last
     /// fields.
     pub created_left: Vec<u8>,
-    pub other_type: Option<OtherType>,
+    pub other_type: Option<TypeMismatch>,
     /// Requested position, if the plan sets another one to preserve the phase.
     pub wanted_position: Option<u32>,
 }
 
 /// Type of a profile, and the different type of the encoder to which it is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OtherType {
+pub struct TypeMismatch {
     pub profile: u8,
     pub device: u8,
 }

@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 pub use commit::device_key;
 pub use job::{
-    Change, ChangeKind, Commit, Committed, DeviceMessage, HiperfaceJob, HiperfaceOutput, JobError, JobStep, OtherType,
-    Prepared, SavedProfile, Value, WEAR_LIMIT,
+    Change, ChangeKind, Commit, Committed, DeviceMessage, HiperfaceJob, HiperfaceOutput, JobError, JobStep, Prepared,
+    SavedProfile, TypeMismatch, Value, WEAR_LIMIT,
 };
 pub use open::{check, may_have_other_master, open};
 pub use types::{TypeTableFileError, encoder_types};
@@ -155,7 +155,7 @@ impl Device for Hiperface {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn take_remark(&mut self) -> Option<DeviceMessage> {
+    fn take_device_message(&mut self) -> Option<DeviceMessage> {
         let codes =
             Some(self.station.take_undisplayed_codes()).filter(|codes| !codes.is_empty()).map(DeviceMessage::Codes);
         codes.or_else(|| self.lost_codes_message())
@@ -181,7 +181,7 @@ impl Device for Hiperface {
 
 impl Hiperface {
     fn lost_codes_message(&mut self) -> Option<DeviceMessage> {
-        Some(self.station.take_unheard_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
+        Some(self.station.take_missed_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 
     fn carry_out(
@@ -269,7 +269,7 @@ fn read_item(master: &mut Master<'_>, item: Item) -> Result<Value, JobError> {
 
 fn read_value(master: &mut Master<'_>, item: Item) -> Result<Value, Error> {
     Ok(match item {
-        Item::Field(range) => Value::Bytes(read_part(master, range)?),
+        Item::Field(range) => Value::Bytes(read_field_range(master, range)?),
         Item::Status(field) => Value::Number(read_field_status(master, field)?.byte().into()),
         Item::Analogue(channel) => {
             let value = read_analogue(master, channel)?;
@@ -281,7 +281,7 @@ fn read_value(master: &mut Master<'_>, item: Item) -> Result<Value, Error> {
     })
 }
 
-fn read_part(master: &mut Master<'_>, range: FieldRange) -> Result<Vec<u8>, Error> {
+fn read_field_range(master: &mut Master<'_>, range: FieldRange) -> Result<Vec<u8>, Error> {
     let status = read_field_status(master, range.field)?;
     let size = status.size().bytes();
     let count = range.count.unwrap_or(size.saturating_sub(range.start));

@@ -7,7 +7,7 @@ use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, open_bytes, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{check_parameters, inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to a HIPERFACE encoder without opening it.
@@ -32,7 +32,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     let (station, config) = read(url)?;
     let types = encoder_types(&store)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let wire = open_bytes(url, station.format, &clock, || {
+    let wire = open_byte_stream(url, station.format, &clock, || {
         let mut link = inside(Bus::new(&config), &clock);
         link.set_format(station.format)?;
         Ok(link)

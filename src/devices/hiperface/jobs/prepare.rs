@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Hiperface, JobError, JobStep, OtherType, Prepared, device_key};
-use crate::devices::hiperface::procedures::write::{check_address_is_free, read_guarded_fields, read_memory};
+use super::{Change, Hiperface, JobError, JobStep, Prepared, TypeMismatch, device_key};
+use crate::devices::hiperface::procedures::write::{check_address_is_free, read_memory, read_protected_fields};
 use crate::devices::hiperface::procedures::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
@@ -139,7 +139,7 @@ fn restore(
     prepared.created_left = created_left;
     let of_profile = profile.identity.encoder_type;
     prepared.other_type =
-        (of_profile != encoder_type).then_some(OtherType { profile: of_profile, device: encoder_type });
+        (of_profile != encoder_type).then_some(TypeMismatch { profile: of_profile, device: encoder_type });
     Ok(common.plan)
 }
 
@@ -173,7 +173,7 @@ fn change_code(
     new: crate::devices::hiperface::protocol::AccessCode,
 ) -> Result<HiperfacePlan, JobError> {
     let old = master.station().codes.get(number);
-    let (memory, fields) = read_guarded_fields(master, number)?;
+    let (memory, fields) = read_protected_fields(master, number)?;
     let ops = if old == new { vec![] } else { vec![Op::ChangeCode { number, old, new }] };
     Ok(HiperfacePlan { base: Base { field_count: memory.fields, fields, scalars: Vec::new() }, ops })
 }

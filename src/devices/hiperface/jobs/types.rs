@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn store_with(own: &[u8]) -> (tempfile::TempDir, Store) {
+    fn store_with_table(own: &[u8]) -> (tempfile::TempDir, Store) {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         fs::create_dir_all(store.device_file(KIND).parent().unwrap()).unwrap();
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn a_users_encoder_type_takes_precedence() {
-        let (_root, store) = store_with("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
+        let (_root, store) = store_with_table("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
         let types = encoder_types(&store).unwrap();
         assert_eq!(types.find(0x37).unwrap().name, "own");
         assert_eq!(types.find(0x22), EncoderTypes::built_in().find(0x22));
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_broken_table_is_reported_with_its_location() {
-        let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
+        let (_root, store) = store_with_table(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = encoder_types(&store).unwrap_err();
         let StoreError::Refused(cause) = &error else { panic!("{error:?}") };
         let broken = cause.get::<TypeTableFileError>().unwrap();
@@ -72,7 +72,7 @@ mod tests {
         let text = error.to_string();
         assert!(text.contains("hiperface.ron, line 2, column "), "{text}");
 
-        let (_root, store) = store_with(b"(types: \xFF)");
+        let (_root, store) = store_with_table(b"(types: \xFF)");
         let error = encoder_types(&store).unwrap_err();
         assert!(
             matches!(&error, StoreError::File(FileError { problem: FileErrorKind::NotUtf8 { offset: 8 }, .. })),

@@ -22,7 +22,7 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-pub(super) struct Timed {
+pub(super) struct TimedReply {
     pub(super) reply: Reply,
     /// Time of the falling edge of the reply's first start bit.
     pub(super) at: Moment,
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    pub(super) fn request_with_time(&mut self, request: &Request) -> Result<Timed, Error> {
+    pub(super) fn request_with_time(&mut self, request: &Request) -> Result<TimedReply, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -170,7 +170,7 @@ impl<'a> Master<'a> {
         let sent_at = self.now();
         self.send(&frame, sent_at)?;
         let timing = self.station.timing();
-        let end = sent_at + timing.characters(frame.bytes().len()) + timing.timeout;
+        let end = sent_at + timing.time_of_characters(frame.bytes().len()) + timing.timeout;
         let mut echo = Vec::new();
         while self.now() < end {
             self.line.receive(end, &mut echo)?;
@@ -210,14 +210,14 @@ impl<'a> Master<'a> {
     }
 
     /// Reads the status codes that a reply announces, and returns a refusal as an error.
-    pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
+    pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<TimedReply, Error> {
         self.station.line.clear_error();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
         if *pending && request.command() != Command::ReadStatus {
             self.collect_codes()?;
         }
         match answered.answer {
-            Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at, sender: answered.sender }),
+            Answer::Reply { reply, .. } => Ok(TimedReply { reply, at: answered.at, sender: answered.sender }),
             Answer::Rejected { codes, .. } => Err(Error::Rejected { command: request.command(), codes }),
         }
     }

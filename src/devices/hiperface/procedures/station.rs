@@ -87,7 +87,7 @@ pub struct Station {
     /// Status codes for the logbook. This is their only copy, because 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
     /// Number of missing or damaged replies to 50h. Each of them may have contained a status code.
-    pub(super) codes_unheard: u32,
+    pub(super) unanswered_codes: u32,
     /// Whether every value must be read twice because it will be stored. This applies even to a line without errors.
     pub(super) thorough: bool,
     /// Maximum number of bytes per transfer. It is halved if the line damages long replies, and doubled otherwise.
@@ -105,7 +105,7 @@ impl Station {
             geometry: None,
             codes_met: Vec::new(),
             codes_read: Vec::new(),
-            codes_unheard: 0,
+            unanswered_codes: 0,
             thorough: false,
             chunk: MAX_TRANSFER,
         }
@@ -148,8 +148,8 @@ impl Station {
 
     /// Takes the number of missing or damaged replies to 50h since the last call. Each of them may have contained a
     /// status code.
-    pub fn take_unheard_code_count(&mut self) -> u32 {
-        std::mem::take(&mut self.codes_unheard)
+    pub fn take_missed_code_count(&mut self) -> u32 {
+        std::mem::take(&mut self.unanswered_codes)
     }
 
     pub fn take_undisplayed_codes(&mut self) -> Vec<StatusCode> {

@@ -65,7 +65,7 @@ pub(super) fn read_survey(
     let mut unreadable = Vec::new();
     let fields = match reading {
         Reading::Whole => read_all_fields(master, count, progress)?,
-        Reading::AsFarAsPossible => read_readable_fields(master, count, &mut unreadable, progress)?,
+        Reading::AsFarAsPossible => read_accessible_fields(master, count, &mut unreadable, progress)?,
     };
     // A restore needs neither value, so a refusal does not end the reading.
     let position = read_sample(master, identity.geometry);
@@ -77,7 +77,7 @@ pub(super) fn read_survey(
 }
 
 /// Reads all fields that can be read. The others are reported with their status, if it is known.
-fn read_readable_fields(
+fn read_accessible_fields(
     master: &mut Master<'_>,
     count: u8,
     unreadable: &mut Vec<UnreadableField>,

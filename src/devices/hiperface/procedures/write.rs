@@ -31,20 +31,20 @@ pub struct EndState {
     pub unlocked: Vec<u8>,
 }
 
-pub struct EncoderWrite<'w, 'm> {
+pub struct EncoderWriter<'w, 'm> {
     master: Master<'m>,
     identity: &'w Identity,
     left: EndState,
 }
 
-impl<'w, 'm> EncoderWrite<'w, 'm> {
+impl<'w, 'm> EncoderWriter<'w, 'm> {
     /// Creates a writer for an encoder with the identity on which the plan is based.
     pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
-        EncoderWrite { master, identity, left: EndState::default() }
+        EncoderWriter { master, identity, left: EndState::default() }
     }
 }
 
-impl Write for EncoderWrite<'_, '_> {
+impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;
@@ -360,7 +360,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
 ///
 /// # Errors
 /// Errors of the exchange.
-pub fn read_guarded_fields(
+pub fn read_protected_fields(
     master: &mut Master<'_>,
     number: AccessCodeNumber,
 ) -> Result<(FreeMemory, Vec<FieldImage>), Error> {

@@ -348,7 +348,7 @@ mod tests {
         Request::parse(&Frame::parse(bytes).unwrap())
     }
 
-    fn framed(bytes: &[u8]) -> Vec<u8> {
+    fn frame_with_checksum(bytes: &[u8]) -> Vec<u8> {
         let mut frame = bytes.to_vec();
         frame.push(super::super::checksum(bytes));
         frame
@@ -371,7 +371,7 @@ mod tests {
             (&[0x40, 0x67, 0xD4], StatusCode::ARGUMENT),
         ];
         for (bytes, status) in cases {
-            assert_eq!(parse(&framed(bytes)).unwrap_err().status(), status, "{bytes:02X?}");
+            assert_eq!(parse(&frame_with_checksum(bytes)).unwrap_err().status(), status, "{bytes:02X?}");
         }
     }
 

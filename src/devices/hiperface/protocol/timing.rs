@@ -25,7 +25,7 @@ impl Timing {
     /// Creates the timing for a character format. The time-out is 44 bits if `long_timeout` is set, or else 11 bits.
     pub fn new(format: CharacterFormat, long_timeout: bool) -> Self {
         let bits = if long_timeout { 44 } else { 11 };
-        Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
+        Timing { character: format.character_time(), timeout: format.baud.duration_of_bits(bits) }
     }
 
     /// Creates the timing for a settings byte, or returns `None` if the byte contains reserved values.
@@ -39,11 +39,11 @@ impl Timing {
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);
-        self.characters(sent + reply) + self.timeout + request.command().row().max_time
+        self.time_of_characters(sent + reply) + self.timeout + request.command().row().max_time
     }
 
     /// Returns the duration of `count` consecutive characters.
-    pub fn characters(&self, count: usize) -> Duration {
+    pub fn time_of_characters(&self, count: usize) -> Duration {
         self.character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
     }
 }

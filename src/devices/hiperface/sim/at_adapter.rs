@@ -16,9 +16,9 @@ parameters! {
 /// Virtual encoder with factory settings. The settings of a virtual adapter can request it on the adapter's serial
 /// line.
 #[derive(Clone, Copy, Debug)]
-pub struct AtAdapter;
+pub struct AttachableEncoder;
 
-impl AttachableKind for AtAdapter {
+impl AttachableKind for AttachableEncoder {
     fn keys(&self) -> &'static [&'static str] {
         Settings::KEYS
     }

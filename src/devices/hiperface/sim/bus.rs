@@ -199,7 +199,7 @@ impl VirtualLine for Bus {
         }
     }
 
-    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
+    fn transmit_from_host(&mut self, start: Moment, bytes: &[u8]) -> Moment {
         self.drive(LineDriver::Host, start, self.wires.host, bytes)
     }
 

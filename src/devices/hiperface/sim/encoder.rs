@@ -294,7 +294,7 @@ impl Encoder {
             Some(first) if *first == self.address().byte() => false,
             _ => return,
         };
-        let frame = if reception.overlong { Err(StatusCode::LENGTH) } else { valid_frame(reception) };
+        let frame = if reception.overlong { Err(StatusCode::LENGTH) } else { validate_frame(reception) };
         if frame.is_err() && broadcast {
             return;
         }
@@ -349,7 +349,8 @@ impl Encoder {
         };
         let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
         // The settings were in use when the request was received, so they contain no reserved values.
-        let talk = Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
+        let talk =
+            Timing::from_settings(settings).map_or(Duration::ZERO, |timing| timing.time_of_characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
         if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
             // The new settings apply from the end of the reply. Until then nothing is received.
@@ -371,7 +372,7 @@ impl Encoder {
 }
 
 /// Checks parity, checksum and length, in the order of the reference.
-fn valid_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
+fn validate_frame(reception: &IncomingFrame) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);
     }

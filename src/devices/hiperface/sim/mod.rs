@@ -23,7 +23,7 @@ mod shaft;
 #[cfg(test)]
 mod tests;
 
-pub use at_adapter::AtAdapter;
+pub use at_adapter::AttachableEncoder;
 pub use bus::Bus;
 pub use config::Config;
 pub use electronics::Wear;

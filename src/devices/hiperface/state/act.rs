@@ -47,7 +47,7 @@ impl Encoder {
             HiperfaceAction::Plan(change) => self.plan(change, services),
             HiperfaceAction::PlanAgain(options) => {
                 if let Some(review) = &self.session.review {
-                    self.prepare_plan_again(with_options(&review.change, options), services);
+                    self.refresh_plan(with_options(&review.change, options), services);
                 }
             }
             HiperfaceAction::ForceWear(force) => self.force_wear(force),

@@ -6,7 +6,7 @@ use super::commutation::Commutation;
 use super::meaning::Meaning;
 use super::record::Record;
 use super::rest::RestReadingRequest;
-use super::{Staged, rules};
+use super::{StagedEdits, rules};
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile, Session, Source};
 use crate::app::{PendingEdits, Severity, Text, explain};
@@ -20,7 +20,7 @@ use crate::devices::hiperface::state::explain as words;
 pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
-    pub staged: Staged,
+    pub staged: StagedEdits,
     /// Status codes that the encoder has reported, or `None` if they were never read.
     pub codes: Option<Vec<StatusCode>>,
     /// Reasons why data fields could not be read, by field number. Fields with an unknown access code are not included.
@@ -52,7 +52,7 @@ impl Encoder {
         Encoder {
             session,
             identity: None,
-            staged: Staged::default(),
+            staged: StagedEdits::default(),
             codes: None,
             unreadable: BTreeMap::new(),
             line_quality: LineQuality::default(),

@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
-use crate::app::Explained;
+use crate::app::FrameExplanation;
 use crate::app::review::written_texts;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{EarlyEnd, HasMemory, Kind, SessionEvents, Source, first};
@@ -63,7 +63,7 @@ impl Kind for Hiperface {
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
-        explained::loss(error)
+        explained::connection_loss_text(error)
     }
 }
 
@@ -172,7 +172,7 @@ impl SessionEvents for Encoder {
         self.add_samples(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.meaning.of(frame)
     }
 
@@ -180,7 +180,7 @@ impl SessionEvents for Encoder {
         match remark {
             DeviceMessage::Codes(codes) => self.add_announced_codes(codes, services),
             DeviceMessage::CodesUnheard(count) => {
-                let text = explained::codes_unheard(count);
+                let text = explained::unanswered_codes(count);
                 services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
             }
             DeviceMessage::Line(quality) => self.line_quality = quality,
@@ -206,7 +206,7 @@ impl SessionEvents for Encoder {
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
-            HiperfaceOutput::Rest(rest) => self.take_rest_reading(rest),
+            HiperfaceOutput::Rest(rest) => self.handle_rest_reading(rest),
             HiperfaceOutput::Value(value) => self.apply_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);
@@ -226,7 +226,7 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::CodeNoted => self.submit_access_codes(services),
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
             HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
-            HiperfaceOutput::Committed(committed) => self.committed(committed, services),
+            HiperfaceOutput::Committed(committed) => self.handle_commit_end(committed, services),
             // Searches run in a separate session.
             HiperfaceOutput::Found(_) => {}
         }
@@ -234,7 +234,7 @@ impl SessionEvents for Encoder {
 
     /// Returns whether the error means that the encoder does not respond. Invalid bytes have this meaning only right
     /// after connecting.
-    fn means_no_response(&self, error: &JobError) -> bool {
+    fn is_no_response(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
             JobError::Interrupted { interrupted, .. } => &interrupted.cause,
@@ -243,10 +243,10 @@ impl SessionEvents for Encoder {
         cause.is_lost() || (self.session.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
     }
 
-    fn forget_requests(&mut self) {
+    fn discard_requests(&mut self) {
         self.asked = None;
         self.cancel_rest_reading();
-        self.forget_plan();
+        self.discard_plan();
     }
 
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
@@ -278,7 +278,7 @@ impl SessionEvents for Encoder {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.end_job(self.session.id, id, JobState::Failed(why.clone()));
-        let stands_there = self.take_rest_failure(&why);
+        let stands_there = self.handle_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
             // The encoder does not have this channel. This is a result, shown where the reading was requested.
             self.analogue.insert(channel, Err(why));
@@ -288,7 +288,7 @@ impl SessionEvents for Encoder {
         self.session.save_to = None;
         let gone = Hiperface::connection_error(error);
         self.apply_completed_steps(error, services);
-        let silent = gone.is_none() && self.means_no_response(error);
+        let silent = gone.is_none() && self.is_no_response(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
         if gone.is_none() && !silent && !garbled {
             self.session.answers();
@@ -301,7 +301,7 @@ impl SessionEvents for Encoder {
                 }
                 self.connection_lost(why, services);
             }
-            None if silent => self.session.mark_silent(texts, services),
+            None if silent => self.session.mark_unresponsive(texts, services),
             None => {
                 self.session.report(Severity::Error, texts, is_shown || stands_there, services);
                 if error.has_begun() {

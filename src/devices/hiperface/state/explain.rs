@@ -35,7 +35,7 @@ pub use words::{
 
 use crate::app::Text;
 use crate::app::explain::{link, not_started_text};
-use crate::devices::hiperface::jobs::{ChangeKind, JobError, OtherType};
+use crate::devices::hiperface::jobs::{ChangeKind, JobError, TypeMismatch};
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownMeaningField};
@@ -46,7 +46,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![not_started_text(why)],
+        JobError::NotStarted(why) => vec![not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             interruption_text(interrupted, backup, *planned, *kind)
         }
@@ -79,7 +79,7 @@ pub fn interruption_text(interrupted: &Interrupted, backup: &Path, planned: usiz
 }
 
 /// Returns the reason why the connection was lost, or `None` if it can still be used.
-pub fn loss(error: &JobError) -> Option<Text> {
+pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
         _ => None,
@@ -176,18 +176,18 @@ pub fn unknown_field(field: &UnknownMeaningField) -> Text {
 }
 
 /// Returns the message for created fields that remain after the write is undone, or `None` if there are none.
-pub fn created_left(fields: &[u8]) -> Option<Text> {
+pub fn remaining_created_fields_text(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
 }
 
-pub fn codes_unheard(count: u32) -> Text {
+pub fn unanswered_codes(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
 /// Returns the message for a profile of another encoder type.
-pub fn other_type(types: OtherType) -> Text {
-    let OtherType { profile, device } = types;
+pub fn other_type(types: TypeMismatch) -> Text {
+    let TypeMismatch { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
@@ -205,7 +205,7 @@ pub fn plan(error: &PlanError) -> Text {
             let named = |number: &str| if number.is_empty() { "–".to_owned() } else { number.to_owned() };
             Text::new("plan.other_device").with("profile", named(profile)).with("device", named(device))
         }
-        PlanError::OtherType { profile, device } => {
+        PlanError::TypeMismatch { profile, device } => {
             TEXTS.text("plan.other_type").with("profile", type_name(*profile)).with("device", type_name(*device))
         }
         PlanError::SizeFixed { field, profile, device } => {
@@ -282,9 +282,9 @@ mod tests {
         let interrupted = Box::new(cut_off(gone(), 1));
         let backup = Path::new("b.ron").to_owned();
         let error = JobError::Interrupted { interrupted, backup, planned: 4, kind: ChangeKind::Restore };
-        assert_eq!(loss(&error).unwrap().id(), "link.lost");
-        assert_eq!(loss(&JobError::Device(gone())).unwrap().id(), "link.lost");
-        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+        assert_eq!(connection_loss_text(&error).unwrap().id(), "link.lost");
+        assert_eq!(connection_loss_text(&JobError::Device(gone())).unwrap().id(), "link.lost");
+        assert_eq!(connection_loss_text(&JobError::Device(Error::NeverSilent)), None);
     }
 
     #[test]

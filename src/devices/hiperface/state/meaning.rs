@@ -1,6 +1,6 @@
 //! Explanation of frames in the trace. A reply is explained together with the request before it.
 
-use crate::app::{Explained, Text, TraceFault};
+use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{Answer, Frame, FrameDetail, Reply, Request, StatusCode, describe};
 use crate::devices::hiperface::state::explain as words;
@@ -14,41 +14,41 @@ pub(super) struct Meaning {
 
 impl Meaning {
     /// Explains a frame without revealing access codes.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.sent(&bytes),
             (None, Direction::Sent) => self.sent(&with_checksum(entry.bytes.filled(0))),
             (Some(bytes), Direction::Received) => self.received(&bytes),
             (None, Direction::Received) => {
                 self.request = None;
-                Explained::broken(Text::new("trace.hidden"))
+                FrameExplanation::broken(Text::new("trace.hidden"))
             }
         }
     }
 
-    fn sent(&mut self, bytes: &[u8]) -> Explained {
+    fn sent(&mut self, bytes: &[u8]) -> FrameExplanation {
         let frame = Frame::parse(bytes).ok();
         self.request = frame.and_then(|frame| Some((frame.address, Request::parse(&frame).ok()?)));
         let facts = describe(bytes, None).unwrap_or_default();
         facts.iter().map(words::frame).collect::<Vec<Text>>().into()
     }
 
-    fn received(&mut self, bytes: &[u8]) -> Explained {
+    fn received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let asked = self.request.take();
         let answer = match asked.as_ref().map(|(address, request)| request.parse_reply(*address, bytes)) {
-            Some(Err(error)) => return Explained::broken(words::damage_text(&Damage::Reply(error))),
+            Some(Err(error)) => return FrameExplanation::broken(words::damage_text(&Damage::Reply(error))),
             Some(Ok(answer)) => Some(answer),
             None => None,
         };
         let facts = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
             Ok(facts) => facts,
-            Err(error) => return Explained::broken(words::damage_text(&Damage::Reply(error.into()))),
+            Err(error) => return FrameExplanation::broken(words::damage_text(&Damage::Reply(error.into()))),
         };
         // The heading already contains the facts of the request. Only the other facts of the reply are added.
         let known = |facts: &FrameDetail| asked.is_some() && matches!(facts, FrameDetail::Heading { .. });
         let meaning: Vec<Text> = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(is_status_report).map(|_| TraceFault::Reported);
-        Explained { fault, ..meaning.into() }
+        FrameExplanation { fault, ..meaning.into() }
     }
 }
 

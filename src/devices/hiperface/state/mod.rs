@@ -34,4 +34,4 @@ pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use rules::Allowed;
 pub use search::{EncoderSearchForm, Search, SearchAction};
-pub use staged::{ByteEditError, Staged};
+pub use staged::{ByteEditError, StagedEdits};

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::{Encoder, HiperfaceAction};
-use crate::app::action::Opened;
+use crate::app::action::OpenedConnection;
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::SessionEvents;
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
@@ -20,7 +20,7 @@ impl DeviceModel for Encoder {
         Box::new(move |session| codes.apply_codes(session.access_codes_mut()))
     }
 
-    fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Hiperface>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.session.attach_connection(opened, services);

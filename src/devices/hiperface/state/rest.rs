@@ -25,7 +25,7 @@ impl Encoder {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    pub(super) fn take_rest_reading(&mut self, rest: RestPosition) {
+    pub(super) fn handle_rest_reading(&mut self, rest: RestPosition) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Ok(rest));
             return;
@@ -35,7 +35,7 @@ impl Encoder {
     }
 
     /// Handles a failed job. Returns whether the job was a reading at rest, whose error is then shown with the request.
-    pub(super) fn take_rest_failure(&mut self, why: &Text) -> bool {
+    pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));
             return true;

@@ -36,7 +36,7 @@ impl Reviewable for Hiperface {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::Mounting => Some(&mut options.with_mounting),
             Permit::Recreate => Some(&mut options.recreate),
-            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::TypeMismatch => Some(&mut options.allow_other_type),
             Permit::Copy(field) => Some(options.copy.entry(field).or_insert(false)),
         }
     }
@@ -67,7 +67,7 @@ impl Reviewable for Hiperface {
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(prepared.other_type.map(words::other_type));
-        warnings.extend(words::created_left(&prepared.created_left));
+        warnings.extend(words::remaining_created_fields_text(&prepared.created_left));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::SetPosition { .. })) {
             warnings.push(Text::new("review.commutation"));
         }

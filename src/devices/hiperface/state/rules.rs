@@ -1,7 +1,7 @@
 //! Rules of the encoder for data fields, checked before an action is offered. The check makes the same plan as the
 //! write, from the memory as last read.
 
-use super::Staged;
+use super::StagedEdits;
 use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{
@@ -19,7 +19,7 @@ pub fn create(memory: FreeMemory, size: FieldSize, code: AccessCodeNumber, code_
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
 
-pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &Staged) -> Allowed {
+pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &StagedEdits) -> Allowed {
     status(field)?;
     check_edits_preserved(staged, field.number, size.bytes())?;
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
@@ -31,7 +31,7 @@ pub fn check_resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     allowed(plan_delete(memory, field))
 }
 
-pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowed {
+pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &StagedEdits) -> Allowed {
     check_resizable(memory, field)?;
     check_edits_preserved(staged, field.number, 0)
 }
@@ -46,7 +46,7 @@ pub fn status(field: &FieldImage) -> Allowed {
 }
 
 /// Checks a change without querying the encoder.
-pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
+pub(super) fn change(staged: &StagedEdits, change: &Change) -> Allowed {
     let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
     match change {
         Change::DeleteField { number }
@@ -68,7 +68,7 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
 }
 
 /// Checks that the plan keeps every byte that has an unwritten edit.
-pub(super) fn preserves_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
+pub(super) fn preserves_edits(staged: &StagedEdits, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
             check_edits_preserved(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
@@ -78,7 +78,7 @@ pub(super) fn preserves_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed 
 }
 
 /// Checks that the field has no edit beyond its first `bytes` bytes.
-fn check_edits_preserved(staged: &Staged, field: u8, bytes: usize) -> Allowed {
+fn check_edits_preserved(staged: &StagedEdits, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
         count => Err(TEXTS.text("rules.edits").with("field", field).with("count", count)),
@@ -116,7 +116,7 @@ mod tests {
         let status = DataFieldStatus::from_byte(0xC8);
         let field = FieldImage { number: 0, status, bytes: Some(vec![0; 16]) };
         let memory = FreeMemory { blocks: 2, fields: 1 };
-        let mut staged = Staged::default();
+        let mut staged = StagedEdits::default();
         staged.refresh(vec![field.clone()]);
         let plan = plan_delete(memory, &field).unwrap();
         assert_eq!(preserves_edits(&staged, &plan), Ok(()));

@@ -2,7 +2,7 @@
 
 use crossbeam_channel::Receiver;
 
-use crate::app::action::{Done, OpenFailure, Opened, OpenedSession};
+use crate::app::action::{Done, OpenFailure, OpenedConnection, OpenedSession};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
 use crate::app::live_session::LiveSession;
@@ -49,7 +49,11 @@ impl Search {
         url
     }
 
-    pub(crate) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>, services: &Services) {
+    pub(crate) fn opened(
+        &mut self,
+        result: Result<Box<OpenedConnection<Hiperface>>, Box<OpenFailure>>,
+        services: &Services,
+    ) {
         match result {
             Ok(opened) => {
                 let mut line = LiveSession::new(*opened);
@@ -59,7 +63,7 @@ impl Search {
                 }
                 self.line = Some(line);
             }
-            Err(failed) => self.end = Some(Hiperface::open_failed(&failed)),
+            Err(failed) => self.end = Some(Hiperface::open_failure_text(&failed)),
         }
     }
 
@@ -127,7 +131,7 @@ pub enum SearchAction {
 
 pub struct SearchLinkResult {
     number: u32,
-    result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>,
+    result: Result<Box<OpenedConnection<Hiperface>>, Box<OpenFailure>>,
 }
 
 impl Finder for EncoderSearchForm {
@@ -159,11 +163,11 @@ impl Finder for EncoderSearchForm {
             Ok(url) => url,
             Err(problem) => return context.refuse(problem),
         };
-        let earlier = match context.free_wire(&url, Text::new("session.let_go_for_search")) {
+        let earlier = match context.release_connection(&url, Text::new("session.let_go_for_search")) {
             Ok(earlier) => self.end(context.services()).or(earlier),
             Err(problem) => return context.refuse(problem),
         };
-        let number = context.new_number();
+        let number = context.next_number();
         let done = move |result| Done::finder::<EncoderSearchForm>(Encoder::TAB, SearchLinkResult { number, result });
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
@@ -175,7 +179,7 @@ impl Finder for EncoderSearchForm {
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),
             // The search ended while its link was being opened, so the link is not needed.
-            (None, Ok(opened)) => opened.close_unneeded(SessionId(number), services),
+            (None, Ok(opened)) => opened.close_unused(SessionId(number), services),
             (None, Err(_)) => {}
         }
     }

@@ -9,7 +9,7 @@ use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
 /// Data fields with edited bytes, which are addressed by field and index.
-pub type Staged = Edits<Vec<FieldImage>>;
+pub type StagedEdits = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Place = (u8, usize);
@@ -43,7 +43,7 @@ pub enum ByteEditError {
     },
 }
 
-impl Staged {
+impl StagedEdits {
     /// Adopts the bytes read from the encoder. An edit is dropped if its byte no longer exists or already has the
     /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
@@ -95,7 +95,7 @@ impl Staged {
     }
 
     /// Returns the ranges of consecutive edited bytes, with their new values.
-    pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
+    pub fn edited_ranges(&self) -> Vec<(FieldRange, Vec<u8>)> {
         let bytes = |range: &FieldRange| {
             let addresses = (range.start..).take(range.count.unwrap_or(0));
             addresses.filter_map(|address| self.byte(range.field, address)).collect()
@@ -149,8 +149,8 @@ mod tests {
         ]
     }
 
-    fn staged() -> Staged {
-        let mut staged = Staged::default();
+    fn staged() -> StagedEdits {
+        let mut staged = StagedEdits::default();
         staged.refresh(fields(&[0; 16]));
         staged
     }
@@ -218,7 +218,7 @@ mod tests {
         staged.refresh(locked);
         assert!(staged.is_dirty());
         assert_eq!(
-            staged.changed_runs(),
+            staged.edited_ranges(),
             [(FieldRange::new(0, 0, 2), vec![1, 2])],
             "a plan says which code is missing"
         );

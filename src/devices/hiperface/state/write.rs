@@ -20,12 +20,12 @@ impl Encoder {
     }
 
     /// Prepares the plan under review again, for example after the encoder did not reply.
-    pub(super) fn prepare_plan_again(&mut self, change: Change, services: &mut Services) {
+    pub(super) fn refresh_plan(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
         let Some(review) = &mut self.session.review else { return };
-        *review = Review::new(change.clone(), review.is_for_another, review.is_for_another_type);
+        *review = Review::new(change.clone(), review.is_for_another, review.is_for_other_type);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.session.review = None;
         }
@@ -34,7 +34,7 @@ impl Encoder {
 
 impl HasMemory for Encoder {
     fn edited_change(&self) -> Option<Change> {
-        self.staged.is_dirty().then(|| Change::Store(self.staged.changed_runs()))
+        self.staged.is_dirty().then(|| Change::Store(self.staged.edited_ranges()))
     }
 
     fn is_for_other_device(&self, change: &Change) -> bool {
@@ -42,7 +42,7 @@ impl HasMemory for Encoder {
         check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
     }
 
-    fn is_for_another_type(&self, change: &Change) -> bool {
+    fn is_for_other_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
         profile.identity.encoder_type != own.label.encoder_type
     }
@@ -74,11 +74,11 @@ impl HasMemory for Encoder {
 
     fn toggle_plan_permit(&mut self, permit: Permit, services: &mut Services) {
         if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
-            self.prepare_plan_again(change, services);
+            self.refresh_plan(change, services);
         }
     }
 
-    fn forget_device(&mut self) {
+    fn discard_device_data(&mut self) {
         self.identity = None;
         self.staged.clear();
         self.check = None;

@@ -12,8 +12,8 @@ use crate::devices::hiperface::state::commutation::{
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    button_with_reason, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, split,
-    text_entry, verdict_ui,
+    button_with_reason, card, card_with_trailing, choice, entry, folding_card, icon_button, labelled_entry, paragraph,
+    split, text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -161,7 +161,7 @@ fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
     let aside = |ui: &mut Ui| {
         clear = icon_button(ui, any, icons::TRASH, &say(theme, "commutation.clear")).clicked();
     };
-    card_with(ui, theme, TEXTS.text("commutation.rest"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("commutation.rest"), aside, |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.rest_words")));
         let [one, other, _] = &mut form.typed;
         slot(ui, theme, encoder, Slot::OneSide, one, actions);
@@ -178,7 +178,7 @@ fn rest_position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
                 RichText::new(theme.words(&text.with_number("mean", fine_periods, 5)))
             }
         };
-        reserved_ui(ui, theme, message);
+        fixed_height_message_ui(ui, theme, message);
     });
     if clear {
         actions.push(ask(encoder, Assistant::Clear));
@@ -200,7 +200,7 @@ fn second_vector_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Fo
 }
 
 /// Draws a message in a space of constant height. The layout does not move when the message appears or disappears.
-pub(super) fn reserved_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
+pub(super) fn fixed_height_message_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
     let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);
     ui.allocate_ui(room, |ui| {
         ui.set_min_height(room.y);

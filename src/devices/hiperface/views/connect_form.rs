@@ -144,7 +144,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchUiState,
             }
         });
         if let Some(search) = search {
-            found_ui(ui, theme, search, actions);
+            search_results_ui(ui, theme, search, actions);
         }
     });
 }
@@ -153,7 +153,7 @@ fn find(action: SearchAction) -> Action {
     Action::Connect(Connect::find::<EncoderSearchForm>(action))
 }
 
-fn found_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {
+fn search_results_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {
     for (at, found) in search.found.iter().enumerate() {
         ui.horizontal(|ui| {
             let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));

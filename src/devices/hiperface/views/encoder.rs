@@ -10,7 +10,7 @@ use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TE
 use crate::devices::hiperface::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
-    card, card_with, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
+    card, card_with_trailing, empty_placeholder, enabled_button, folding_card, paragraph, row, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -40,7 +40,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, theme, "encoder_card.title", read, |ui| {
+    card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
         let Some(identity) = &encoder.identity else {
             empty_placeholder(ui, theme, &theme.say("encoder_card.nothing"), None);
             return;
@@ -101,7 +101,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
         }
     };
     let palette = theme.palette;
-    card_with(ui, theme, "status_card.title", read, |ui| match &encoder.codes {
+    card_with_trailing(ui, theme, "status_card.title", read, |ui| match &encoder.codes {
         None => {
             ui.label(theme.label(say(theme, "status_card.nothing")));
         }

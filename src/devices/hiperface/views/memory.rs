@@ -9,7 +9,7 @@ use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 use crate::devices::hiperface::protocol::{AccessCodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Staged, TEXTS, forms, rules};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, StagedEdits, TEXTS, forms, rules};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{button_with_reason, choice, empty_placeholder, name, paragraph};
 use crate::ui::widgets::{
@@ -61,19 +61,19 @@ pub(super) fn page_ui(
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
-    map_ui(ui, theme, encoder, &wanted, memory, view, actions);
+    memory_map_ui(ui, theme, encoder, &wanted, memory, view, actions);
     ui.add_space(theme.space.between);
     let selected = wanted.iter().find(|field| field.number == view.field).filter(|_| !view.free);
     match (selected, memory) {
         (Some(field), _) => field_ui(ui, theme, encoder, field, memory, view, actions),
-        (None, Some(memory)) => create_ui(ui, theme, encoder, memory, view, actions),
+        (None, Some(memory)) => create_field_ui(ui, theme, encoder, memory, view, actions),
         (None, None) => {
             ui.label(theme.label(say(theme, "memory.no_fields")));
         }
     }
 }
 
-fn map_ui(
+fn memory_map_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -276,7 +276,7 @@ fn size_menu_ui(
     theme: &Theme,
     allowed: &rules::Allowed,
     memory: FreeMemory,
-    (field, staged): (&FieldImage, &Staged),
+    (field, staged): (&FieldImage, &StagedEdits),
     change: &mut Option<Change>,
 ) {
     let word = say(theme, "memory.resize");
@@ -302,7 +302,7 @@ fn size_menu_ui(
     name(menu.response, true, &word);
 }
 
-fn create_ui(
+fn create_field_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

@@ -57,7 +57,7 @@ pub(super) fn page_ui(
         |ui, (actions, view)| {
             position_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            codes_ui(ui, theme, encoder, view, actions);
+            access_codes_ui(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
             address_ui(ui, theme, encoder, view, actions);
@@ -123,7 +123,7 @@ fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUi
     });
 }
 
-fn codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+fn access_codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "codes_card.words")));
         entry(ui, theme, &say(theme, "codes_card.number"), |ui| {

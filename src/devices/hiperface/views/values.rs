@@ -6,7 +6,7 @@ use crate::app::{Action, Text};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
-use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
+use crate::ui::controls::{card, card_with_trailing, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Theme, icons};
 
 pub(super) struct ValuesUiState {
@@ -89,7 +89,7 @@ fn counter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Acti
         }
     };
     let mut change = None;
-    card_with(ui, theme, TEXTS.text("counter_card.title"), read, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("counter_card.title"), read, |ui| {
         ui.label(theme.value(encoder.counter.map_or_else(|| "–".to_owned(), |counter| counter.to_string())));
         paragraph(ui, theme.label(say(theme, "counter_card.words")));
         ui.horizontal(|ui| {

@@ -39,14 +39,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
 mod tests {
     use super::{NOTES, WIRES};
     use crate::devices::hiperface::state::TEXTS;
-    use crate::ui::wiring::{check_notes, check_wires};
+    use crate::ui::wiring::{assert_notes, assert_wires};
 
     /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted
     /// in pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most
     /// 8, no 130 Ω, terminated at the one farthest from the master).
     #[test]
     fn the_wiring_card_matches_the_manual() {
-        check_wires(
+        assert_wires(
             &TEXTS,
             &WIRES,
             &[
@@ -60,12 +60,12 @@ mod tests {
                 ("DATA −", &["RS-485"]),
             ],
         );
-        check_notes(&TEXTS, &NOTES, &["130 Ω terminating resistor and 1 kΩ pull-up and pull-down resistors"]);
-        check_notes(
+        assert_notes(&TEXTS, &NOTES, &["130 Ω terminating resistor and 1 kΩ pull-up and pull-down resistors"]);
+        assert_notes(
             &TEXTS,
             &NOTES,
             &["BUS version (up to 8 encoders): the encoders contain no 130 Ω resistor", "farthest from the controller"],
         );
-        check_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
+        assert_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
     }
 }

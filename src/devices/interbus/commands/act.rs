@@ -11,7 +11,7 @@ use super::value::value;
 use crate::cli::args::{ActionArgs, CommonArgs};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_changed;
+use crate::cli::profiles::show_changes;
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
@@ -25,7 +25,7 @@ const ACTIONS: &str = "check, preset, default and lead-back";
 pub(super) fn act(common: &CommonArgs, output: &Output, act: &ActionArgs) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
+    match (act.parse_action(KIND, ACTIONS)?, words.as_slice()) {
         (InterbusAction::Check, []) => check_device(common, output),
         (InterbusAction::LeadBack, []) => lead_back(common, output),
         (InterbusAction::Default, []) => {
@@ -85,5 +85,5 @@ fn change(
     let prepared = prepare(&mut runner, output, change)?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
-    show_changed(output, &act.action, &operations, &changes, &spent)
+    show_changes(output, &act.action, &operations, &changes, &spent)
 }

@@ -12,7 +12,7 @@ pub(super) struct WordOptions {
     pub(super) way: DirectionOption,
     /// interbus: mode of the encoder. With --direction out, a word not allowed in this mode is an error.
     #[arg(long, value_enum)]
-    pub(super) mode: Option<WordMode>,
+    pub(super) mode: Option<EncoderModeArg>,
     /// interbus: value that was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
     #[arg(long = "read-out", value_name = "NAME|N")]
     pub(super) read_out: Option<String>,
@@ -23,7 +23,7 @@ pub(super) struct WordOptions {
 
 /// The modes of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum WordMode {
+pub(crate) enum EncoderModeArg {
     /// Operation.
     Position,
     /// Parameterisation.
@@ -36,14 +36,14 @@ pub(crate) enum WordMode {
     Cam,
 }
 
-impl From<WordMode> for EncoderMode {
-    fn from(mode: WordMode) -> Self {
+impl From<EncoderModeArg> for EncoderMode {
+    fn from(mode: EncoderModeArg) -> Self {
         match mode {
-            WordMode::Position => EncoderMode::Position,
-            WordMode::Parameterisation => EncoderMode::Parameterisation,
-            WordMode::ReadOut => EncoderMode::ReadOut,
-            WordMode::Velocity => EncoderMode::Velocity,
-            WordMode::Cam => EncoderMode::Cam,
+            EncoderModeArg::Position => EncoderMode::Position,
+            EncoderModeArg::Parameterisation => EncoderMode::Parameterisation,
+            EncoderModeArg::ReadOut => EncoderMode::ReadOut,
+            EncoderModeArg::Velocity => EncoderMode::Velocity,
+            EncoderModeArg::Cam => EncoderMode::Cam,
         }
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json, json};
 use super::args::WordOptions;
 use super::meaning::{self, WordContext, WordMeaning};
 use crate::cli::args::{DecodeArgs, Direction};
-use crate::cli::decode::{Explained, show};
+use crate::cli::decode::{FrameExplanation, show};
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
@@ -28,7 +28,7 @@ pub(super) fn decode(output: &Output, arguments: &DecodeArgs) -> Result {
             "{word:04X} has 4 digits: only K3 encoders take words, K1 encoders do not"
         )));
     }
-    let explained: Vec<Explained> = words.iter().map(|word| explain(*word, direction, &known)).collect();
+    let explained: Vec<FrameExplanation> = words.iter().map(|word| explain(*word, direction, &known)).collect();
     show(output, &explained)
 }
 
@@ -69,7 +69,7 @@ fn read_out(text: &str) -> Result<ReadOutNumber> {
     })
 }
 
-fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> Explained {
+fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> FrameExplanation {
     let (shown, meanings) = match word {
         Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(Single::parse_k1(word))])),
         Captured::Long(word) => (format!("{word:08X}"), long_word_meanings(word, direction, known)),
@@ -79,7 +79,7 @@ fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) ->
         more.insert("readings".to_owned(), meanings.iter().map(WordMeaning::json).collect::<Json>());
     }
     let meaning = meanings.map(|meanings| meanings.iter().map(WordMeaning::line).collect());
-    Explained { compact: shown.clone(), shown, meaning, more }
+    FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
 fn long_word_meanings(
@@ -88,13 +88,13 @@ fn long_word_meanings(
     known: &WordContext,
 ) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
-        Some(Direction::In) => Ok(meaning::meanings_of_in_word(word, known)),
+        Some(Direction::In) => Ok(meaning::in_word_meanings(word, known)),
         Some(Direction::Out) => meaning::out_word_meanings(word, known),
         // The encoder may send any word. If it has no meaning as an OUT word, it can only be an IN word.
         None => Ok(meaning::out_word_meanings(word, known)
             .unwrap_or_else(|_| meaning::refused(word, known))
             .into_iter()
-            .chain(meaning::meanings_of_in_word(word, known))
+            .chain(meaning::in_word_meanings(word, known))
             .collect()),
     }
 }

@@ -99,7 +99,7 @@ fn wrong_mode_text(command: Command) -> String {
 
 /// Returns the meaning of an IN word in the known mode. Without a mode, it returns the meaning in every mode that
 /// allows the word.
-pub(super) fn meanings_of_in_word(word: u32, known: &WordContext) -> Vec<WordMeaning> {
+pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let meaning = |modes: &[EncoderMode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",

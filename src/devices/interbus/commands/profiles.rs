@@ -66,7 +66,7 @@ impl ProfileCommands for InterbusCommands {
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)
                 .err()?;
         Some(match error {
-            PlanError::OtherType(types) => words::other_type(types).terminal_text(),
+            PlanError::TypeMismatch(types) => words::other_type(types).terminal_text(),
             PlanError::OtherDevice { profile, device } => {
                 format!("The profile is of serial number {profile}, the encoder has {device}.")
             }

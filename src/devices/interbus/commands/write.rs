@@ -8,7 +8,7 @@ use crate::cli::Result;
 use crate::cli::args::{CommonArgs, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_changed;
+use crate::cli::profiles::show_changes;
 use crate::devices::interbus::jobs::Change;
 
 pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Result {
@@ -21,5 +21,5 @@ pub(super) fn write(common: &CommonArgs, output: &Output, write: &Write) -> Resu
     let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
-    show_changed(output, &item.to_string(), &operations, &changes, &spent)
+    show_changes(output, &item.to_string(), &operations, &changes, &spent)
 }

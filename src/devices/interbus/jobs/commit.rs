@@ -4,11 +4,11 @@ use super::{
     ChangeKind, Commit, Committed, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key,
     wear_limit,
 };
-use crate::devices::interbus::procedures::write::EncoderWrite;
+use crate::devices::interbus::procedures::write::EncoderWriter;
 use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, Recorded};
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -20,7 +20,7 @@ pub(super) fn commit(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
     let master = encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
-    let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
+    let mut write = EncoderWriter { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
         (tell.borrow_mut())(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
@@ -31,9 +31,9 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHead<'_, Self> {
+    fn head(&self) -> PlanHeader<'_, Self> {
         let wear_limit = wear_limit(self.plan.write_cycles());
-        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit }
+        PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
@@ -58,6 +58,6 @@ impl Planned for Prepared {
             }
         }
         let profile = InterbusProfile::of(identity.profile(), image, Recorded::default());
-        backup_of(Body::new(profile)).emit()
+        backup_document(Body::new(profile)).emit()
     }
 }

@@ -6,7 +6,7 @@ use crate::devices::interbus::procedures::check::InterbusStepResult;
 use crate::devices::interbus::procedures::write::{Interrupted, Written};
 use crate::devices::interbus::procedures::{Error, Handshake, Identity, Status, Survey, WordReading};
 use crate::devices::interbus::profile::{
-    Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
+    Image, InterbusPlan, InterbusProfile, Item, ItemValue, Parameters, PlanError, RestoreOptions, TypeMismatch,
 };
 use crate::devices::interbus::protocol::{
     GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOutNumber, StartupMode, Value, WindowShift,
@@ -127,7 +127,7 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Mounting values that differ from the profile and are left unchanged.
     pub mounting_left: Vec<Item>,
-    pub other_type: Option<OtherType>,
+    pub other_type: Option<TypeMismatch>,
     /// Mounting values of another device that are written nevertheless. They must be set up again.
     pub mounting_written: Vec<Item>,
 }
@@ -224,10 +224,10 @@ impl From<PlanError> for JobError {
 /// Returns the key of an encoder in backups and in the logbook. It is derived from the serial number, since the
 /// manufacturer and type are always the same.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    key_of(&identity.serial_number, is_virtual)
+    logbook_key(&identity.serial_number, is_virtual)
 }
 
-pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
+pub(super) fn logbook_key(serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, "K3", serial_number, is_virtual)
 }
 

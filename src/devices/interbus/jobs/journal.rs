@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::{KIND, StartupMode, Value};
 use crate::profile::ChangedItem;
 use crate::store::{DeviceKey, Drafts, EntryId, EntryKind, Intent, Logbook, LogbookError, Outcome, Store};
 
-use super::job::key_of;
+use super::job::logbook_key;
 
 /// Description in the entry of the logbook.
 const WHAT: &str = "cam programs read, each of which may be stored when it is left";
@@ -26,8 +26,8 @@ impl Notes {
         Notes { store, is_virtual, begun: BTreeMap::new() }
     }
 
-    fn excursions(&self) -> Drafts {
-        self.store.excursions()
+    fn pending_mode_restores(&self) -> Drafts {
+        self.store.pending_mode_restores()
     }
 
     /// Returns the name of an encoder in the records. A virtual encoder is marked, since it may have the serial number
@@ -37,7 +37,7 @@ impl Notes {
     }
 
     fn key(&self, serial_number: &str) -> DeviceKey {
-        key_of(serial_number, self.is_virtual)
+        logbook_key(serial_number, self.is_virtual)
     }
 
     fn intend(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
@@ -56,20 +56,20 @@ fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
 
 impl Journal for Notes {
     fn has_modes_to_restore(&self) -> bool {
-        self.excursions().has_any(KIND)
+        self.pending_mode_restores().has_drafts(KIND)
     }
 
     fn recorded_mode_switch(&self, serial_number: &str) -> Option<ModeSwitch> {
-        let text = warn(self.excursions().load(KIND, &self.name(serial_number)))??;
+        let text = warn(self.pending_mode_restores().load(KIND, &self.name(serial_number)))??;
         parse(&text)
     }
 
     fn save_mode_switch(&mut self, serial_number: &str, excursion: &ModeSwitch) {
-        warn(self.excursions().save(KIND, &self.name(serial_number), &emit(excursion)));
+        warn(self.pending_mode_restores().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
     fn record_mode_restored(&mut self, serial_number: &str) {
-        warn(self.excursions().remove(KIND, &self.name(serial_number)));
+        warn(self.pending_mode_restores().remove(KIND, &self.name(serial_number)));
     }
 
     fn record_planned_stores(&mut self, serial_number: &str, stores: u64) {
@@ -101,7 +101,7 @@ fn emit(excursion: &ModeSwitch) -> String {
 
 fn parse(text: &str) -> Option<ModeSwitch> {
     let modes: Vec<u32> = warn(ron::from_str(text))?;
-    let mut modes = modes.into_iter().map(|mode| StartupMode::parse(Value::of_word(mode)));
+    let mut modes = modes.into_iter().map(|mode| StartupMode::parse(Value::from_word(mode)));
     Some(ModeSwitch { found: modes.next()?, sent: modes.collect() })
 }
 
@@ -112,7 +112,7 @@ mod tests {
     /// In read-out 9, 1 is position mode and 6 is cam program 4.
     #[test]
     fn an_excursion_is_stored_as_mode_numbers() {
-        let mode = |number| StartupMode::parse(Value::of_word(number));
+        let mode = |number| StartupMode::parse(Value::from_word(number));
         let excursion = ModeSwitch { found: mode(1), sent: vec![mode(3), mode(6)] };
         assert_eq!(emit(&excursion), "[1, 3, 6]\n");
         assert_eq!(parse("[1, 3, 6]\n"), Some(excursion));

@@ -9,7 +9,7 @@ use crate::devices::interbus::procedures::{LinkParameters, Station};
 use crate::devices::interbus::sim::{Config, Gateway};
 use crate::link::{Clock, Direction, LinkScheme, LinkUrl, RealClock, ReplayLink, TraceEntry, Wire};
 use crate::store::Store;
-use crate::worker::open::{inside, open_bytes, read_recording, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_byte_stream, read_recording, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks the link URL of an INTERBUS encoder. The link is not opened.
@@ -35,7 +35,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     }
     let mut motor = None;
     // The connection to a gateway has no character format.
-    let wire = open_bytes(url, FORMAT, &clock, || {
+    let wire = open_byte_stream(url, FORMAT, &clock, || {
         let gateway = Gateway::new(&config);
         motor = Some(gateway.shaft());
         Ok(inside(gateway, &clock))

@@ -149,7 +149,7 @@ pub(super) fn read_identity(
     let [serial, steps, revolutions, direction] = [read(0)?, read(1)?, read(2)?, read(3)?];
     let [software_version, flags] = [read(7)?, read(0xA)?];
     let mode = read_mode(master)?;
-    values.push((ReadOutNumber::STARTUP_MODE, Value::of_word(mode.emit())));
+    values.push((ReadOutNumber::STARTUP_MODE, Value::from_word(mode.emit())));
     let identity = Identity {
         serial_number: serial.to_string(),
         steps,
@@ -157,7 +157,7 @@ pub(super) fn read_identity(
         direction: direction_from_read_out(direction)?,
         software_version,
         mode,
-        flags: Flags::new(Value::of_word(flags)),
+        flags: Flags::new(Value::from_word(flags)),
     };
     master.remember_gear(identity.gear().ok());
     Ok(identity)
@@ -191,7 +191,7 @@ pub(super) fn read_survey(
     Ok(Survey {
         parameters,
         preset_flag: value(6).get(),
-        operating_minutes: minutes(value(8)),
+        operating_minutes: operating_time_minutes(value(8)),
         temperature_tenths: temperature_tenths(value(0xC)),
         identity,
         values,
@@ -306,11 +306,11 @@ pub(super) struct Measured {
 }
 
 pub(super) fn read_measurements(master: &mut Master<'_>) -> Result<Measured, Error> {
-    let minutes = minutes(master.read_out(ReadOutNumber::OPERATING_TIME)?);
+    let minutes = operating_time_minutes(master.read_out(ReadOutNumber::OPERATING_TIME)?);
     Ok(Measured { minutes, tenths: temperature_tenths(master.read_out(ReadOutNumber::TEMPERATURE)?) })
 }
 
-fn minutes(value: Value) -> u32 {
+fn operating_time_minutes(value: Value) -> u32 {
     match ReadOutNumber::OPERATING_TIME.value(value) {
         ReadOutValue::Minutes(minutes) => minutes,
         _ => value.get(),

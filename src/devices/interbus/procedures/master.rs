@@ -240,7 +240,7 @@ impl<'a> Master<'a> {
         mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
-        let least = stability::least_cycles(self.recorded);
+        let least = stability::min_wait_cycles(self.recorded);
         let (mut last, mut same, mut cycles) = (None, StabilityTimer::new(self.recorded), 0);
         let mut at_work = StabilityTimer::new(self.recorded);
         loop {

@@ -35,12 +35,12 @@ const WATCHED: Duration = Duration::from_millis(300);
 /// Interval between two readings of the position at standstill.
 const LOOK: Duration = Duration::from_millis(20);
 
-pub struct EncoderWrite<'w, 'm> {
+pub struct EncoderWriter<'w, 'm> {
     pub master: Master<'m>,
     pub identity: &'w Identity,
 }
 
-impl Write for EncoderWrite<'_, '_> {
+impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;

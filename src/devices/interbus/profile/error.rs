@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 /// one reports its steps minus one, which gives the same number a different meaning. See manual 10.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
-pub struct OtherType {
+pub struct TypeMismatch {
     /// Flags in the profile.
     pub profile: Flags,
     /// Flags of the encoder.
@@ -27,7 +27,7 @@ pub enum PlanError {
     },
     /// The profile belongs to another type of encoder.
     #[error(transparent)]
-    OtherType(#[from] OtherType),
+    TypeMismatch(#[from] TypeMismatch),
     /// Steps and turns do not form a valid gear.
     #[error(transparent)]
     Gear(#[from] GearError),

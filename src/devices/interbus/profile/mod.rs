@@ -20,7 +20,7 @@ mod text;
 
 pub use edit::{plan_default, plan_edits, plan_preset};
 pub use entry_error::EntryError;
-pub use error::{OtherType, PlanError};
+pub use error::{PlanError, TypeMismatch};
 pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
 pub use note::ChangeStep;

@@ -3,7 +3,7 @@
 
 pub use crate::profile::RestoreOptions;
 
-use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
+use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, TypeMismatch, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
 /// Present state of an encoder, which is the basis for planning.
@@ -72,17 +72,17 @@ pub fn plan_restore(
 /// Checks that an encoder matches the profile. A profile without a serial number matches any encoder.
 ///
 /// # Errors
-/// Returns [`PlanError::OtherType`] or [`PlanError::OtherDevice`] if the encoder does not match.
+/// Returns [`PlanError::TypeMismatch`] or [`PlanError::OtherDevice`] if the encoder does not match.
 pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
     check_allowed(profile, device, RestoreOptions::default())
 }
 
 /// Returns the types of a profile and an encoder if they differ. The result is `None` if they are equal or one is
 /// unknown.
-pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
+pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<TypeMismatch> {
     let (profile, device) = profile.flags.zip(device.flags)?;
     let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
-    (what(profile) != what(device)).then_some(OtherType { profile, device })
+    (what(profile) != what(device)).then_some(TypeMismatch { profile, device })
 }
 
 /// Checks that an encoder matches the profile, unless the options allow a mismatch.

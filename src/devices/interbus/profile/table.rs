@@ -248,7 +248,7 @@ impl CamTable {
 impl TableRow {
     /// Returns the pulse as a cam.
     pub fn cam(&self) -> Cam {
-        Cam { start: Value::of_word(self.start.step), stop: Value::of_word(self.stop.step) }
+        Cam { start: Value::from_word(self.start.step), stop: Value::from_word(self.stop.step) }
     }
 }
 

@@ -94,8 +94,8 @@ impl Single {
     /// Returns the position in steps.
     pub const fn position(self) -> Value {
         match self {
-            Single::K1(word) => Value::of_word((word & 0x0FFF) as u32),
-            Single::K2(word) => Value::of_word(word),
+            Single::K1(word) => Value::from_word((word & 0x0FFF) as u32),
+            Single::K2(word) => Value::from_word(word),
         }
     }
 

@@ -194,9 +194,8 @@ impl Command {
             _ if word == MASK | u32::from(low & 1) => Some(Command::Velocity(low == 1)),
             _ if word >> 16 == READ_OUT >> 16 => Some(Command::ReadOut(ReadOutNumber::new(low))),
             _ if word >> 16 == CAMS >> 16 => program(low),
-            _ if word >> 29 == 0 => {
-                Parameter::from_code(Code::of_word(word)).map(|parameter| Command::Set(parameter, Value::of_word(word)))
-            }
+            _ if word >> 29 == 0 => Parameter::from_code(Code::from_word(word))
+                .map(|parameter| Command::Set(parameter, Value::from_word(word))),
             _ => None,
         }
     }
@@ -204,7 +203,7 @@ impl Command {
     /// Parses an OUT word received while a cam program is selected.
     fn parse_cam_word(word: u32) -> Option<Command> {
         let low = word as u16;
-        let cam = || CamNumber::new(Code::of_word(word).get());
+        let cam = || CamNumber::new(Code::from_word(word).get());
         let read_cam = || u8::try_from(low & 0xF).ok().and_then(CamNumber::new);
         match word >> 16 {
             high if high == CAMS >> 16 => program(low),
@@ -218,9 +217,11 @@ impl Command {
                 _ => None,
             },
             _ if word & STOP == START && word >> 31 == 0 => {
-                cam().map(|cam| Command::CamStart(cam, Value::of_word(word)))
+                cam().map(|cam| Command::CamStart(cam, Value::from_word(word)))
             }
-            _ if word & STOP == STOP && word >> 31 == 0 => cam().map(|cam| Command::CamStop(cam, Value::of_word(word))),
+            _ if word & STOP == STOP && word >> 31 == 0 => {
+                cam().map(|cam| Command::CamStop(cam, Value::from_word(word)))
+            }
             _ => None,
         }
     }

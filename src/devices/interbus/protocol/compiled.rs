@@ -16,7 +16,8 @@ pub struct CompiledPrograms {
 impl CompiledPrograms {
     /// Compiles eight programs.
     pub fn new(programs: &[Program; ProgramNumber::COUNT]) -> Self {
-        let at = |position: u32| u64::from_le_bytes(programs.map(|program| program.outputs(Value::of_word(position))));
+        let at =
+            |position: u32| u64::from_le_bytes(programs.map(|program| program.outputs(Value::from_word(position))));
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
         let mut starts: Vec<u32> = cams.flat_map(|cam| [cam.start.get(), cam.stop.get() + 1]).collect();
         starts.sort_unstable();

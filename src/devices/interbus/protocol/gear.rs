@@ -84,6 +84,6 @@ impl Gear {
     /// [`scaled_value`](Self::scaled_value) within the range (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // The result is less than `steps`, which has 25 bits.
-        Value::of_word(self.scaled_value(raw % self.range()) as u32)
+        Value::from_word(self.scaled_value(raw % self.range()) as u32)
     }
 }

@@ -64,7 +64,7 @@ const MANUFACTURER: u32 = 1 << 29;
 impl Reply {
     /// Parses an IN word. Every word is valid.
     pub fn parse(word: u32) -> Self {
-        let (code, data) = (Code::of_word(word), Value::of_word(word));
+        let (code, data) = (Code::from_word(word), Value::from_word(word));
         let manufacturer = word & MANUFACTURER != 0;
         match (word >> 29, code.get()) {
             (0b110 | 0b111, 0) => Reply::Busy { manufacturer, data },

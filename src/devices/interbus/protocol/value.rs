@@ -31,7 +31,7 @@ impl Value {
     }
 
     /// Extracts the value from the lower 25 bits of a word.
-    pub const fn of_word(word: u32) -> Self {
+    pub const fn from_word(word: u32) -> Self {
         Value(word & Value::MAX.0)
     }
 }
@@ -48,7 +48,7 @@ impl Code {
     }
 
     /// Extracts the code from bits 28..25 of a word.
-    pub const fn of_word(word: u32) -> Self {
+    pub const fn from_word(word: u32) -> Self {
         Code((word >> Value::BITS & 0xF) as u8)
     }
 

@@ -342,7 +342,7 @@ fn cams_are_on_between_their_edges() {
 }
 
 /// Returns any cams, many of them short, at the ends of the range or across them.
-fn any_programs() -> impl Strategy<Value = [Program; 8]> {
+fn arbitrary_programs() -> impl Strategy<Value = [Program; 8]> {
     let edge = prop_oneof![0_u32..40, 0x1FF_FFD0_u32..=0x1FF_FFFF, 0..=0x1FF_FFFF_u32];
     let cam = (edge.clone(), edge).prop_map(|(start, stop)| Cam { start: value(start), stop: value(stop) });
     let cams = prop::collection::vec(prop::option::of(cam), 64);
@@ -396,7 +396,7 @@ proptest! {
 
     /// The result equals that of the plain programs: at edges, next to them and anywhere.
     #[test]
-    fn compiled_programs_equal_plain_ones(programs in any_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
+    fn compiled_programs_equal_plain_ones(programs in arbitrary_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = CompiledPrograms::new(&programs);
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
         let edges = cams.flat_map(|cam| [cam.start.get(), cam.stop.get()]);

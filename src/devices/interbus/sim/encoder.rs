@@ -125,7 +125,7 @@ impl Encoder {
         Encoder {
             class: config.class,
             identity: Identity {
-                serial_number: Value::of_word(config.serial_number + u32::from(number)).get(),
+                serial_number: Value::from_word(config.serial_number + u32::from(number)).get(),
                 steps_minus_one: config.steps_minus_one,
                 complement_bit: config.complement_bit,
                 temperature: config.temperature(),
@@ -156,7 +156,7 @@ impl Encoder {
     }
 
     /// Sets the shaft position in disc steps. A turn has 8192 of them.
-    pub fn set_shaft(&mut self, now: Moment, place: i32) {
+    pub fn set_shaft_position(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
     }
@@ -290,7 +290,7 @@ impl Encoder {
     fn handle_illegal_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
-            (0b000, _) if Code::of_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
+            (0b000, _) if Code::from_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
             (0b010 | 0b011, _) if of_cams => self.set(now, Err(Fault::UnknownCode)),
             (_, 0x2010) if of_cams => self.set(now, Err(Fault::WrongData)),
             (_, 0x2020) if of_cams => self.show(None),

@@ -18,7 +18,7 @@ pub(super) enum Exception {
 
 pub(super) trait Registers {
     fn inputs(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
-    fn holdings(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
+    fn holding_registers(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
     fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
 }
 
@@ -66,7 +66,7 @@ fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result
     let (first, count) = (frame.reg, frame.count);
     let done = match function {
         ModbusFunction::GetInputs => fill(&mut frame, &registers.inputs(first, count)?),
-        ModbusFunction::GetHoldings => fill(&mut frame, &registers.holdings(first, count)?),
+        ModbusFunction::GetHoldings => fill(&mut frame, &registers.holding_registers(first, count)?),
         _ => {
             registers.write(first, &data)?;
             frame.process_external_write(Ok(()))

@@ -87,7 +87,7 @@ impl Registers for GatewayRegisters<'_> {
         self.0.map.inputs(&mut self.0.encoders, self.0.now, first, count)
     }
 
-    fn holdings(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception> {
+    fn holding_registers(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception> {
         self.0.map.outputs(&mut self.0.encoders, first, count)
     }
 

@@ -74,7 +74,7 @@ impl Memory {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
         let cam = |start: u32, stop: u32| {
-            Some(Cam { start: Value::of_word(start), stop: Value::of_word(stop.min(steps - 1)) })
+            Some(Cam { start: Value::from_word(start), stop: Value::from_word(stop.min(steps - 1)) })
         };
         let all = |edges: &dyn Fn(u32) -> Option<Cam>| {
             let mut program = Program { mask: 0xFF, ..NONE };
@@ -96,7 +96,7 @@ impl Memory {
 
 /// A program without active cams.
 const NONE: Program = {
-    const ZERO: Cam = Cam { start: Value::of_word(0), stop: Value::of_word(0) };
+    const ZERO: Cam = Cam { start: Value::from_word(0), stop: Value::from_word(0) };
     Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
 };
 

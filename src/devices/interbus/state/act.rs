@@ -32,7 +32,7 @@ impl Encoder {
             }
             InterbusAction::OpenTable(path) => self.open_table(path, services),
             InterbusAction::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
-            InterbusAction::TakeTable(take) => self.apply_or_discard_import(take),
+            InterbusAction::TakeTable(take) => self.finish_import(take),
             InterbusAction::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
                 let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));

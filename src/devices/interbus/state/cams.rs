@@ -16,7 +16,7 @@ pub use grid::{Tick, next_grid_line, rounded, ticks};
 pub use moving::{DragTarget, apply_drag, drawn, moved};
 pub use snap::{SnapSettings, snap};
 
-use super::staged::{EditedValues, Mark, Staged};
+use super::staged::{EditedValues, Mark, StagedEdits};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
@@ -67,15 +67,15 @@ const LEAST_SPAN: f64 = 8.0;
 
 impl Chart {
     /// Creates the chart of an edited program, or returns `None` if the program is unknown.
-    pub fn of(staged: &Staged, program: ProgramNumber) -> Option<Self> {
+    pub fn of(staged: &StagedEdits, program: ProgramNumber) -> Option<Self> {
         let wanted = staged.wanted()?;
         wanted.image.program(program)?;
         Some(Chart::wanted(staged, wanted, program))
     }
 
-    pub fn wanted(staged: &Staged, wanted: &EditedValues, program: ProgramNumber) -> Self {
+    pub fn wanted(staged: &StagedEdits, wanted: &EditedValues, program: ProgramNumber) -> Self {
         let marks = wanted.marks();
-        let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
+        let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.refers_to(program, cam));
         let lane = |cam| Lane {
             cam,
             name: wanted.name(program, cam).map(str::to_owned),
@@ -115,7 +115,7 @@ impl Chart {
 
     /// Returns the outputs at a position, with bit i for cam i. Cams with unknown edges are off.
     pub fn outputs(&self, position: u32) -> u8 {
-        let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::of_word(position)));
+        let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::from_word(position)));
         self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
     }
 
@@ -128,7 +128,7 @@ impl Chart {
 
     /// Returns an edge of a cam, or `None` if the cam has no edges.
     pub fn edge(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
-        Some(of_edge(self.lane(cam)?.edges?, edge).get())
+        Some(edge_value(self.lane(cam)?.edges?, edge).get())
     }
 }
 
@@ -147,7 +147,7 @@ impl OutputState {
     }
 
     /// Returns the state of the output. The state that the encoder reports takes precedence.
-    pub const fn lit(self) -> Option<bool> {
+    pub const fn effective_state(self) -> Option<bool> {
         match self.own {
             Some(own) => Some(own),
             None => self.simulated,
@@ -215,7 +215,7 @@ pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
 }
 
-pub const fn of_edge(cam: Cam, edge: Edge) -> Value {
+pub const fn edge_value(cam: Cam, edge: Edge) -> Value {
     match edge {
         Edge::Start => cam.start,
         Edge::Stop => cam.stop,

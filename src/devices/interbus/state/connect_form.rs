@@ -131,7 +131,7 @@ impl InterbusForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::connect::parameters::tests::assert_comes_back;
+    use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
     fn links_round_trip_through_the_form() {
@@ -143,7 +143,7 @@ mod tests {
             "modbus:192.168.1.9:1502?unit=3&input=4&output=6&order=low-first&handshake=500",
             "replay:monday.trace",
         ];
-        assert_comes_back(&links, |url| InterbusForm::from_url(url).url());
+        assert_round_trip(&links, |url| InterbusForm::from_url(url).url());
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::preview::Preview;
 use super::record::Record;
-use super::staged::{EditedValues, Mark, Staged, ValueId};
+use super::staged::{EditedValues, Mark, StagedEdits, ValueId};
 use super::table::Import;
 use super::trace::Meaning;
 use super::{cams, words};
@@ -30,7 +30,7 @@ pub struct Encoder {
     pub session: Session<Interbus>,
     pub survey: Option<Survey>,
     pub check: Option<Vec<CheckLine>>,
-    pub staged: Staged,
+    pub staged: StagedEdits,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
     /// Comparison between the outputs of the encoder and its cam programs.
@@ -53,7 +53,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn with(session: Session<Interbus>, staged: Staged) -> Self {
+    pub(super) fn with(session: Session<Interbus>, staged: StagedEdits) -> Self {
         Encoder {
             session,
             survey: None,
@@ -146,7 +146,7 @@ impl Encoder {
     }
 
     /// Returns whether the user has to confirm the standstill of the machine before the encoder may be disturbed.
-    pub fn needs_standstill(&self) -> bool {
+    pub fn needs_standstill_confirmation(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
 
@@ -177,11 +177,11 @@ impl Encoder {
         self.session.cycles
     }
 
-    pub fn edits_parameters(&self) -> bool {
+    pub fn has_parameter_edits(&self) -> bool {
         self.staged.differences().iter().any(|own| matches!(own.place, ValueId::Parameter(_)))
     }
 
-    pub fn edits_cams(&self) -> bool {
+    pub fn has_cam_edits(&self) -> bool {
         self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }
 
@@ -225,7 +225,7 @@ impl Encoder {
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
-    pub(super) fn show_handshake_step(&mut self, step: Handshake) {
+    pub(super) fn record_handshake_step(&mut self, step: Handshake) {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);
         self.handshake.drain(..surplus);

@@ -3,7 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
-use crate::app::Explained;
+use crate::app::FrameExplanation;
 use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobState, Services};
 use crate::app::session::{EarlyEnd, HasMemory, HasProfile, Kind, SessionEvents};
@@ -60,7 +60,7 @@ impl Kind for Interbus {
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
-        words::loss(error)
+        words::connection_loss_text(error)
     }
 }
 
@@ -82,13 +82,13 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
         self.trace.shift = self.shift();
         self.trace.of(frame)
     }
 
     fn message_received(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
-        self.show_handshake_step(step);
+        self.record_handshake_step(step);
     }
 
     fn finished(&mut self, output: InterbusOutput, services: &mut Services) {
@@ -129,20 +129,20 @@ impl SessionEvents for Encoder {
             InterbusOutput::Check(lines) => self.check = Some(words::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
             InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
-            InterbusOutput::Committed(committed) => self.committed(*committed, services),
+            InterbusOutput::Committed(committed) => self.handle_commit_end(*committed, services),
             // Only the command line runs these jobs.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
         }
     }
 
-    fn means_no_response(&self, error: &JobError) -> bool {
-        words::means_no_response(error)
+    fn is_no_response(&self, error: &JobError) -> bool {
+        words::is_no_response(error)
     }
 
     /// Discards the review and the confirmed standstill.
-    fn forget_requests(&mut self) {
+    fn discard_requests(&mut self) {
         self.set_stopped(false);
-        self.forget_plan();
+        self.discard_plan();
     }
 
     fn handle_early_end(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
@@ -163,7 +163,7 @@ impl SessionEvents for Encoder {
 
     fn let_go(&mut self, end: JobState, services: &mut Services) {
         self.motor = None;
-        self.forget_requests();
+        self.discard_requests();
         self.session.let_go(end, services);
     }
 }

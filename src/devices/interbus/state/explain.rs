@@ -27,7 +27,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotBegun(why) => vec![write::not_started_text(why)],
+        JobError::NotStarted(why) => vec![write::not_started_text(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption_text(interrupted, backup, *planned, *kind)
         }
@@ -35,12 +35,12 @@ pub fn job(error: &JobError) -> Vec<Text> {
 }
 
 /// Returns why the connection was lost, or `None` if it can still be used.
-pub fn loss(error: &JobError) -> Option<Text> {
+pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
 
 /// Returns whether the link is open but the gateway does not reply.
-pub fn means_no_response(error: &JobError) -> bool {
+pub fn is_no_response(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 

@@ -1,6 +1,6 @@
 //! INTERBUS as a kind of device that the studio offers.
 
-use super::staged::Staged;
+use super::staged::StagedEdits;
 use super::{Encoder, InterbusForm};
 use crate::app::services::Services;
 use crate::app::session::Session;
@@ -33,7 +33,8 @@ impl DeviceType for Encoder {
     fn tables(_store: &Store) -> Self::Tables {}
 
     fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
-        let staged = profile.map(|(profile, ())| Staged::for_profile(profile.image.clone(), profile.names.clone()));
+        let staged =
+            profile.map(|(profile, ())| StagedEdits::for_profile(profile.image.clone(), profile.names.clone()));
         Encoder::with(session, staged.unwrap_or_default())
     }
 

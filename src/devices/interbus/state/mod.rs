@@ -38,7 +38,7 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-pub use staged::{Edit, EditError, EditedValues, Mark, Staged, ValueId};
+pub use staged::{Edit, EditError, EditedValues, Mark, StagedEdits, ValueId};
 pub use table::Import;
 
 pub enum Done {

@@ -2,7 +2,7 @@
 
 use super::trace::Meaning;
 use super::{Done, Encoder, InterbusAction, TEXTS};
-use crate::app::action::Opened;
+use crate::app::action::OpenedConnection;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{HasProfile, SessionEvents};
 use crate::app::{ActionContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
@@ -13,7 +13,7 @@ impl DeviceModel for Encoder {
     type Action = InterbusAction;
     type Done = Done;
 
-    fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Interbus>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
@@ -70,7 +70,7 @@ impl DeviceModel for Encoder {
     fn ask_where_to_save(&mut self, services: &mut Services) {
         // This is checked before the user enters a file name, since saving selects cam programs. Known values need no
         // reading.
-        if self.needs_standstill() && !self.is_stopped() && !self.saves_last_reading() {
+        if self.needs_standstill_confirmation() && !self.is_stopped() && !self.saves_last_reading() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {
             self.session.ask_where_to_save(services);

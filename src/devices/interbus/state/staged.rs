@@ -16,13 +16,13 @@ mod merge;
 #[cfg(test)]
 mod tests;
 
-pub use difference::{Differs, ValueId};
+pub use difference::{ValueDifference, ValueId};
 pub use draft::SavedEdit;
 pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{EditHistoryParts, SteppedEdits};
+use crate::app::{EditHistoryParts, SnapshotEdits};
 use crate::devices::interbus::profile::{CamNames, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
@@ -47,7 +47,7 @@ enum BaseSource {
 
 /// The base values, the edited values and the states of undo and redo.
 #[derive(Clone, Debug, Default)]
-pub struct Staged {
+pub struct StagedEdits {
     base_source: BaseSource,
     /// Values of the encoder or the profile, without edits.
     base: Option<EditedValues>,
@@ -82,11 +82,16 @@ impl EditedValues {
     }
 }
 
-impl Staged {
+impl StagedEdits {
     /// Creates the edits of a profile. Values that the profile lacks can be added.
     pub fn for_profile(image: Image, names: CamNames) -> Self {
         let base = EditedValues { image, names };
-        Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
+        StagedEdits {
+            base_source: BaseSource::Profile,
+            wanted: Some(base.clone()),
+            base: Some(base),
+            ..StagedEdits::default()
+        }
     }
 
     /// Sets the content of a saved profile as the base. If it equals the edited values, the states of undo are kept.
@@ -132,7 +137,7 @@ impl Staged {
         self.refresh(image);
     }
 
-    const fn is_encoder(&self) -> bool {
+    const fn is_from_encoder(&self) -> bool {
         matches!(self.base_source, BaseSource::Encoder)
     }
 
@@ -149,7 +154,7 @@ impl Staged {
 
     /// Discards all values and edits, since another encoder is used.
     pub fn clear(&mut self) {
-        *self = Staged { base_source: self.base_source, ..Staged::default() };
+        *self = StagedEdits { base_source: self.base_source, ..StagedEdits::default() };
     }
 
     /// Returns the base values, or `None` if nothing was read.
@@ -195,7 +200,7 @@ impl Staged {
     }
 }
 
-impl SteppedEdits for Staged {
+impl SnapshotEdits for StagedEdits {
     type Values = EditedValues;
 
     fn differences_count(&self) -> usize {

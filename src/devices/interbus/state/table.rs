@@ -53,7 +53,7 @@ impl Encoder {
 
     /// Adds the imported table to the edits, or discards it. A table with problems is not added, since the cam of an
     /// omitted line would be switched off.
-    pub(super) fn apply_or_discard_import(&mut self, take: bool) {
+    pub(super) fn finish_import(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {
             return;

@@ -1,7 +1,7 @@
 //! Meaning of frames in the trace. It depends on the mode of the encoder, which earlier OUT words have selected.
 
 use super::word_meaning::{self, WordContext};
-use crate::app::{Explained, Text, TraceFault};
+use crate::app::{FrameExplanation, Text, TraceFault};
 use crate::devices::interbus::procedures::{Carried, Fault, fault, word_in_frame};
 use crate::devices::interbus::protocol::{Command, EncoderMode, ReadOutNumber, Reply, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
@@ -30,29 +30,30 @@ impl Meaning {
     }
 
     /// Explains a frame. The explanation is empty if an intact frame contains no word.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
-        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> FrameExplanation {
+        let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
             self.requested.clone_from(&bytes);
             return self.word_meaning_texts(entry.direction, &bytes).into();
         }
         match fault(&self.requested, &bytes, self.order) {
-            Some(Fault::Broken(damage)) => Explained::broken(explained::damage_text(damage)),
-            Some(Fault::Refused(exception)) => {
-                Explained { fault: Some(TraceFault::Reported), ..vec![explained::exception_text(exception)].into() }
-            }
+            Some(Fault::Broken(damage)) => FrameExplanation::broken(explained::damage_text(damage)),
+            Some(Fault::Refused(exception)) => FrameExplanation {
+                fault: Some(TraceFault::Reported),
+                ..vec![explained::exception_text(exception)].into()
+            },
             None => self.received(&bytes),
         }
     }
 
     /// Explains a reply. An error word is marked as an error that the encoder reports.
-    fn received(&mut self, bytes: &[u8]) -> Explained {
+    fn received(&mut self, bytes: &[u8]) -> FrameExplanation {
         let meaning = self.word_meaning_texts(Direction::Received, bytes);
         let is_error = match word_in_frame(false, bytes, self.order) {
             Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
         };
-        Explained { fault: is_error.then_some(TraceFault::Reported), ..meaning.into() }
+        FrameExplanation { fault: is_error.then_some(TraceFault::Reported), ..meaning.into() }
     }
 
     fn word_meaning_texts(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {

@@ -49,7 +49,7 @@ impl HasMemory for Encoder {
         check_device(profile, &own.profile()).is_err()
     }
 
-    fn is_for_another_type(&self, change: &Change) -> bool {
+    fn is_for_other_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         other_type(&profile.identity, &own.profile()).is_some()
     }
@@ -67,7 +67,7 @@ impl HasMemory for Encoder {
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }
 
-    fn forget_device(&mut self) {
+    fn discard_device_data(&mut self) {
         (self.survey, self.check, self.refusal) = (None, None, None);
         self.staged.clear();
         self.read_outs.clear();

@@ -8,7 +8,8 @@ use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{
-    card, card_with, choice, empty_placeholder, enabled_button, encoder_page, entry, folding_card, paragraph, row,
+    card, card_with_trailing, choice, empty_placeholder, enabled_button, encoder_page, entry, folding_card, paragraph,
+    row,
 };
 use crate::ui::{Theme, icons, motor};
 
@@ -23,7 +24,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (
             |ui| wiring_ui(ui, theme),
             |ui, actions| {
-                present_word_ui(ui, theme, encoder, actions);
+                current_word_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
                     theme.gap(ui);
                     motor::card_ui(ui, theme, motor.rpm(), |rpm| {
@@ -46,7 +47,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, theme, "encoder_card.title", read, |ui| {
+    card_with_trailing(ui, theme, "encoder_card.title", read, |ui| {
         let serial = theme.say("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
@@ -84,12 +85,12 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::device(encoder.session.id, Interbus::Check));
         }
     };
-    card_with(ui, theme, "check_card.title", run, |ui| {
+    card_with_trailing(ui, theme, "check_card.title", run, |ui| {
         lines_ui(ui, theme, encoder.check.as_deref(), TEXTS.text("ib_check.nothing"));
     });
 }
 
-fn present_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn current_word_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
@@ -154,18 +155,18 @@ fn wiring_ui(ui: &mut Ui, theme: &Theme) {
 mod tests {
     use super::WIRING;
     use crate::devices::interbus::state::TEXTS;
-    use crate::ui::wiring::check_notes;
+    use crate::ui::wiring::assert_notes;
 
     /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield
     /// to the housing, Loop: housing to PE) and 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
     #[test]
     fn the_wiring_card_matches_the_manual() {
-        check_notes(
+        assert_notes(
             &TEXTS,
             &WIRING,
             &["two 9-pin round connectors", "male for the incoming and female for the outgoing cable"],
         );
-        check_notes(&TEXTS, &WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
-        check_notes(&TEXTS, &WIRING, &["cable screen to the encoder housing", "housing to PE", "no address switch"]);
+        assert_notes(&TEXTS, &WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
+        assert_notes(&TEXTS, &WIRING, &["cable screen to the encoder housing", "housing to PE", "no address switch"]);
     }
 }

@@ -84,8 +84,8 @@ impl TypedDeviceView for InterbusView {
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {
         match page {
-            Page::Parameters => encoder.edits_parameters(),
-            Page::Cams => encoder.edits_cams(),
+            Page::Parameters => encoder.has_parameter_edits(),
+            Page::Cams => encoder.has_cam_edits(),
             _ => false,
         }
     }

@@ -9,7 +9,7 @@ use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    if !encoder.needs_standstill() {
+    if !encoder.needs_standstill_confirmation() {
         return;
     }
     let id = encoder.session.id;

@@ -48,7 +48,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExportArgs) -> Result {
                 Some(times) => times.calculate_timing(&reads),
                 None => {
                     output.remark(&TEXTS.text("ssi_timing.general").terminal_text());
-                    Times::of_any_encoder(&reads)
+                    Times::for_any_encoder(&reads)
                 }
             };
             for warning in timing.warnings {

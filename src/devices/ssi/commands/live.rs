@@ -35,7 +35,7 @@ pub(super) fn position(common: &CommonArgs, output: &Output, position: &Position
     let mut first = None;
     let job = || SsiJob::Read;
     let ended = readings(&mut runner, position, job, |came| {
-        for (at, word) in words(came)?.with_times() {
+        for (at, word) in words(came)?.iter_with_times() {
             let decoded = DecodedFrame::new(&chosen.layout, word);
             let first = *first.get_or_insert(SampleTime::from(at));
             let begun = tally.note(&chosen.layout, decoded.reading, at.into());
@@ -140,7 +140,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &Status) -> R
     let chosen = layout(output, "status", &status.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
-    let Some((_, word)) = words.with_times().next() else {
+    let Some((_, word)) = words.iter_with_times().next() else {
         return Err(Failure::Failed(vec!["The adapter returned no word. Try again.".to_owned()]));
     };
     let decoded = DecodedFrame::new(&chosen.layout, word);

@@ -20,7 +20,7 @@ use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
-use crate::devices::ssi::sim::{AtAdapter, Encoder};
+use crate::devices::ssi::sim::{AttachableEncoder, Encoder};
 use crate::kinds::attachable_kinds;
 use crate::profile::Body;
 
@@ -124,9 +124,9 @@ fn simulated(output: &Output, arguments: &SimulateArgs) -> Result<Box<dyn Simula
         Some(spec) => {
             let chosen = layout::choose(&output.as_text(), &SsiLayoutArgs { spec })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
-            AtAdapter::with_default_encoder(Encoder { layout: chosen.layout, direction, preset })
+            AttachableEncoder::with_default_encoder(Encoder { layout: chosen.layout, direction, preset })
         }
-        None => AtAdapter::DELIVERED,
+        None => AttachableEncoder::DELIVERED,
     };
     // The encoder replaces the one with the factory settings, which is configured with the same keys.
     let others = attachable_kinds().iter().copied().filter(|device| device.keys() != encoder.keys());

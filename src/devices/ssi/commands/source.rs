@@ -7,7 +7,7 @@ use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::{FrameTextError, Layout, parse_frame};
-use crate::devices::ssi::state::{Frames, Origin, TEXTS, frames_of, read_frames};
+use crate::devices::ssi::state::{Frames, Origin, TEXTS, parse_frame_file, read_frames};
 use crate::store::MAX_TEXT;
 
 /// Argument that selects standard input instead of a file or a frame.
@@ -17,7 +17,7 @@ const INPUT: &str = "-";
 /// Incomplete bursts are reported in a remark.
 pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     let frames = if path == Path::new(INPUT) {
-        frames_of(&input()?, "standard input".to_owned(), clocks)
+        parse_frame_file(&input()?, "standard input".to_owned(), clocks)
     } else {
         read_frames(path, clocks)
     };

@@ -9,7 +9,7 @@ use crate::devices::ssi::procedures::{LinkParameters, Station};
 use crate::kinds::attachable_kinds;
 use crate::link::{Clock, LinkScheme, LinkUrl, RealClock};
 use crate::store::Store;
-use crate::worker::open::{inside, open_bytes, reply_margin, simulated, wrong_target_error};
+use crate::worker::open::{inside, open_byte_stream, reply_margin, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an SSI encoder, without opening the link.
@@ -30,7 +30,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
     // The serial format matters only for an adapter behind a converter. It is the same for all adapters.
-    let wire = open_bytes(url, FORMAT, &clock, || {
+    let wire = open_byte_stream(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))
     })?;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::station::ClockSettings;
-use crate::buses::bridge::procedures::Portion;
+use crate::buses::bridge::procedures::Chunk;
 use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
 
@@ -44,8 +44,8 @@ impl Words {
     }
 
     /// Converts a packet of streamed words. `wished_us` is the requested interval in microseconds.
-    pub(super) fn run(portion: &Portion, data: &SsiData, asking: ClockSettings, clock_hz: u32, wished_us: u32) -> Self {
-        let Portion { first, time, period_ns, lost, .. } = *portion;
+    pub(super) fn run(portion: &Chunk, data: &SsiData, asking: ClockSettings, clock_hz: u32, wished_us: u32) -> Self {
+        let Chunk { first, time, period_ns, lost, .. } = *portion;
         Words {
             first,
             // The time must not be before the start of the stream.
@@ -69,7 +69,7 @@ impl Words {
     }
 
     /// Returns an iterator over the words with the times at which they were read.
-    pub fn with_times(&self) -> impl Iterator<Item = (Moment, u64)> {
+    pub fn iter_with_times(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))
     }
@@ -85,15 +85,15 @@ mod tests {
     fn a_packet_yields_a_run_of_timed_words() {
         let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
         let time = SampleTime::from_nanoseconds(3_000_000);
-        let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };
+        let portion = Chunk { first: 7, time, period_ns: 50_000, lost: 2, data: StreamData::Ssi(data.clone()) };
         let asking = ClockSettings { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
         let run = Words::run(&portion, &data, asking, 1_500_000, 50);
         let at = |us| Moment::from_elapsed(Duration::from_micros(us));
-        assert_eq!(run.with_times().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
+        assert_eq!(run.iter_with_times().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
         assert_eq!((run.is_stream_start(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
         assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
         let lone = Words::one(at(9), 5, asking, 1_000_000);
-        assert_eq!(lone.with_times().collect::<Vec<_>>(), [(at(9), 5)]);
+        assert_eq!(lone.iter_with_times().collect::<Vec<_>>(), [(at(9), 5)]);
         assert_eq!((lone.is_stream_start(), lone.is_streamed()), (true, false));
     }
 }

@@ -74,7 +74,7 @@ pub fn bursts(levels: &[LineLevels]) -> Result<ExtractedFrames, BurstError> {
     halves.sort_by(f64::total_cmp);
     let half = *halves.get(halves.len() / 2).ok_or(BurstError::NoClock)?;
     let pause = LEAST_MONOFLOP.max(HALVES * half);
-    let rests_high = idles_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
+    let rests_high = is_idle_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
     let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
     let falls = |edge: &Edge| edge.rises != rests_high;
     // A complete burst begins with a falling edge and ends with a rising edge.
@@ -97,7 +97,7 @@ fn edges(levels: &[LineLevels]) -> Vec<Edge> {
 
 /// Returns whether the clock idles high, or `None` if it never pauses. The idle level is the level with the longer
 /// total pause.
-fn idles_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool> {
+fn is_idle_high(levels: &[LineLevels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
     let ends = edges.iter().map(|edge| edge.at).chain(std::iter::once(last.at));

@@ -22,7 +22,7 @@ pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_picture, timing_picture};
 pub use table::bit_table;
-pub use text::{ExportText, ModuleObstacle, Say, SettingMeaning, english};
+pub use text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn, english};
 
 /// Converts a name to an identifier of letters, digits and underscores that does not start with a digit.
 fn identifier(name: &str) -> String {

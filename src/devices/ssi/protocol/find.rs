@@ -182,7 +182,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
         return search(Some(SearchUncertainty::Stuck { high }), Vec::new());
     }
-    if different < 8 || seen.is_standing() {
+    if different < 8 || seen.is_at_rest() {
         return search(Some(SearchUncertainty::Standing), Vec::new());
     }
     let repeat = seen.repeat();

@@ -202,7 +202,7 @@ impl Layout {
         let frame = if self.descriptor.inverted { !frame & all } else { frame };
         let sent = frame >> (self.clocks() - self.descriptor.word());
         if self.descriptor.repeat.is_some() {
-            flags = flags.with(self.repetition(frame, sent));
+            flags = flags.with(self.repetition_flags(frame, sent));
         }
         let (bit, before) = self.parity;
         let ones_in_all = (sent & (bit | before)).count_ones();
@@ -257,7 +257,7 @@ impl Layout {
     }
 
     /// Compares a word with its repetition, and returns the flags for the differences.
-    fn repetition(&self, frame: u64, word: u64) -> Flags {
+    fn repetition_flags(&self, frame: u64, word: u64) -> Flags {
         let differs = frame ^ self.repeated(word);
         let again = self.repeated(low_bits_mask(self.descriptor.word()));
         Flags::REPEAT.when(differs & again != 0).with(Flags::PADDING.when(differs & !again != 0))

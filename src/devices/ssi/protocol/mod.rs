@@ -28,9 +28,9 @@ pub use descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, P
 pub use edges::{BurstError, ExtractedFrames, LineLevels, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    ExportText, FormatError, ModuleObstacle, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment, Say,
-    SettingMeaning, TooWideError, UnsupportedProperty, bit_table, c99, english, frame_picture, from_linuxcnc,
-    scl_source, settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
+    ExportText, FormatError, ModuleObstacle, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment,
+    SettingMeaning, TooWideError, TranslateFn, UnsupportedProperty, bit_table, c99, english, frame_picture,
+    from_linuxcnc, scl_source, settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingName,

@@ -38,7 +38,7 @@ impl FindingCounts {
             for index in same {
                 if let Some(noted) = self.noted.get_mut(*index) {
                     noted.last = at;
-                    noted.count += u64::from(is_of_one_transfer(&noted.finding));
+                    noted.count += u64::from(is_single_transfer_finding(&noted.finding));
                 }
             }
             return Vec::new();
@@ -60,7 +60,7 @@ impl FindingCounts {
             now.push(index);
             let Some(noted) = self.noted.get_mut(index) else { continue };
             noted.last = at;
-            noted.count += u64::from(!noted.stands || is_of_one_transfer(&finding));
+            noted.count += u64::from(!noted.stands || is_single_transfer_finding(&finding));
             if !noted.stands {
                 begun.push(finding);
             }
@@ -91,7 +91,7 @@ impl FindingCounts {
 
 /// Returns whether a finding concerns a single transfer. Such a finding is counted again if the next frame has it as
 /// well.
-fn is_of_one_transfer(finding: &FrameFinding) -> bool {
+fn is_single_transfer_finding(finding: &FrameFinding) -> bool {
     matches!(
         finding,
         FrameFinding::Error { cleared_by_transfer: true, .. } | FrameFinding::Parity | FrameFinding::Repeat

@@ -177,7 +177,7 @@ impl Times {
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
     /// Calculates the times for reading an encoder of no family.
-    pub fn of_any_encoder(reads: &ReadConditions) -> Timing {
+    pub fn for_any_encoder(reads: &ReadConditions) -> Timing {
         let mut timing = Self::GENERAL.calculate_timing(reads);
         for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {
             *warning = Warning::SynchronousUnknown;

@@ -24,22 +24,22 @@ parameters! {
 }
 
 #[derive(Clone, Debug)]
-pub struct AtAdapter {
+pub struct AttachableEncoder {
     /// Encoder to use if the settings do not name one, or `None` for the encoder with factory settings.
     encoder: Option<Encoder>,
 }
 
-impl AtAdapter {
+impl AttachableEncoder {
     /// Adapter with an encoder in factory settings, unless the link names another one.
-    pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
+    pub const DELIVERED: AttachableEncoder = AttachableEncoder { encoder: None };
 
     /// Creates an adapter with the given encoder, unless the link names another one.
     pub const fn with_default_encoder(encoder: Encoder) -> Self {
-        AtAdapter { encoder: Some(encoder) }
+        AttachableEncoder { encoder: Some(encoder) }
     }
 }
 
-impl AttachableKind for AtAdapter {
+impl AttachableKind for AttachableEncoder {
     fn keys(&self) -> &'static [&'static str] {
         Settings::KEYS
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::AtAdapter;
+use super::AttachableEncoder;
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::AttachableKind;
 use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
@@ -12,12 +12,12 @@ use crate::sim::ConfigError;
 use crate::sim::setting::pairs;
 
 /// Creates a host with the encoder on the shaft of a test.
-fn on_a_dial(query: &str) -> Host {
-    Host::to(query, &[&AtAdapter::DELIVERED, &Dial::SETTINGS])
+fn host_with_dial(query: &str) -> Host {
+    Host::to(query, &[&AttachableEncoder::DELIVERED, &Dial::SETTINGS])
 }
 
 fn read(query: &str) -> Result<(), ConfigError> {
-    AtAdapter::DELIVERED.attach_device(&pairs(query)).map(|_| ())
+    AttachableEncoder::DELIVERED.attach_device(&pairs(query)).map(|_| ())
 }
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a
@@ -32,7 +32,7 @@ fn words_follow_code_preset_and_direction() {
         ("ssi=atm60,direction=ccw", (1 << 25) - natural),
         ("ssi=atm60,direction=ccw,preset=1", (1 << 25) - natural + 1),
     ] {
-        let mut host = on_a_dial(query);
+        let mut host = host_with_dial(query);
         host.refuses(Request::SsiRead, ErrorCode::BAD_ARGUMENT);
         host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
         let Some(Message::Reply(Reply::SsiRead { raw, .. })) = host.ask(Request::SsiRead) else { panic!() };
@@ -46,7 +46,7 @@ fn words_follow_code_preset_and_direction() {
         });
         assert!(words.clone().count() > 900 && words.all(|raw| raw == word << 1), "{query}");
     }
-    let mut host = on_a_dial("");
+    let mut host = host_with_dial("");
     for clocks in [0, 65] {
         let wrong = Request::SsiConfig { clocks, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
         host.refuses(wrong, ErrorCode::BAD_ARGUMENT);
@@ -69,14 +69,14 @@ fn invalid_values_are_reported() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..2_usize, value in ".*") {
-        let _ = AtAdapter::DELIVERED.attach_device(&[(AtAdapter::DELIVERED.keys()[key].to_owned(), value)]);
+        let _ = AttachableEncoder::DELIVERED.attach_device(&[(AttachableEncoder::DELIVERED.keys()[key].to_owned(), value)]);
     }
 }
 
 /// At 60 rpm a revolution of 2^13 steps takes a second; the encoder needs no other device to be turned.
 #[test]
 fn the_encoder_turns_without_other_devices() {
-    let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AtAdapter::DELIVERED]);
+    let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AttachableEncoder::DELIVERED]);
     host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
     let mut words = (0..3).map(|_| {
         host.receive(host.now + Duration::from_millis(200));

@@ -134,7 +134,7 @@ impl SsiForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::connect::parameters::tests::assert_comes_back;
+    use crate::app::connect::parameters::tests::assert_round_trip;
 
     #[test]
     fn links_round_trip_through_the_form() {
@@ -150,7 +150,7 @@ mod tests {
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",
             "replay:monday.trace",
         ];
-        assert_comes_back(&links, |url| SsiForm::from_url(url).url());
+        assert_round_trip(&links, |url| SsiForm::from_url(url).url());
         assert_eq!(SsiForm::usual().to_string(), "sim:?rpm=6");
     }
 

@@ -289,7 +289,7 @@ impl PendingEdits for LayoutDesigner {
         self.edit(Edit::Whole(Box::new(self.saved.clone())))
     }
 
-    fn forget_steps(&mut self) {
+    fn clear_undo_steps(&mut self) {
         self.history.forget();
     }
 }

@@ -97,7 +97,7 @@ impl HasDraft for Encoder {
         self.session.apply_document(file, document);
     }
 
-    fn note_profile_saved(&mut self, document: ProfileDocument) {
+    fn handle_profile_saved(&mut self, document: ProfileDocument) {
         if let Ok(profile) = document.body.into_profile() {
             self.designer.mark_saved(profile);
         }

@@ -86,7 +86,7 @@ impl Encoder {
     }
 
     /// Returns whether a number of clocks is being tried that differs from the layout.
-    pub fn has_own_clocks(&self) -> bool {
+    pub fn has_trial_clocks(&self) -> bool {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
 
@@ -116,7 +116,7 @@ impl Encoder {
 
     pub(super) fn handle_layout_change(&mut self, before: &Layout) {
         if self.identity.is_some() {
-            self.name_after_family();
+            self.set_title_from_family();
         }
         let now = self.designer.layout();
         if before == now {
@@ -126,7 +126,7 @@ impl Encoder {
         self.record.reinterpret(now);
     }
 
-    pub(super) fn name_after_family(&mut self) {
+    pub(super) fn set_title_from_family(&mut self) {
         let family = self.designer.family().map(|family| family.name.clone());
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
@@ -164,7 +164,7 @@ impl LayoutDesigner {
 
     pub fn timing(&self) -> Timing {
         let reads = self.reads();
-        self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.calculate_timing(&reads))
+        self.times().map_or_else(|| Times::for_any_encoder(&reads), |times| times.calculate_timing(&reads))
     }
 
     pub fn reads(&self) -> ReadConditions {

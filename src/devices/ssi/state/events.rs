@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
-use crate::app::Explained;
+use crate::app::FrameExplanation;
 use crate::app::services::{JobState, Services};
 use crate::app::session::{Kind, SessionEvents};
 use crate::app::{Severity, Text};
@@ -52,7 +52,7 @@ impl Kind for Ssi {
     }
 
     fn connection_error(error: &JobError) -> Option<Text> {
-        explained::loss(error)
+        explained::connection_loss_text(error)
     }
 }
 
@@ -76,7 +76,7 @@ impl Encoder {
 
     fn accept_identity(&mut self, identity: Identity, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
-        self.name_after_family();
+        self.set_title_from_family();
         if fresh {
             let hello = &identity.hello;
             let adapter = Text::new("log.adapter")
@@ -94,7 +94,7 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> FrameExplanation {
         trace::meaning(frame)
     }
 
@@ -123,11 +123,11 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn means_no_response(&self, error: &JobError) -> bool {
+    fn is_no_response(&self, error: &JobError) -> bool {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }
 
-    fn forget_requests(&mut self) {
+    fn discard_requests(&mut self) {
         (self.motor, self.requested, self.identity) = (None, None, None);
     }
 

@@ -32,7 +32,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 }
 
 /// Returns the reason for the loss of the connection, or `None` if the error does not end it.
-pub fn loss(error: &JobError) -> Option<Text> {
+pub fn connection_loss_text(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link(error)),
         JobError::Adapter(_) | JobError::Cancelled => None,
@@ -226,8 +226,8 @@ mod tests {
     #[test]
     fn only_a_lost_wire_counts_as_a_lost_connection() {
         let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
-        assert_eq!(loss(&gone).unwrap().id(), "link.lost");
-        assert_eq!(loss(&JobError::Adapter(AdapterError::Silent)), None);
+        assert_eq!(connection_loss_text(&gone).unwrap().id(), "link.lost");
+        assert_eq!(connection_loss_text(&JobError::Adapter(AdapterError::Silent)), None);
         assert_eq!(job(&JobError::Cancelled)[0].id(), "encoder.cancelled");
     }
 }

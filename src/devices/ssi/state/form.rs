@@ -111,7 +111,7 @@ impl Group {
     }
 
     /// Returns whether error bits can be added. This requires a frame of no family.
-    pub fn takes_error_bits(&self) -> bool {
+    pub fn accepts_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 

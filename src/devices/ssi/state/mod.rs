@@ -34,7 +34,7 @@ pub use encoder::Encoder;
 pub use export::ExportFormat;
 pub use form::{Entry, Field, FieldInput, Group, Row, whole};
 pub use record::{ReceivedWord, Record, Streamed};
-pub use search::{Frames, Origin, SearchState, frames_of, read_clocks, read_frames};
+pub use search::{Frames, Origin, SearchState, parse_frame_file, read_clocks, read_frames};
 pub use trial::{Decoded, Trial};
 
 use std::path::PathBuf;

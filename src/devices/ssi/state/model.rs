@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::design::Edit;
 use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
-use crate::app::action::Opened;
+use crate::app::action::OpenedConnection;
 use crate::app::documents::{document_of, read_only_reason};
 use crate::app::services::{JobState, Services, StudioEnvironment};
 use crate::app::session::{HasDraft, SessionEvents, Source};
@@ -25,7 +25,7 @@ impl DeviceModel for Encoder {
         Box::new(move |session| session.request_settings(asking))
     }
 
-    fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
+    fn connect(&mut self, opened: OpenedConnection<Ssi>, services: &mut Services) {
         self.let_go(JobState::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();

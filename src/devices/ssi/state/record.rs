@@ -94,7 +94,7 @@ impl Record {
         for run in runs {
             self.follow(&run);
             self.observe(&run);
-            self.buffer_run(run);
+            self.buffer_words(run);
         }
     }
 
@@ -114,7 +114,7 @@ impl Record {
     fn observe(&mut self, run: &Words) {
         let fits = run.clocks == self.layout.clocks();
         let mut sightings = Vec::with_capacity(run.words.len());
-        for (at, word) in run.with_times() {
+        for (at, word) in run.iter_with_times() {
             if !fits {
                 sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
@@ -131,7 +131,7 @@ impl Record {
             sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
         self.track.add(&sightings, &self.meaning);
-        if let Some((at, word)) = run.with_times().last() {
+        if let Some((at, word)) = run.iter_with_times().last() {
             self.last = Some(ReceivedWord {
                 at,
                 clocks: run.clocks,
@@ -141,7 +141,7 @@ impl Record {
         }
     }
 
-    fn buffer_run(&mut self, run: Words) {
+    fn buffer_words(&mut self, run: Words) {
         self.held += run.words.len();
         self.kept.push_back(run);
         while self.held > KEPT && self.kept.len() > 1 {

@@ -75,16 +75,16 @@ pub fn read_clocks(text: &str) -> Result<u8, Text> {
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    frames_of(&text, name, clocks)
+    parse_frame_file(&text, name, clocks)
 }
 
 /// Parses the text of a file like [`read_frames`]. `name` is the name of its origin.
 ///
 /// # Errors
 /// Returns a message with the number of the line that is not a frame.
-pub fn frames_of(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
+pub fn parse_frame_file(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
     let read = match capture::levels(text) {
-        Some(levels) => of_bursts(bursts(&levels?).map_err(words::bursts)?),
+        Some(levels) => frames_from_bursts(bursts(&levels?).map_err(words::bursts)?),
         None => table(text, clocks).unwrap_or_else(|| parse_frames(text, clocks))?,
     };
     Ok(Frames { origin: Origin::File(name), ..read })
@@ -100,7 +100,7 @@ fn file(error: &FileError) -> Text {
     }
 }
 
-fn of_bursts(bursts: ExtractedFrames) -> Frames {
+fn frames_from_bursts(bursts: ExtractedFrames) -> Frames {
     let ExtractedFrames { clocks, frames, left_out } = bursts;
     Frames { origin: Origin::Live, clocks, frames, left_out, are_numbers: false }
 }

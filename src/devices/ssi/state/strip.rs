@@ -176,7 +176,7 @@ impl Strip {
         Some((first.first, last.last))
     }
 
-    pub fn cells_of(&self, frame: u64) -> Vec<CellState> {
+    pub fn cell_states(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
         let cells = self.layout.cells(frame).into_iter();
@@ -210,19 +210,19 @@ impl Field {
         self.last.saturating_sub(self.first) + 1
     }
 
-    pub const fn is_zeros(&self) -> bool {
+    pub const fn is_zero_field(&self) -> bool {
         matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
     }
 
     /// Returns whether the field is an error or parity bit. Each of these bits is a separate field.
-    pub const fn is_single(&self) -> bool {
+    pub const fn is_single_bit(&self) -> bool {
         matches!(self.kind, Kind::Error(_) | Kind::Parity)
     }
 }
 
 impl Handle {
     /// Returns whether the handle is located on a clock rather than between two clocks.
-    pub const fn is_cell(self) -> bool {
+    pub const fn is_on_clock(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }
 }

@@ -187,7 +187,7 @@ impl BurstDiagram {
 
     /// Returns texts about a moment: its time, and the present clock with its content or the reason why the lines are
     /// idle.
-    pub fn state_at(&self, at: f64) -> Vec<Text> {
+    pub fn texts_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
             texts.push(cell(&self.strip, bit.clock));

@@ -1,12 +1,12 @@
 //! Explanation of frames in the trace.
 
-use crate::app::{Explained, Text};
+use crate::app::{FrameExplanation, Text};
 use crate::buses::bridge::protocol::Request;
 use crate::buses::bridge::state::traced;
 use crate::link::{Direction, TraceEntry};
 
-pub(super) fn meaning(entry: &TraceEntry) -> Explained {
-    let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+pub(super) fn meaning(entry: &TraceEntry) -> FrameExplanation {
+    let Some(bytes) = entry.bytes.to_bytes() else { return FrameExplanation::broken(Text::new("trace.hidden")) };
     if entry.direction == Direction::Received
         && let Some(fault) = traced::received(&bytes)
     {

@@ -9,7 +9,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card_with, empty_placeholder, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card_with_trailing, empty_placeholder, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -44,7 +44,7 @@ fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
             actions.push(Action::Command(id, DeviceCommand::Read));
         }
     };
-    card_with(ui, theme, TEXTS.text("ssi_adapter.title"), read, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("ssi_adapter.title"), read, |ui| {
         let Some(identity) = &encoder.identity else {
             empty_placeholder(ui, theme, &say(theme, "ssi_adapter.nothing"), None);
             return;
@@ -88,7 +88,7 @@ fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
             actions.push(Action::device(id, Ssi::ForgetErrors));
         }
     };
-    card_with(ui, theme, TEXTS.text("ssi_tally.title"), forget, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("ssi_tally.title"), forget, |ui| {
         if noted.is_empty() {
             let id = if encoder.last().is_some() { "ssi_tally.none" } else { "ssi_tally.nothing_read" };
             paragraph(ui, theme.label(say(theme, id)));
@@ -116,7 +116,7 @@ fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             actions.push(Action::device(encoder.session.id, Ssi::Check));
         }
     };
-    card_with(ui, theme, "check_card.title", run, |ui| {
+    card_with_trailing(ui, theme, "check_card.title", run, |ui| {
         lines_ui(ui, theme, encoder.check.as_deref(), TEXTS.text("ssi_check.nothing"));
     });
 }

@@ -6,7 +6,7 @@ use super::picture::picture_ui;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::state::{Encoder, ExportFormat, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
-use crate::ui::controls::{button, card, card_with, enabled_button, name, paragraph, problem};
+use crate::ui::controls::{button, card, card_with_trailing, enabled_button, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -49,7 +49,7 @@ pub(super) fn page_ui(
             ui.copy_text(text.clone());
         }
     };
-    card_with(ui, theme, TEXTS.text(own.word()), aside, |ui| match (&picture, &text) {
+    card_with_trailing(ui, theme, TEXTS.text(own.word()), aside, |ui| match (&picture, &text) {
         (Some(picture), _) => picture_ui(ui, theme, picture),
         (None, Ok(text)) => {
             let height = (ui.ctx().content_rect().height() - 330.0).max(160.0);

@@ -10,7 +10,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary_button, row,
+    card, card_with_trailing, committed_entry, enabled_button, entry, icon_button, paragraph, primary_button, row,
     show_error_below, spinner,
 };
 use crate::ui::{Theme, icons};
@@ -50,7 +50,7 @@ pub(super) fn page_ui(
             });
         }
         SearchState::Found { origin, clocks, left_out, frames, search } => {
-            found_ui(ui, theme, encoder, view, (origin, *clocks, search), actions);
+            search_results_ui(ui, theme, encoder, view, (origin, *clocks, search), actions);
             if *left_out > 0 {
                 let text = TEXTS.text("ssi_capture.left_out").with("count", left_out);
                 ui.add_space(theme.space.between);
@@ -74,7 +74,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
                 ask(Ssi::SetClocks(Some(read_clocks(text)?)));
                 Ok(())
             });
-            if encoder.has_own_clocks()
+            if encoder.has_trial_clocks()
                 && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_find.own_clocks")).clicked()
             {
                 view.clocks = None;
@@ -105,7 +105,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
     });
 }
 
-fn found_ui(
+fn search_results_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -156,38 +156,44 @@ fn class_ui(
     let aside = |ui: &mut Ui| {
         ui.label(theme.caption(theme.words(&rank)));
     };
-    card_with(ui, theme, TEXTS.text(if number == 0 { "ssi_find.best" } else { "ssi_find.other" }), aside, |ui| {
-        let all = view.unfolded == Some(number);
-        let shown = if all { class.members.len() } else { MEMBERS };
-        for (place, proposal) in class.members.iter().take(shown).enumerate() {
-            ui.horizontal(|ui| {
-                let word = say(theme, "ssi_find.take");
-                let take = enabled_button(ui, true, icons::CHECK, &word);
-                if take.clicked() {
-                    actions.push(Action::device(id, Ssi::Take(number, place)));
-                }
-                ui.vertical(|ui| {
-                    ui.spacing_mut().item_spacing.y = theme.space.inside;
-                    title_ui(ui, theme, encoder, proposal);
-                    ui.add(egui::Label::new(theme.caption(theme.words(&words::frame(&proposal.layout)))).wrap());
+    card_with_trailing(
+        ui,
+        theme,
+        TEXTS.text(if number == 0 { "ssi_find.best" } else { "ssi_find.other" }),
+        aside,
+        |ui| {
+            let all = view.unfolded == Some(number);
+            let shown = if all { class.members.len() } else { MEMBERS };
+            for (place, proposal) in class.members.iter().take(shown).enumerate() {
+                ui.horizontal(|ui| {
+                    let word = say(theme, "ssi_find.take");
+                    let take = enabled_button(ui, true, icons::CHECK, &word);
+                    if take.clicked() {
+                        actions.push(Action::device(id, Ssi::Take(number, place)));
+                    }
+                    ui.vertical(|ui| {
+                        ui.spacing_mut().item_spacing.y = theme.space.inside;
+                        title_ui(ui, theme, encoder, proposal);
+                        ui.add(egui::Label::new(theme.caption(theme.words(&words::frame(&proposal.layout)))).wrap());
+                    });
                 });
-            });
-        }
-        let more = class.members.len().saturating_sub(shown);
-        if more > 0 {
-            let text = TEXTS.text("ssi_find.more").with("count", more);
-            if ui.link(theme.words(&text)).clicked() {
-                view.unfolded = Some(number);
             }
-        }
-        for open in &class.open {
-            ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
-                paragraph(ui, theme.words(&words::open(*open)));
-            });
-        }
-        paragraph(ui, theme.caption(theme.words(&words::evidence_for(evidence))));
-    });
+            let more = class.members.len().saturating_sub(shown);
+            if more > 0 {
+                let text = TEXTS.text("ssi_find.more").with("count", more);
+                if ui.link(theme.words(&text)).clicked() {
+                    view.unfolded = Some(number);
+                }
+            }
+            for open in &class.open {
+                ui.horizontal_top(|ui| {
+                    ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
+                    paragraph(ui, theme.words(&words::open(*open)));
+                });
+            }
+            paragraph(ui, theme.caption(theme.words(&words::evidence_for(evidence))));
+        },
+    );
 }
 
 fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &LayoutProposal) {

@@ -13,7 +13,7 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph,
+    button, card_with_trailing, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph,
     primary_button, show_error_below, two_columns,
 };
 use crate::ui::{Theme, icons};
@@ -78,7 +78,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         }
     };
     let mut asked = Vec::new();
-    card_with(ui, theme, TEXTS.text("ssi_layout.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("ssi_layout.title"), aside, |ui| {
         family(ui, theme, encoder, view, &mut asked);
         ui.add_space(theme.space.between);
         strip_ui(ui, theme, encoder, view, &mut asked);
@@ -215,7 +215,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
     ui.push_id(error, |ui| {
         let content = |ui: &mut Ui| {
             rows_ui(ui, theme, encoder, &group.rows, &mut view.form, actions);
-            if group.takes_error_bits()
+            if group.accepts_error_bits()
                 && enabled_button(
                     ui,
                     encoder.designer.with_error_bit().is_some(),
@@ -231,7 +231,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
         if group.is_foldable() {
             folding_card(ui, theme, title, content);
         } else {
-            card_with(ui, theme, title, aside, content);
+            card_with_trailing(ui, theme, title, aside, content);
         }
     });
     actions.extend(asked.map(|asked| Action::device(id, asked)));

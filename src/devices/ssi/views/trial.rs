@@ -9,7 +9,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, TrialInput, whole};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card_with, committed_entry, entry, icon_button, mono_entry, name, paragraph, row, show_error_below,
+    card_with_trailing, committed_entry, entry, icon_button, mono_entry, name, paragraph, row, show_error_below,
     show_error_beside,
 };
 use crate::ui::{Theme, icons};
@@ -55,7 +55,7 @@ pub(super) fn card_ui(
             }
         }
     };
-    card_with(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
         numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits_ui(ui, theme, encoder, &shown, view, actions);
         show_error_below(ui, theme, encoder.trial.problem());
@@ -82,7 +82,7 @@ fn numbers(
             put(TrialInput::Position(whole(text)?));
             Ok(())
         });
-        refused_ui(ui, theme, view.position.as_ref());
+        refusal_ui(ui, theme, view.position.as_ref());
     });
     match shown.place {
         Some((_, Location::Shaft { turns, steps, degrees })) => {
@@ -92,14 +92,14 @@ fn numbers(
                     put(TrialInput::Place(whole(text)?, steps));
                     Ok(())
                 });
-                refused_ui(ui, theme, view.turns.as_ref());
+                refusal_ui(ui, theme, view.turns.as_ref());
             });
             entry(ui, theme, &own_steps, |ui| {
                 committed_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
                     put(TrialInput::Place(turns, whole(text)?));
                     Ok(())
                 });
-                refused_ui(ui, theme, view.steps.as_ref());
+                refusal_ui(ui, theme, view.steps.as_ref());
             });
             row(ui, theme, &say(theme, "ssi_trial.angle"), theme.monospace(format!("{} °", theme.number(degrees, 4))));
         }
@@ -115,7 +115,7 @@ fn numbers(
     }
 }
 
-fn refused_ui(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
+fn refusal_ui(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
     show_error_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 

@@ -71,14 +71,14 @@ fn limits(theme: &Theme, signal: &Signal) -> String {
 mod tests {
     use super::{NOTES, WIRES};
     use crate::devices::ssi::state::TEXTS;
-    use crate::ui::wiring::{check_notes, check_wires};
+    use crate::ui::wiring::{assert_notes, assert_wires};
 
     /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
     /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and
     /// rates).
     #[test]
     fn the_wiring_card_matches_the_manual() {
-        check_wires(
+        assert_wires(
             &TEXTS,
             &WIRES,
             &[
@@ -91,7 +91,7 @@ mod tests {
             ],
         );
         let lengths = ["400 kHz below 50 m", "300 kHz below 100 m", "200 kHz below 200 m", "100 kHz below 400 m"];
-        check_notes(&TEXTS, &NOTES, &["twist", "screen"]);
-        check_notes(&TEXTS, &NOTES, &lengths);
+        assert_notes(&TEXTS, &NOTES, &["twist", "screen"]);
+        assert_notes(&TEXTS, &NOTES, &lengths);
     }
 }

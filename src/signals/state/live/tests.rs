@@ -55,9 +55,9 @@ fn notice_ids(services: &Services) -> Vec<&'static str> {
 fn a_shortened_window_reports_its_length() {
     let mut source = Source { window_ms: 5_000, ..Source::default() };
     // 500 000 samples at 100 kHz and at 1 MHz.
-    assert_eq!(source.actual_limited_window_ms(), None);
+    assert_eq!(source.limited_window_ms(), None);
     source.settings.rate_hz = 1e6;
-    assert_eq!(source.actual_limited_window_ms(), Some(500.0));
+    assert_eq!(source.limited_window_ms(), Some(500.0));
 }
 
 #[test]

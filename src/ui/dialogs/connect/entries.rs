@@ -96,9 +96,15 @@ pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
 }
 
 /// Function that returns a device message in the window's language.
-type Say = fn(&Theme, &'static str) -> String;
+type TranslateFn = fn(&Theme, &'static str) -> String;
 
-pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIterator<Item = Entry>, typed: &mut Typed) {
+pub(crate) fn typed(
+    ui: &mut Ui,
+    theme: &Theme,
+    say: TranslateFn,
+    entries: impl IntoIterator<Item = Entry>,
+    typed: &mut Typed,
+) {
     for own in entries {
         let word = say(theme, own.label);
         entry(ui, theme, &word, |ui| field(ui, theme, &word, &own, typed));
@@ -109,7 +115,7 @@ pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIter
 pub(crate) fn entry_row(
     ui: &mut Ui,
     theme: &Theme,
-    say: Say,
+    say: TranslateFn,
     entries: impl IntoIterator<Item = Entry>,
     typed: &mut Typed,
 ) {

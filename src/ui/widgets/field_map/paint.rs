@@ -58,13 +58,13 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
         }
     }
     if let Some(run) = runs.get(widest_run(runs)) {
-        draw_inscription(ui, theme, *run, field);
+        draw_label(ui, theme, *run, field);
     }
 }
 
 /// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, icons
 /// replace the caption.
-fn draw_inscription(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
+fn draw_label(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
     let painter = ui.painter();

@@ -119,7 +119,7 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
         return false;
     }
     let last = lines.total().saturating_sub(1);
-    let at = view.selected.and_then(|own| lines.line_of(own));
+    let at = view.selected.and_then(|own| lines.line_index(own));
     let page = view.page.max(1);
     let to = match (key, at) {
         (Key::ArrowUp | Key::ArrowDown | Key::PageUp | Key::PageDown, None) => 0,

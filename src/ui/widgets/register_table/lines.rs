@@ -71,7 +71,7 @@ impl Lines {
     }
 
     /// Returns the line of an item. Returns `None` if the item is not shown.
-    pub(super) fn line_of(&self, what: SelectedRow) -> Option<usize> {
+    pub(super) fn line_index(&self, what: SelectedRow) -> Option<usize> {
         match what {
             SelectedRow::Group(group) => self.sections.get(group).map(|section| section.start),
             SelectedRow::Row(place) => {
@@ -140,14 +140,14 @@ mod tests {
         for (line, kind) in expected.into_iter().enumerate() {
             assert_eq!(lines.at(line), Some(kind), "{line}");
             let back = match kind {
-                LineKind::Group(group) => lines.line_of(SelectedRow::Group(group)),
-                LineKind::Row(place) => lines.line_of(SelectedRow::Row(place)),
+                LineKind::Group(group) => lines.line_index(SelectedRow::Group(group)),
+                LineKind::Row(place) => lines.line_index(SelectedRow::Row(place)),
                 LineKind::Bits(..) => Some(line),
             };
             assert_eq!(back, Some(line), "{kind:?}");
         }
         assert_eq!(lines.at(expected.len()), None);
-        assert_eq!(lines.line_of(SelectedRow::Row(place(2, 0))), None, "its group is folded");
+        assert_eq!(lines.line_index(SelectedRow::Row(place(2, 0))), None, "its group is folded");
         assert_eq!(lines.selection_at(4), Some(SelectedRow::Row(place(0, 1))));
         assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).at(0), None);
     }

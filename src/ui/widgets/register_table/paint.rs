@@ -58,7 +58,7 @@ pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &C
     let middle = rect.top() + HEADER / 2.0 - 2.0;
     for (column, range) in columns.iter().filter(|(column, _)| *column != Column::Marks) {
         let words = theme.caption(theme.say(title(kind, column)));
-        draw_inscription(ui, theme, rect, middle, range, words, column == Column::Decimal);
+        draw_label(ui, theme, rect, middle, range, words, column == Column::Decimal);
     }
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
@@ -76,7 +76,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     let right = rect.left() + CARET + title.size().x;
     painter.galley(pos2(rect.left() + CARET, middle - title.size().y / 2.0), title, palette.text.into());
     let room = Rangef::new(right - rect.left() + theme.space.groups, rect.width());
-    draw_inscription(ui, theme, rect, middle, room, theme.caption(&group.note), false);
+    draw_label(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
 /// Draws a register. Its value is left out while it is being edited.
@@ -97,7 +97,7 @@ pub(super) fn row(
         && row.read_only.is_none()
         && let Some(range) = columns.range(Column::Value)
     {
-        ui.painter().rect_filled(value_box(theme, rect, range), 2.0, palette.raised);
+        ui.painter().rect_filled(value_edit_rect(theme, rect, range), 2.0, palette.raised);
     }
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
@@ -130,7 +130,7 @@ pub(super) fn row(
             (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
             _ => range,
         };
-        let width = draw_inscription(ui, theme, rect, rect.center().y, range, words.color(ink), right);
+        let width = draw_label(ui, theme, rect, rect.center().y, range, words.color(ink), right);
         if row.edited && column == Column::Value {
             let left = rect.left() + range.min;
             let y = rect.bottom() - 2.0;
@@ -140,7 +140,7 @@ pub(super) fn row(
 }
 
 /// Returns the clickable area that starts editing a line's value.
-pub(super) fn value_box(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
+pub(super) fn value_edit_rect(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     let inset = theme.space.inside;
     let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
@@ -182,7 +182,7 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
             Column::Marks | Column::Decimal | Column::Access | Column::Range | Column::Default => continue,
         };
         let range = Rangef::new(range.min + inset, range.max);
-        draw_inscription(ui, theme, rect, rect.center().y, range, words.color(ink), false);
+        draw_label(ui, theme, rect, rect.center().y, range, words.color(ink), false);
     }
     let x = rect.left() + MARK / 2.0;
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
@@ -195,7 +195,7 @@ fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) ->
 }
 
 /// Draws text within a column and returns its width. A text that is too long is truncated.
-fn draw_inscription(
+fn draw_label(
     ui: &Ui,
     theme: &Theme,
     line: Rect,

@@ -36,7 +36,7 @@ pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
 fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below: bool) {
     let palette = theme.palette;
     let (icon, ink) = match (gauge.fits(), gauge.value) {
-        (true, _) if !gauge.is_best() => (icons::INFO, palette.text),
+        (true, _) if !gauge.is_in_best_range() => (icons::INFO, palette.text),
         (true, _) => (icons::CHECK_CIRCLE, palette.good),
         (false, Some(_)) => (icons::WARNING, palette.warn),
         (false, None) => (icons::QUESTION, palette.muted),

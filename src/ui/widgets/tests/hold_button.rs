@@ -8,13 +8,13 @@ use HoldEvent::{Hold, Press, Release, Stop};
 
 use super::{focus, theme, window};
 use crate::app::HoldEvent;
-use crate::ui::widgets::{HoldButton, HoldSurroundings, hold_button, surround_hold_buttons};
+use crate::ui::widgets::{HoldButton, HoldButtonContext, hold_button, set_hold_button_context};
 
 #[derive(Default)]
 struct Jog {
     locked: bool,
     hidden: bool,
-    around: HoldSurroundings,
+    around: HoldButtonContext,
     events: Vec<HoldEvent>,
 }
 
@@ -23,7 +23,7 @@ fn jog() -> Harness<'static, Jog> {
         if jog.hidden {
             return;
         }
-        surround_hold_buttons(ui.ctx(), jog.around);
+        set_hold_button_context(ui.ctx(), jog.around);
         let button = HoldButton { word: "+", caption: "hold", label: "Jog up", enabled: !jog.locked, has_ended: false };
         jog.events.extend(hold_button(ui, &theme(), &button, Vec2::new(120.0, 64.0)));
     })

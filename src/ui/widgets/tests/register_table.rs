@@ -10,8 +10,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use super::{CTRL, NONE, focus, press, theme, window};
 use crate::app::Text;
 use crate::ui::widgets::{
-    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
-    RegisterTable, RegisterView, register_table,
+    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
+    RegisterTableOutput, RegisterView, register_table,
 };
 
 #[derive(Default)]
@@ -19,7 +19,7 @@ struct Registers {
     edits: BTreeMap<RegisterLocation, u8>,
     view: RegisterView,
     events: Vec<RegisterEvent>,
-    output: RegisterOutput,
+    output: RegisterTableOutput,
     /// Registers asked for in the last frame.
     asked: usize,
 }
@@ -45,10 +45,10 @@ fn register(place: RegisterLocation, edited: Option<u8>) -> RegisterRow {
 }
 
 fn table() -> Harness<'static, Registers> {
-    table_of(RegisterKind::Bytes { widest: 1 })
+    table_harness(RegisterKind::Bytes { widest: 1 })
 }
 
-fn table_of(kind: RegisterKind) -> Harness<'static, Registers> {
+fn table_harness(kind: RegisterKind) -> Harness<'static, Registers> {
     let groups: Vec<RegisterGroup> = (0..BANKS)
         .map(|bank| RegisterGroup { title: format!("Bank {bank:02X}"), note: String::new(), rows: 64 })
         .collect();
@@ -221,7 +221,7 @@ fn one_click_edits_a_number_box() {
     for (kind, expected) in
         [(RegisterKind::Numbers, Some("00:00 register 0")), (RegisterKind::Bytes { widest: 1 }, None)]
     {
-        let mut harness = table_of(kind);
+        let mut harness = table_harness(kind);
         // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 after it
         // 689.6. The name has 45 % of the rest.
         let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
@@ -237,7 +237,7 @@ fn one_click_edits_a_number_box() {
 /// Types over the value of a box, and presses another one.
 #[test]
 fn typed_text_is_accepted_when_another_box_is_clicked() {
-    let mut harness = table_of(RegisterKind::Numbers);
+    let mut harness = table_harness(RegisterKind::Numbers);
     let entry = |harness: &Harness<'_, Registers>| {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
     };

@@ -81,6 +81,6 @@ fn a_value_is_allowed_only_within_its_limits() {
     {
         assert_eq!(gauge(value).fits(), fits, "{value:?}");
     }
-    let best = [25.0, 30.0, 35.0, 36.0].map(|value| gauge(Some(value)).is_best());
+    let best = [25.0, 30.0, 35.0, 36.0].map(|value| gauge(Some(value)).is_in_best_range());
     assert_eq!(best, [false, true, true, false]);
 }

@@ -25,7 +25,7 @@ pub(crate) const SSI: Request =
 impl Host {
     /// Creates a host with an adapter for the test devices.
     pub(crate) fn with(query: &str) -> Self {
-        Self::to(query, &[&WordGiver, &Dial::SETTINGS])
+        Self::to(query, &[&SsiTestEncoder, &Dial::SETTINGS])
     }
 
     /// Creates a host with an adapter for these devices.
@@ -104,7 +104,7 @@ pub(crate) struct Dial {
 pub(crate) struct DialSettings;
 
 /// SSI device that sends the position of the shaft: 12 bits of turns and 13 within one.
-pub(crate) struct WordGiver;
+pub(crate) struct SsiTestEncoder;
 
 impl Dial {
     pub(crate) const SETTINGS: DialSettings = DialSettings;
@@ -193,19 +193,19 @@ impl BissDevice for Dial {
     }
 }
 
-impl AttachableKind for WordGiver {
+impl AttachableKind for SsiTestEncoder {
     fn keys(&self) -> &'static [&'static str] {
         &[]
     }
 
     fn attach_device(&self, _: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
-        Ok(Some(AttachedDevice::Ssi(Box::new(WordGiver))))
+        Ok(Some(AttachedDevice::Ssi(Box::new(SsiTestEncoder))))
     }
 }
 
-impl SsiDevice for WordGiver {
+impl SsiDevice for SsiTestEncoder {
     fn duplicate(&self) -> Box<dyn SsiDevice> {
-        Box::new(WordGiver)
+        Box::new(SsiTestEncoder)
     }
 
     fn word(&mut self, _: Moment, (steps, per_turn): (u64, u64)) -> (u64, u8) {

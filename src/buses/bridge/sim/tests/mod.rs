@@ -5,7 +5,7 @@ mod line;
 
 use std::time::Duration;
 
-use host::WordGiver;
+use host::SsiTestEncoder;
 pub(crate) use host::{BISS, Dial, Host, SSI};
 
 use crate::buses::bridge::protocol::*;
@@ -132,7 +132,7 @@ fn analog_samples_match_the_virtual_encoder() {
 /// The word of the test encoder has 13 bits per revolution: a quarter of one is 2048.
 #[test]
 fn without_a_biss_encoder_the_adapter_has_a_shaft() {
-    let mut host = Host::to("rpm=60&supply=switched", &[&WordGiver]);
+    let mut host = Host::to("rpm=60&supply=switched", &[&SsiTestEncoder]);
     host.ask(SSI);
     let word = |host: &mut Host| match host.ask(Request::SsiRead) {
         Some(Message::Reply(Reply::SsiRead { t_us, raw })) => (t_us, raw),
@@ -153,8 +153,8 @@ fn without_a_biss_encoder_the_adapter_has_a_shaft() {
     host.receive(host.now + Duration::from_millis(100));
     assert_eq!(word(&mut host).1, still);
     assert_eq!(host.adapter.motor().rpm(), 0.0);
-    assert!(keys(&[&WordGiver]).contains(&"rpm"));
-    assert!(Adapter::from_pairs(&pairs("rpm=x"), &[&WordGiver]).is_err());
+    assert!(keys(&[&SsiTestEncoder]).contains(&"rpm"));
+    assert!(Adapter::from_pairs(&pairs("rpm=x"), &[&SsiTestEncoder]).is_err());
 }
 
 #[test]

@@ -94,10 +94,10 @@ proptest! {
             owner: OWNER,
             connection_timeout: ConnectionTimeout::new(multiplier).unwrap(),
             to_target_interval_us: intervals[0],
-            to_target: NetworkParameters::of_word(parameters[0]),
+            to_target: NetworkParameters::from_word(parameters[0]),
             to_originator_interval_us: intervals[1],
-            to_originator: NetworkParameters::of_word(parameters[1]),
-            transport: Transport::of_byte(transport),
+            to_originator: NetworkParameters::from_word(parameters[1]),
+            transport: Transport::from_byte(transport),
             path: EPath::assemblies(104, 100, 101),
         };
         prop_assert_eq!(ForwardOpen::parse(&asked.request().data), Ok(asked.clone()));
@@ -106,7 +106,7 @@ proptest! {
 
     #[test]
     fn every_cyclic_packet_round_trips(connection: u32, sequence: u32, count: u16, header: Option<u32>, data: Vec<u8>) {
-        let packet = IoPacket { connection, sequence, count, header: header.map(RunIdleHeader::of_word), data };
+        let packet = IoPacket { connection, sequence, count, header: header.map(RunIdleHeader::from_word), data };
         let format = if header.is_some() { RealTimeFormat::Header } else { RealTimeFormat::Modeless };
         prop_assert_eq!(IoPacket::parse(&packet.emit(), format), Ok(packet));
     }

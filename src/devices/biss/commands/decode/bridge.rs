@@ -8,12 +8,12 @@ use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet,
     PacketError, Reply, Request, SsiData, StreamData,
 };
-use crate::cli::decode::Explained;
+use crate::cli::decode::FrameExplanation;
 
-pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
+pub(super) fn explain(bytes: &[u8]) -> Vec<FrameExplanation> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();
-        return vec![Explained {
+        return vec![FrameExplanation {
             shown: hex(bytes),
             compact: hex_compact(bytes),
             meaning: Err(why),
@@ -30,7 +30,7 @@ pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
                 }
                 Err(error) => Err(format!("no bridge packet: {error}")),
             };
-            Explained { shown: hex(stuffed), compact: hex_compact(stuffed), meaning, more: form("bridge") }
+            FrameExplanation { shown: hex(stuffed), compact: hex_compact(stuffed), meaning, more: form("bridge") }
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json, json};
 use super::form;
 use crate::bits::{hex, hex_compact};
 use crate::buses::ubicom::protocol::PositionWord;
-use crate::cli::decode::Explained;
+use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 
 /// Number of bytes that hold a right-justified frame.
@@ -16,20 +16,20 @@ pub(super) const BYTES: usize = 6;
 pub(super) const WORD_DIGITS: usize = 9;
 
 /// Decodes the bytes of one frame. Returns `None` if the number of bytes is wrong or surplus bits are set.
-pub(super) fn decode_bytes(bytes: &[u8]) -> Option<Explained> {
+pub(super) fn decode_bytes(bytes: &[u8]) -> Option<FrameExplanation> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
-    fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
+    fits.then(|| FrameExplanation { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
 }
 
 /// Decodes a frame. `shown` is its original notation.
-pub(super) fn explain(raw: u64, shown: String) -> Explained {
+pub(super) fn explain(raw: u64, shown: String) -> FrameExplanation {
     let mut more = form("position frame");
     let meaning = meaning(raw, &mut more);
-    Explained { compact: shown.clone(), shown, meaning, more }
+    FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
-pub(super) fn explain_position_word(raw: u64, shown: String) -> Explained {
+pub(super) fn explain_position_word(raw: u64, shown: String) -> FrameExplanation {
     let layout = Layout::default();
     let mut more = form("position word");
     let bits = layout.multiturn_bits() + layout.singleturn_bits();
@@ -37,7 +37,7 @@ pub(super) fn explain_position_word(raw: u64, shown: String) -> Explained {
         Some(reading) => Ok(vec![place(&layout, &reading, raw, &mut more)]),
         None => Err(format!("the position word of this encoder has {bits} bits, this one more")),
     };
-    Explained { compact: shown.clone(), shown, meaning, more }
+    FrameExplanation { compact: shown.clone(), shown, meaning, more }
 }
 
 /// Describes turns, steps and angle, and adds them to the JSON.

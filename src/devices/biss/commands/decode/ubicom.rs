@@ -3,12 +3,12 @@
 use super::form;
 use crate::bits::{ByteOrder, hex, hex_compact};
 use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, Written};
-use crate::cli::decode::Explained;
+use crate::cli::decode::FrameExplanation;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
 /// Decodes frames. `requested` is the request before the frames. It is replaced by the last request among them.
-pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
+pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<FrameExplanation> {
     let mut explained = Vec::new();
     let mut request = *requested;
     let mut rest = bytes;
@@ -19,7 +19,7 @@ pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Expl
             Ok(frame) => meaning(&frame, &mut request),
             Err(error) => Err(format!("no UBICOM frame: {error}")),
         };
-        explained.push(Explained { shown: hex(own), compact: hex_compact(own), meaning, more: form("UBICOM") });
+        explained.push(FrameExplanation { shown: hex(own), compact: hex_compact(own), meaning, more: form("UBICOM") });
     }
     if explained.iter().all(|one| one.meaning.is_ok()) {
         *requested = request;

@@ -8,7 +8,7 @@ use super::Master;
 use crate::buses::bridge::procedures::Adapter;
 use crate::buses::bridge::procedures::flow::{SampleStream, Streamed};
 use crate::buses::bridge::protocol::StreamData;
-use crate::devices::biss::procedures::frames::{FrameRun, frames};
+use crate::devices::biss::procedures::frames::{ConsecutiveFrames, frames};
 use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
 
@@ -23,7 +23,7 @@ impl Master<'_> {
     /// # Errors
     /// Starting a stream returns the same errors as [`position`](Self::position). Later, an error means that the
     /// adapter failed or the job was cancelled. The stream continues after a cancellation.
-    pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
+    pub fn frames(&mut self, period_us: u32) -> Result<Option<ConsecutiveFrames>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);
         }
@@ -50,7 +50,7 @@ impl Master<'_> {
                 let clock_hz = self.station.actual_clock_hz.unwrap_or(self.station.clock_hz);
                 let frames = frames(&layout, data);
                 let layout = (layout, self.station.is_split_known());
-                return Ok(Some(FrameRun::new(&portion, frames, layout, clock_hz, period_us)));
+                return Ok(Some(ConsecutiveFrames::new(&portion, frames, layout, clock_hz, period_us)));
             }
         }
     }

@@ -42,7 +42,7 @@ impl Master<'_> {
         }
         self.run_uncancellable(|master| {
             master.stop_frame_stream()?;
-            if master.may_still_need_power()? {
+            if master.is_power_still_needed()? {
                 tracing::warn!("the encoder's supply stays on: it may be storing, calibrating or restarting");
                 return Ok(());
             }
@@ -51,7 +51,7 @@ impl Master<'_> {
     }
 
     /// Returns whether a loss of power could interrupt an operation of the encoder.
-    fn may_still_need_power(&mut self) -> Result<bool, Error> {
+    fn is_power_still_needed(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);
         }

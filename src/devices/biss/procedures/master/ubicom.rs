@@ -21,7 +21,7 @@ const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
 /// Time after the reply time-out during which bytes may still arrive. Bytes that keep arriving later are noise.
 const NOISE: Duration = Duration::from_secs(1);
 
-struct Timed {
+struct TimedReply {
     reply: Reply,
     at: Moment,
 }
@@ -49,8 +49,8 @@ impl Master<'_> {
 
     fn read_register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
         Ok(match self.exchange(Request::Read { register }, order)? {
-            Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
-            Ok(Timed { reply, .. }) => {
+            Ok(TimedReply { reply: Reply::Value(value), .. }) => Ok(value),
+            Ok(TimedReply { reply, .. }) => {
                 return Err(Error::unexpected_reply(RequestedItem::Read(requested_register(register)), &reply));
             }
             Err(trouble) => Err(trouble),
@@ -60,9 +60,9 @@ impl Master<'_> {
     pub(super) fn write_pin_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
-            Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
-            Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(WriteReaction::No(None)),
-            Ok(Timed { reply, .. }) => {
+            Ok(TimedReply { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
+            Ok(TimedReply { reply: Reply::Written(Written::Refused), .. }) => Ok(WriteReaction::No(None)),
+            Ok(TimedReply { reply, .. }) => {
                 return Err(Error::unexpected_reply(RequestedItem::Write(address, value), &reply));
             }
             Err(trouble) => Err(trouble),
@@ -71,8 +71,8 @@ impl Master<'_> {
 
     pub(super) fn read_pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
-            Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
-            Ok(Timed { reply, .. }) => return Err(Error::unexpected_reply(RequestedItem::Position, &reply)),
+            Ok(TimedReply { reply: Reply::Position(word), at }) => (word, at),
+            Ok(TimedReply { reply, .. }) => return Err(Error::unexpected_reply(RequestedItem::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();
@@ -85,15 +85,15 @@ impl Master<'_> {
     }
 
     pub(super) fn max_pin_exchange_duration(&self) -> Duration {
-        self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
+        self.time_of_characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
-    fn characters(&self, count: usize) -> Duration {
+    fn time_of_characters(&self, count: usize) -> Duration {
         let format = self.station.format;
-        format.baud.time_of_bits(character_bits(format) * count as u64)
+        format.baud.duration_of_bits(character_bits(format) * count as u64)
     }
 
-    fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<Timed> {
+    fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<TimedReply> {
         self.line.begin(&mut self.station.line, BYTE_TIME_OUT)?;
         let frame = request.emit(order);
         let sent_at = self.now();
@@ -111,7 +111,7 @@ impl Master<'_> {
         self.listen(request, received, deadline)
     }
 
-    fn listen(&mut self, request: Request, mut received: ReceivedBytes, deadline: Moment) -> Attempt<Timed> {
+    fn listen(&mut self, request: Request, mut received: ReceivedBytes, deadline: Moment) -> Attempt<TimedReply> {
         let gap = BYTE_TIME_OUT + self.station.line.margin;
         let mut last_at = self.now();
         let mut portion = Vec::new();
@@ -136,10 +136,10 @@ impl Master<'_> {
             let next = if portion.is_empty() { Receiver::handle_silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut received.receiver) {
                 if let Some(reply) = self.judge(request, &frame, &mut received) {
-                    let at = last_at - self.characters(frame.len());
+                    let at = last_at - self.time_of_characters(frame.len());
                     self.understood(&received, &frame, at);
                     self.line.show(at, MaskedBytes::clear(&frame));
-                    return Ok(Ok(Timed { reply, at }));
+                    return Ok(Ok(TimedReply { reply, at }));
                 }
             }
         }

@@ -69,7 +69,7 @@ impl Guide<'_, '_> {
         match op {
             Op::StoreData { area, registers } => self.store_data(area, registers),
             Op::StorePreset { to, .. } => self.store_preset(*to),
-            Op::FirePreset { parts, value } => self.fire_preset(*parts, *value),
+            Op::FirePreset { parts, value } => self.trigger_preset(*parts, *value),
             Op::SelectFilter { to, .. } => self.select_filter(*to),
             Op::Calibrate => self.calibrate(),
             Op::WiegandTest { save } => self.test_wiegand(*save),

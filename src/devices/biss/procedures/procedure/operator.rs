@@ -290,7 +290,7 @@ mod tests {
         Measured { motion, celsius: Some(30), ..Measured::default() }
     }
 
-    fn demand(task: Task, measured: Measured) -> OperatorPrompt {
+    fn operator_prompt(task: Task, measured: Measured) -> OperatorPrompt {
         OperatorPrompt::new(task, measured, Duration::ZERO)
     }
 
@@ -326,7 +326,7 @@ mod tests {
             ),
         ];
         for (run, rpm, spread, blockers) in cases {
-            let demand = demand(Task::Turn(run), turning(rpm, spread));
+            let demand = operator_prompt(Task::Turn(run), turning(rpm, spread));
             assert_eq!(demand.blockers, blockers, "{run:?} at {rpm}");
             assert_eq!(demand.is_ready(), blockers.is_empty());
         }
@@ -338,16 +338,16 @@ mod tests {
         for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
             let measured = Measured { celsius: Some(celsius), ..turning(-500.0, 0.0) };
             let expected = if fits { vec![] } else { vec![StartBlocker::Temperature { celsius }] };
-            assert_eq!(demand(task, measured).blockers, expected);
+            assert_eq!(operator_prompt(task, measured).blockers, expected);
         }
-        assert_eq!(demand(task, Measured::default()).blockers, [StartBlocker::Measuring]);
+        assert_eq!(operator_prompt(task, Measured::default()).blockers, [StartBlocker::Measuring]);
         let unreadable = Measured { unreadable: true, ..Measured::default() };
-        assert_eq!(demand(task, unreadable).blockers, [StartBlocker::NoPosition]);
+        assert_eq!(operator_prompt(task, unreadable).blockers, [StartBlocker::NoPosition]);
     }
 
     #[test]
     fn advice_does_not_block_a_start() {
-        let advice = |run, rpm, spread| demand(Task::Turn(run), turning(rpm, spread)).advice;
+        let advice = |run, rpm, spread| operator_prompt(Task::Turn(run), turning(rpm, spread)).advice;
         let speed = Advice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
         assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 1.9), []);
         assert_eq!(advice(Run::CalibrationCounterclockwise, -503.0, 0.0), [speed]);
@@ -355,14 +355,14 @@ mod tests {
         assert_eq!(advice(Run::CalibrationClockwise, 501.0, 0.0), [Advice::TableAtRisk]);
         assert_eq!(advice(Run::WiegandClockwise, 1234.0, 9.0), []);
         let marked = Measured { marked: true, ..turning(1000.0, 0.0) };
-        assert_eq!(demand(Task::Turn(Run::WiegandClockwise), marked).advice, [Advice::Marked]);
+        assert_eq!(operator_prompt(Task::Turn(Run::WiegandClockwise), marked).advice, [Advice::Marked]);
     }
 
     #[test]
     fn a_turning_shaft_blocks_a_standstill_step() {
         for task in [Task::Stand, Task::StandAtPlace] {
-            assert_eq!(demand(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
-            assert!(demand(task, turning(0.0, 0.0)).is_ready());
+            assert_eq!(operator_prompt(task, turning(3.0, 0.0)).blockers, [StartBlocker::Turning { rpm: 3.0 }]);
+            assert!(operator_prompt(task, turning(0.0, 0.0)).is_ready());
         }
     }
 
@@ -386,7 +386,7 @@ mod tests {
         let seat = OperatorChannel::default();
         let mut operator = seat.clone();
         let (first, second) = (Task::Turn(Run::WiegandClockwise), Task::Turn(Run::WiegandCounterclockwise));
-        let mut ask = |task| operator.attend(&demand(task, Measured::default()));
+        let mut ask = |task| operator.attend(&operator_prompt(task, Measured::default()));
         assert_eq!(ask(first), Answer::Wait);
         seat.answer(first, Answer::Go);
         assert_eq!(ask(second), Answer::Wait, "pressed too late, for the run before");
@@ -396,7 +396,7 @@ mod tests {
         seat.answer(first, Answer::Go);
         operator.on_task_start();
         assert_eq!(
-            operator.attend(&demand(first, Measured::default())),
+            operator.attend(&operator_prompt(first, Measured::default())),
             Answer::Wait,
             "for the same of an operation before"
         );

@@ -38,7 +38,7 @@ impl Guide<'_, '_> {
         })
     }
 
-    pub(super) fn fire_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
+    pub(super) fn trigger_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::Preset)?;
         let OperatorDecision::Go(_) = self.attend(Task::StandAtPlace)? else {
             return Ok(Outcome::Skipped { after: None });

@@ -133,7 +133,7 @@ fn another_kind_needs_a_separate_permission() {
     let now = device(&profile("2"));
     let kind_refused = |profile: &BissProfile| {
         let (profile, device) = (Box::new(profile.identity.kind()), Box::new(now.identity.kind()));
-        Err(OtherType::Kind { profile, device }.into())
+        Err(TypeMismatch::Kind { profile, device }.into())
     };
     let number_refused = Err(PlanError::OtherDevice { profile: "1".to_owned(), device: "2".to_owned() });
     let mut other = wanted.clone();
@@ -200,7 +200,7 @@ fn another_type_needs_a_separate_permission() {
         let device_only = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
         for refused in [RestoreOptions::default(), device_only] {
             let error = plan_restore(&wanted, &now, refused).unwrap_err();
-            assert!(matches!(error, PlanError::OtherType(_)), "{error}");
+            assert!(matches!(error, PlanError::TypeMismatch(_)), "{error}");
         }
         // The same number of another type is another encoder: it keeps its mounting.
         let type_only = RestoreOptions { allow_other_type: true, ..RestoreOptions::default() };

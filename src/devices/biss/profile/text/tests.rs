@@ -39,7 +39,7 @@ fn profile_with(from: &str, to: &str) -> BissProfile {
 }
 
 /// Returns everything that a profile can hold.
-fn full() -> BissProfile {
+fn full_profile() -> BissProfile {
     let mut profile = profile_with("listed:", "name: \"OEM data\", empty: 0x00, listed:");
     profile.identity.firmware = Some(Firmware::new(1, 6, 0));
     profile.identity.description = "quote \" and \\ and ä".to_owned();
@@ -62,7 +62,7 @@ fn full() -> BissProfile {
 
 #[test]
 fn emitted_profiles_parse_back() {
-    let mut document = ProfileDocument::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full()));
+    let mut document = ProfileDocument::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full_profile()));
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
     assert_eq!(ProfileDocument::parse(&text, BissProfile::FORMATS), Ok(document));
@@ -207,9 +207,9 @@ fn a_mark_covers_its_registers() {
     let item = MountingItem::Registers("0x25:0x08+4".parse().unwrap());
     profile.mounting.push(MountingMark { item, meaning: String::new(), unknown: Default::default() });
     let marked: Vec<u8> =
-        (0..64).filter(|at| profile.depends_on_mounting(RegisterAddress::banked(0x25, *at).unwrap())).collect();
+        (0..64).filter(|at| profile.depends_on_mounting(RegisterAddress::in_bank(0x25, *at).unwrap())).collect();
     assert_eq!(marked, [8, 9, 10, 11]);
-    assert!(!profile.depends_on_mounting(RegisterAddress::banked(0x26, 8).unwrap()));
+    assert!(!profile.depends_on_mounting(RegisterAddress::in_bank(0x26, 8).unwrap()));
     let count = profile.mounting.len();
     profile.mark_mounting_dependent_values();
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");

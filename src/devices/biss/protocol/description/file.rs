@@ -194,7 +194,7 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
                 RegisterAddress::direct(address).ok_or(DescriptionErrorKind::Direct(address))
             }
             RegisterLocation::Bank(bank, offset) => {
-                RegisterAddress::banked(bank, offset).ok_or(DescriptionErrorKind::Banked { bank, offset })
+                RegisterAddress::in_bank(bank, offset).ok_or(DescriptionErrorKind::Banked { bank, offset })
             }
         }
     }
@@ -319,11 +319,11 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
 
 /// A row of a description file. It claims items such as registers, which no other row may claim.
 trait Row {
-    fn claimed_items(&self) -> Vec<Claim>;
+    fn unique_items(&self) -> Vec<Claim>;
 }
 
 impl Row for Register {
-    fn claimed_items(&self) -> Vec<Claim> {
+    fn unique_items(&self) -> Vec<Claim> {
         let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(Claim::Register);
         let role = self.role.map(Claim::Role);
         bytes.chain(role).collect()
@@ -331,19 +331,19 @@ impl Row for Register {
 }
 
 impl Row for BankRow {
-    fn claimed_items(&self) -> Vec<Claim> {
+    fn unique_items(&self) -> Vec<Claim> {
         vec![Claim::Bank(self.bank)]
     }
 }
 
 impl Row for Area {
-    fn claimed_items(&self) -> Vec<Claim> {
+    fn unique_items(&self) -> Vec<Claim> {
         (self.first..=self.last).map(Claim::Bank).collect()
     }
 }
 
 impl Row for Procedure {
-    fn claimed_items(&self) -> Vec<Claim> {
+    fn unique_items(&self) -> Vec<Claim> {
         vec![Claim::Procedure(self.kind)]
     }
 }
@@ -376,7 +376,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         let mut claimed = BTreeSet::new();
         let mut rows = Vec::new();
         while let Some(row) = list.next_element::<T>()? {
-            for claim in row.claimed_items() {
+            for claim in row.unique_items() {
                 if claimed.contains(&claim) {
                     return Err(flaw::found(DescriptionErrorKind::Twice(claim)));
                 }

@@ -115,7 +115,7 @@ fn the_file_agrees_with_the_protocol_tables() {
     let kit = kit();
     for bank in [EdsBank::Common, EdsBank::Encoder] {
         for field in bank.fields() {
-            let register = kit.at(RegisterAddress::banked(bank.number(), field.offset).unwrap()).unwrap();
+            let register = kit.at(RegisterAddress::in_bank(bank.number(), field.offset).unwrap()).unwrap();
             assert_eq!((register.name.english(), register.width), (field.name, field.width));
             let default = register.number(&register.default).and_then(|number| u32::try_from(number).ok());
             assert_eq!(default, field.default, "{}", field.name);

@@ -36,7 +36,7 @@ fn encoder() -> [u8; 64] {
     bank
 }
 
-fn summed(mut bank: [u8; 64]) -> [u8; 64] {
+fn with_checksum(mut bank: [u8; 64]) -> [u8; 64] {
     bank[63] = bank[..63].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
     bank
 }
@@ -117,7 +117,7 @@ fn a_changed_byte_is_detected() {
 fn special_values_are_decoded() {
     let mut bank = common();
     (bank[0x02], bank[0x03], bank[0x05], bank[0x0C], bank[0x17]) = (0xFF, 0x05, 0x00, 0x00, 0x00);
-    let eds = Eds::parse(EdsBank::Common, summed(bank)).unwrap();
+    let eds = Eds::parse(EdsBank::Common, with_checksum(bank)).unwrap();
     let value = |offset| eds.values().find(|(field, _)| field.offset == offset).unwrap().1;
     assert_eq!(value(0x02), EdsValue::NotAvailable);
     assert_eq!(value(0x05), EdsValue::Adaptive);
@@ -130,12 +130,12 @@ fn the_frame_format_is_derived_from_the_data_sheet() {
     let with = |changes: &[(usize, u8)]| {
         let mut bank = encoder();
         changes.iter().for_each(|(offset, byte)| bank[*offset] = *byte);
-        Eds::parse(EdsBank::Encoder, summed(bank)).unwrap()
+        Eds::parse(EdsBank::Encoder, with_checksum(bank)).unwrap()
     };
     let of_length = |bits| {
         let mut bank = common();
         bank[0x15] = bits;
-        Eds::parse(EdsBank::Common, summed(bank)).unwrap()
+        Eds::parse(EdsBank::Common, with_checksum(bank)).unwrap()
     };
     assert_eq!(layout(&of_length(35), &with(&[])), Ok(Layout::default()));
     let single = layout(&of_length(19), &with(&[(0x0A, 0)])).unwrap();
@@ -162,7 +162,7 @@ proptest! {
     fn any_bank_round_trips_without_panic(mut bytes in proptest::array::uniform32(any::<[u8; 2]>())) {
         let mut bank = [0; 64];
         bank.iter_mut().zip(bytes.iter_mut().flatten()).for_each(|(place, byte)| *place = *byte);
-        let bank = summed(bank);
+        let bank = with_checksum(bank);
         let [common, encoder] = [EdsBank::Common, EdsBank::Encoder].map(|kind| Eds::parse(kind, bank).unwrap());
         prop_assert_eq!(common.emit(), bank);
         prop_assert_eq!(encoder.values().count(), 17);

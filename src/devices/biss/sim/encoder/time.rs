@@ -12,16 +12,16 @@ impl Encoder {
         {
             self.power = Power::On;
         }
-        self.update_runs(now);
+        self.update_procedures(now);
         let rpm = self.drive.motor().rpm();
         if rpm != self.shaft.rpm() {
             self.calibration.force_failure(now);
             self.shaft.set_rpm(now, rpm);
-            self.update_runs(now);
+            self.update_procedures(now);
         }
     }
 
-    fn update_runs(&mut self, now: Moment) {
+    fn update_procedures(&mut self, now: Moment) {
         let waited = self.needs_reversal();
         match self.calibration.settle(now) {
             Ended::No => {}

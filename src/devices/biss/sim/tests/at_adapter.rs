@@ -5,11 +5,11 @@ use std::time::Duration;
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::{BISS, Host};
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
-use crate::devices::biss::sim::{AtAdapter, Encoder};
+use crate::devices::biss::sim::{AttachableEncoder, Encoder};
 use crate::sim::ByteDevice;
 
 fn behind_adapter(query: &str) -> Host {
-    Host::to(query, &[&AtAdapter])
+    Host::to(query, &[&AttachableEncoder])
 }
 
 /// The golden frame of the BiSS reference: MT 1234, ST 18000.

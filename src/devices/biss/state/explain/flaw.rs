@@ -54,7 +54,7 @@ fn byte(byte: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::explain::in_both_languages;
+    use crate::app::explain::assert_in_both_languages;
     use crate::devices::biss::protocol::{LayoutError, ProcedureKind, Role};
 
     #[test]
@@ -80,7 +80,7 @@ mod tests {
             DescriptionErrorKind::GermanNeedless(name),
         ];
         for own in flaws {
-            in_both_languages(&description_problem_text(&own), &own);
+            assert_in_both_languages(&description_problem_text(&own), &own);
         }
     }
 }

@@ -65,7 +65,7 @@ pub fn task(task: Task) -> Text {
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().midpoint(), 0)
+            speed_range_text(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().midpoint(), 0)
         }
         Task::Stand => TEXTS.text("guide.stand"),
         Task::StandAtPlace => TEXTS.text("guide.stand_at_place"),
@@ -79,9 +79,13 @@ pub fn blocker_text(blocker: StartBlocker) -> Text {
         StartBlocker::Standing => TEXTS.text("guide.standing"),
         StartBlocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
         StartBlocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
-        StartBlocker::Speed { rpm, allowed } => speeds(TEXTS.text("guide.speed"), allowed).with_number("rpm", rpm, 0),
+        StartBlocker::Speed { rpm, allowed } => {
+            speed_range_text(TEXTS.text("guide.speed"), allowed).with_number("rpm", rpm, 0)
+        }
         StartBlocker::Unsteady { spread } => TEXTS.text("guide.unsteady").with_number("spread", spread, 1),
-        StartBlocker::Temperature { celsius } => temperatures(TEXTS.text("guide.temperature").with("celsius", celsius)),
+        StartBlocker::Temperature { celsius } => {
+            temperature_range_text(TEXTS.text("guide.temperature").with("celsius", celsius))
+        }
     }
 }
 
@@ -89,7 +93,7 @@ pub fn advice_text(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {
             let run = Run::CalibrationCounterclockwise;
-            let text = speeds(TEXTS.text("guide.recommended"), recommended);
+            let text = speed_range_text(TEXTS.text("guide.recommended"), recommended);
             text.with_number("fluctuation", run.max_fluctuation().unwrap_or_default(), 0)
         }
         Advice::TableAtRisk => TEXTS.text("guide.table_at_risk"),
@@ -100,24 +104,24 @@ pub fn advice_text(advice: Advice) -> Text {
 /// Returns the text about the requirements of a calibration for the motor and the encoder.
 pub fn calibration_requirements_text() -> Text {
     let run = Run::CalibrationCounterclockwise;
-    let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
-    temperatures(text.with_number("best", run.recommended_range().midpoint(), 0))
+    let text = speed_range_text(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
+    temperature_range_text(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
 /// Returns the text about the requirements of a Wiegand test for the motor.
 pub fn wiegand_requirements_text() -> Text {
-    revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
+    revolutions(speed_range_text(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 
 fn revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
 
-pub(super) fn temperatures(text: Text) -> Text {
+pub(super) fn temperature_range_text(text: Text) -> Text {
     text.with("coldest", OperatorPrompt::CELSIUS.start()).with("warmest", OperatorPrompt::CELSIUS.end())
 }
 
-pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
+pub(super) fn speed_range_text(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 

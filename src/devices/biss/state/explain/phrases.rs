@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::app::explain::{document, in_both_languages, url};
+use crate::app::explain::{assert_in_both_languages, document, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::biss::procedures::{Station, Transport};
 use crate::devices::biss::profile::BissProfile;
@@ -17,7 +17,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Transport::Adapter, Duration::ZERO).unwrap_err();
-        in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url(&error), &error);
     }
 }
 
@@ -43,6 +43,6 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&document(&error, KINDS), &error);
     }
 }

@@ -1,19 +1,19 @@
 //! Messages for BiSS planning errors and for profiles of another encoder type.
 
 use crate::app::Text;
-use crate::devices::biss::profile::{OtherType, PlanError};
+use crate::devices::biss::profile::{PlanError, TypeMismatch};
 use crate::devices::biss::protocol::ProcedureKind;
 use crate::devices::biss::state::TEXTS;
 
 /// Returns the message for a profile that belongs to another type of encoder.
-pub fn other_type(types: &OtherType) -> Text {
+pub fn other_type(types: &TypeMismatch) -> Text {
     type_mismatch_text(types, "biss_review.other_kind", "biss_review.other_width")
 }
 
-fn type_mismatch_text(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
+fn type_mismatch_text(types: &TypeMismatch, kind: &'static str, width: &'static str) -> Text {
     match types {
-        OtherType::Kind { profile, device } => TEXTS.text(kind).with("profile", profile).with("device", device),
-        OtherType::Width { profile, device } => TEXTS.text(width).with("profile", profile).with("device", device),
+        TypeMismatch::Kind { profile, device } => TEXTS.text(kind).with("profile", profile).with("device", device),
+        TypeMismatch::Width { profile, device } => TEXTS.text(width).with("profile", profile).with("device", device),
     }
 }
 
@@ -22,7 +22,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => type_mismatch_text(types, "biss_plan.other_kind", "biss_plan.other_width"),
+        PlanError::TypeMismatch(types) => type_mismatch_text(types, "biss_plan.other_kind", "biss_plan.other_width"),
         PlanError::NoBank { bank } => TEXTS.text("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
         PlanError::PresetTooWide { value, bits, .. } => {
             let last = (1u64 << bits.min(&63)) - 1;

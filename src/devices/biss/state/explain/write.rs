@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::encoder;
-use super::guide::{blocker_text, mode, speeds, step, task, temperatures};
+use super::guide::{blocker_text, mode, speed_range_text, step, task, temperature_range_text};
 use super::plan::procedure_kind_text;
 use crate::app::explain::plain;
 use crate::app::review::{ChangeTexts, OperationTexts};
@@ -221,8 +221,8 @@ pub fn failure(failure: &Failure) -> Text {
 fn calibration(run: Run, status: CalibrationStatus) -> Text {
     let why = match status {
         CalibrationStatus::WrongDirection => TEXTS.text("biss_failure.direction"),
-        CalibrationStatus::Temperature => temperatures(TEXTS.text("biss_failure.temperature")),
-        CalibrationStatus::Speed => speeds(TEXTS.text("biss_failure.speed"), run.allowed()),
+        CalibrationStatus::Temperature => temperature_range_text(TEXTS.text("biss_failure.temperature")),
+        CalibrationStatus::Speed => speed_range_text(TEXTS.text("biss_failure.speed"), run.allowed()),
         CalibrationStatus::Failed => TEXTS.text("biss_failure.calibration"),
         other => return unknown(other.byte()),
     };

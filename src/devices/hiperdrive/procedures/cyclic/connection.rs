@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::LinkStatistics;
 use crate::buses::ethernet_ip::protocol::{IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdleHeader};
-use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::OpenedConnection;
 use crate::devices::hiperdrive::protocol::{InputImage, Layout, OutputImage};
 use crate::units::Moment;
 
@@ -36,7 +36,7 @@ const HEADER: usize = 4;
 
 impl Connection {
     /// Creates the connection at the time it was opened, with the first packet due immediately.
-    pub fn new(opened: &Opened, now: Moment) -> Self {
+    pub fn new(opened: &OpenedConnection, now: Moment) -> Self {
         // An interval of 0 would loop forever.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
         let come_interval = interval(opened.to_originator_interval);

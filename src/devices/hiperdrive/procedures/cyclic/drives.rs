@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{Connection, ConnectionLoss, LinkStatistics, ParameterReadings, ParameterWords};
-use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::OpenedConnection;
 use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, MotionIntent, Permit};
 use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, OutputData, OutputImage, ParameterNumber};
 use crate::units::Moment;
@@ -40,7 +40,7 @@ const OFF: u32 = 3;
 
 impl Drives {
     /// Creates the drives at the time the connection was opened. Requests numbered up to `spent` move nothing.
-    pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
+    pub fn new(opened: &OpenedConnection, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);
         let men =

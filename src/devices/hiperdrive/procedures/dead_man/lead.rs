@@ -20,7 +20,7 @@ enum StateSequenceStep {
 }
 
 impl TargetState {
-    pub(super) const fn of_word(word: ControlWord) -> TargetState {
+    pub(super) const fn from_word(word: ControlWord) -> TargetState {
         if !word.has(ControlBit::Control) {
             TargetState::Off
         } else if !word.has(ControlBit::On) {
@@ -158,7 +158,7 @@ impl DeadMan {
             state => TargetState::of(state),
         }
         .min(highest)
-        .min(TargetState::of_word(self.sent.control));
+        .min(TargetState::from_word(self.sent.control));
         self.stage = Stage::Rest { moves: None };
     }
 }

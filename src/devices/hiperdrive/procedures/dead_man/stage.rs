@@ -195,7 +195,7 @@ impl DeadMan {
     /// Returns the control word of a drive at rest. If the drive is enabled, this is a stop with bit 6 unchanged.
     fn rest_control_word(&self) -> ControlWord {
         let sent = self.sent.control;
-        let enabled = TargetState::of_word(sent) == TargetState::Enabled;
+        let enabled = TargetState::from_word(sent) == TargetState::Enabled;
         match self.level {
             TargetState::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
             level => level.word(),
@@ -220,7 +220,7 @@ impl DeadMan {
             _ => actual.position,
         };
         let SpeedTorque { speed, torque } =
-            if matches!(self.stage, Stage::Stop { .. }) || TargetState::of_word(control) == TargetState::Enabled {
+            if matches!(self.stage, Stage::Stop { .. }) || TargetState::from_word(control) == TargetState::Enabled {
                 self.effort
             } else {
                 SpeedTorque::NONE

@@ -171,7 +171,7 @@ fn motions_end_as_documented() {
             });
             assert_eq!(&name, expected, "{} while {phase}", row[0]);
             // However the act has ended, the word sent is a standing one.
-            assert!(ended.is_none() || bench.man.sent().control.is_standing(), "{} while {phase}", row[0]);
+            assert!(ended.is_none() || bench.man.sent().control.is_at_rest(), "{} while {phase}", row[0]);
         }
     }
 }

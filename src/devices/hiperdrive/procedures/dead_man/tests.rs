@@ -90,7 +90,7 @@ fn a_standstill_word_starts_no_motion() {
     let befores: Vec<ControlWord> =
         (0..=u16::MAX).step_by(0x40).filter_map(|word| ControlWord::parse(word | 0x0439).ok()).collect();
     let mut standing = 0;
-    for word in (0..=u16::MAX).filter_map(|word| ControlWord::parse(word).ok()).filter(|word| word.is_standing()) {
+    for word in (0..=u16::MAX).filter_map(|word| ControlWord::parse(word).ok()).filter(|word| word.is_at_rest()) {
         standing += 1;
         for acknowledged in [false, true] {
             let status = StatusWord::new(0x2A37).with(StatusBit::SetpointAcknowledged, acknowledged);
@@ -159,24 +159,24 @@ fn an_unseen_stop_still_ends_the_job() {
         }
         // The act between them was a stop.
         let word = look(&mut man, number + 2, next, 0x1A37);
-        assert!(word.is_standing() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
+        assert!(word.is_at_rest() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
         assert_eq!(man.ended(), Some((number, Ended::Stopped)));
     }
 }
 
 /// Drive that replies as configured, ten milliseconds per call; the request is always fresh.
-struct Looks {
+struct DeadManBench {
     man: DeadMan,
     now: Moment,
     intent: MotionIntent,
     permit: Permit,
 }
 
-impl Looks {
+impl DeadManBench {
     fn new() -> Self {
         let intent = MotionIntent::rest(DriveNumber::FIRST, 0, Moment::START);
         let man = DeadMan::new(DriveNumber::FIRST, 0);
-        Looks { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
+        DeadManBench { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
     }
 
     fn act(&mut self, wish: MotionRequest) {
@@ -202,7 +202,7 @@ const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Cloc
 fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
     for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
-        let mut looks = Looks::new();
+        let mut looks = DeadManBench::new();
         looks.look(3, 0x2A31, 0);
         looks.act(wish);
         looks.look(1, 0x2A31, 0);
@@ -210,9 +210,9 @@ fn doubted_limits_delay_the_start_of_a_motion() {
         looks.permit.doubted = true;
         looks.look(1, 0x2A33, 0);
         assert_eq!(looks.man.ended(), Some((1, doubted)), "{wish:?}");
-        assert!(looks.look(100, 0x2A37, 0).control.is_standing());
+        assert!(looks.look(100, 0x2A37, 0).control.is_at_rest());
     }
-    let mut looks = Looks::new();
+    let mut looks = DeadManBench::new();
     looks.act(MotionRequest::Move { target: 500, effort: FULL });
     looks.look(5, 0x2A37, 0);
     looks.look(5, 0x1A37, 100);
@@ -223,7 +223,7 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     looks.look(3, 0x3A37, 200);
     assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.ended());
     looks.act(MotionRequest::Resume);
-    assert!(looks.look(1, 0x3A37, 200).control.is_standing());
+    assert!(looks.look(1, 0x3A37, 200).control.is_at_rest());
     assert_eq!(looks.man.ended(), Some((2, doubted)));
 }
 
@@ -239,7 +239,7 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
         ),
     ] {
         let position = if direction == Direction::Clockwise { 700 } else { -700 };
-        let mut looks = Looks::new();
+        let mut looks = DeadManBench::new();
         looks.look(3, 0x2A37, position);
         looks.act(wish);
         let mut count = 0;
@@ -249,7 +249,7 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
             assert!(count < 100);
         }
         looks.permit = Permit::within(-100, 100);
-        assert!(looks.look(1, 0x2A37, position).control.is_standing());
+        assert!(looks.look(1, 0x2A37, position).control.is_at_rest());
         let refused = Ended::Refused(Refusal::Outward { position, low: -100, high: 100 });
         assert_eq!(looks.man.ended(), Some((1, refused)));
     }
@@ -268,7 +268,7 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
 /// from there would lead elsewhere. It starts once positions have arrived for 250 ms.
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
-    let mut looks = Looks::new();
+    let mut looks = DeadManBench::new();
     looks.permit = Permit::within(-100_000, 100_000);
     looks.act(MotionRequest::Step { by: 100, effort: FULL });
     looks.look(24, 0x2A37, 0);
@@ -321,7 +321,7 @@ proptest! {
             let own = intent.drive == DriveNumber::FIRST;
             let wanted = own && intent.request.moves() && !intent.is_stale(now) && !locked;
             let faulty = said.is_some_and(|(status, _)| status & 8 != 0);
-            if !word.is_standing() {
+            if !word.is_at_rest() {
                 prop_assert!(wanted && intent.number > over, "{:?} for {:?}, over: {}", word, intent, over);
                 prop_assert!(!faulty && sent.speed.get() > 0 && sent.torque.get() > 0);
                 prop_assert!(!word.has(ControlBit::SpeedMode) || !word.has(ControlBit::NoPause) || endless);

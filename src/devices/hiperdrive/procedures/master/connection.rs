@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Opened {
+pub struct OpenedConnection {
     pub to_target_id: u32,
     pub to_originator_id: u32,
     pub to_target_interval: Duration,
@@ -54,7 +54,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device refuses, or an error if the exchange fails.
-    pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<Opened, Error> {
+    pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<OpenedConnection, Error> {
         let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
         let tries = [
@@ -106,7 +106,7 @@ impl Master<'_> {
         }
     }
 
-    fn open_with_layout(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<Opened, Error> {
+    fn open_with_layout(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<OpenedConnection, Error> {
         self.station.connections = self.station.connections.wrapping_add(1);
         let serial = self.station.connections;
         let owner = Owner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
@@ -156,7 +156,7 @@ impl Master<'_> {
             let (asked_ms, got_ms) = (milliseconds(self.station.link.interval), milliseconds(slowest));
             return Err(Error::TooSlow { asked_ms, got_ms });
         }
-        Ok(Opened {
+        Ok(OpenedConnection {
             to_target_id: opened.to_target_id,
             to_originator_id: opened.to_originator_id,
             to_target_interval,

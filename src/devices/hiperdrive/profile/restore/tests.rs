@@ -73,7 +73,7 @@ fn another_type_of_device_or_drive_is_refused() {
     device.identity.topology = Some(Topology::Adapter);
     device.image = image(&[1]).with(&image_of(&[(166, 100)]));
     let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
-    assert_eq!(error, OtherType::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
+    assert_eq!(error, TypeMismatch::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
     assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
     let restore = plan_restore(&profile(), &device, TYPE).unwrap();
     assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13), "what is of a place that both have");
@@ -81,7 +81,7 @@ fn another_type_of_device_or_drive_is_refused() {
     device.identity.drives[1].variant = Some(Variant::new(13));
     let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
     let (profiles, devices) = (Variant::new(7), Variant::new(13));
-    assert_eq!(error, OtherType::Drive { drive: drive(3), profile: profiles, device: devices }.into());
+    assert_eq!(error, TypeMismatch::Drive { drive: drive(3), profile: profiles, device: devices }.into());
     assert!(error.to_string().contains("7 (HDA30A)") && error.to_string().contains("13 (HDA70)"), "{error}");
     assert!(plan_restore(&profile(), &device, TYPE).is_ok());
     // With another serial number as well, both are needed.

@@ -68,7 +68,7 @@ impl Connections {
         Connections { opened: lost.opened, ..Connections::default() }
     }
 
-    pub(super) const fn has_cyclic(&self) -> bool {
+    pub(super) const fn has_cyclic_connection(&self) -> bool {
         self.cyclic.is_some()
     }
 
@@ -138,8 +138,8 @@ impl TargetDevice {
         items: &ItemList,
     ) -> (Reply, Vec<Item>) {
         let opened = match open.transport.class() {
-            1 => self.open_cyclic(from.0, open, items),
-            3 => self.open_explicit(from.1, open).map(|id| (id, Vec::new())),
+            1 => self.open_cyclic_connection(from.0, open, items),
+            3 => self.open_explicit_connection(from.1, open).map(|id| (id, Vec::new())),
             _ => Err(TRANSPORT),
         };
         match opened {
@@ -161,7 +161,7 @@ impl TargetDevice {
         }
     }
 
-    fn open_cyclic(
+    fn open_cyclic_connection(
         &mut self,
         from: Originator,
         open: &ForwardOpen,
@@ -241,7 +241,7 @@ impl TargetDevice {
         if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
     }
 
-    fn open_explicit(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
+    fn open_explicit_connection(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
         let connections = &mut self.connections;
         if connections.explicit.iter().any(|explicit| explicit.owner == open.owner) {
             return Err(IN_USE);

@@ -48,7 +48,7 @@ pub struct Target {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Figures {
+pub struct TrafficCounters {
     /// Number of complete frames received over TCP.
     pub frames: u64,
     /// Number of streams that were not frames.
@@ -98,7 +98,7 @@ impl Target {
         self.lock().set_faults(faults);
     }
 
-    pub fn figures(&self) -> Figures {
+    pub fn figures(&self) -> TrafficCounters {
         self.lock().figures
     }
 

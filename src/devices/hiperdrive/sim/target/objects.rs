@@ -40,7 +40,7 @@ impl TargetDevice {
             device_type: DEVICE_TYPE,
             product_code: PRODUCT_CODE,
             revision: REVISION,
-            status: if self.connections.has_cyclic() { CONNECTED } else { NOT_CONNECTED },
+            status: if self.connections.has_cyclic_connection() { CONNECTED } else { NOT_CONNECTED },
             serial_number: match serial {
                 // The serial number has 16 bits.
                 Some(Value::Number(number)) => number as u32,

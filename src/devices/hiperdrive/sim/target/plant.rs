@@ -8,7 +8,7 @@ use fastrand::Rng;
 
 use super::super::config::Config;
 use super::super::station::Station;
-use super::Figures;
+use super::TrafficCounters;
 use super::connections::Connections;
 use super::network::Network;
 use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
@@ -27,7 +27,7 @@ pub(super) struct TargetDevice {
     pub(super) counted_texts: bool,
     pub(super) listens: SocketAddrV4,
     pub(super) udp: u16,
-    pub(super) figures: Figures,
+    pub(super) figures: TrafficCounters,
     pub(super) now: Moment,
     pub(super) sessions: BTreeMap<u32, Originator>,
     pub(super) datagrams: TransitQueue<(SocketAddrV4, Vec<u8>)>,
@@ -55,7 +55,7 @@ impl TargetDevice {
             counted_texts: config.counted_texts,
             listens: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, EXPLICIT_PORT),
             udp: IMPLICIT_PORT,
-            figures: Figures::default(),
+            figures: TrafficCounters::default(),
             now: Moment::START,
             sessions: BTreeMap::new(),
             datagrams: TransitQueue::default(),
@@ -145,7 +145,7 @@ impl TargetDevice {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    pub(super) fn draw_delivery(&mut self) -> bool {
+    pub(super) fn decide_delivery(&mut self) -> bool {
         self.faults.transmit_byte(&mut self.rng, 0).carried.is_some()
     }
 

@@ -119,7 +119,7 @@ impl Entries {
     ///
     /// # Errors
     /// Returns the reason if the entry is invalid.
-    pub fn upper(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
+    pub fn upper_limit(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.upper", &self.upper, ruler)
     }
 }

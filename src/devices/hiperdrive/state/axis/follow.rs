@@ -17,7 +17,7 @@ impl Axis {
 
     /// Adopts the present position of the axis as the limit that the current step sets.
     pub(crate) fn adopt_limit(&mut self, seen: &DriveFacts) {
-        if self.check_can_adopt_place(seen).is_err() {
+        if self.check_can_adopt_position(seen).is_err() {
             return;
         }
         let Some((ruler, position)) = seen.ruler().zip(seen.position) else { return };
@@ -108,7 +108,7 @@ impl Axis {
     }
 
     /// Records that a test move was started by the given act.
-    pub(crate) fn note_test_move(&mut self, place: TestTarget, target: i32, act: u64) {
+    pub(crate) fn record_test_move_start(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
         }

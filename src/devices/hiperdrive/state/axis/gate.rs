@@ -123,7 +123,7 @@ impl Axis {
     /// Returns both taught limits after checking that the axis is between them.
     fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
-        let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper(ruler)?);
+        let (low, high) = (self.entries.lower_limit(ruler)?, self.entries.upper_limit(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
         if low >= high {
             return Err(TEXTS.text("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
@@ -168,7 +168,7 @@ impl Axis {
     ///
     /// # Errors
     /// Returns the reason if the location cannot become a limit.
-    pub fn check_can_adopt_place(&self, seen: &DriveFacts) -> Result<(), Text> {
+    pub fn check_can_adopt_position(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_step() {
             return Err(words::invalidated_step(step));
         }
@@ -198,7 +198,7 @@ impl Axis {
     }
 
     pub fn can_skip(&self, seen: &DriveFacts) -> bool {
-        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_step().is_none()
+        self.step.is_optional() && self.asked.is_none() && !seen.moves && self.invalidated_step().is_none()
     }
 
     /// Checks whether the current step is complete, so that the next step may follow.
@@ -249,7 +249,7 @@ impl Axis {
                 Some(Power::Back { restart: RestartEvidence::Disproved, .. }) => {
                     Err(TEXTS.text("hd_axis.not_restarted"))
                 }
-                _ => lacks(self.survived(), "hd_axis.needs_power"),
+                _ => lacks(self.has_survived(), "hd_axis.needs_power"),
             },
         }
     }

@@ -1,6 +1,6 @@
 //! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, AxisStep, DriveFacts, End, Reached, TestTarget, words};
+use super::{Axis, AxisStep, DriveFacts, End, StepStatus, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -41,7 +41,7 @@ fn report_step(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) 
     let reached = axis.step_status(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
     page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::step_status(reached)));
-    if matches!(reached, Reached::Done | Reached::Failed)
+    if matches!(reached, StepStatus::Done | StepStatus::Failed)
         && let Some(found) = words::found(axis, step, seen)
     {
         page.line(INDENT, &found);
@@ -73,7 +73,7 @@ pub fn write_outcome_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     }
     lines.extend(words::differences(now));
     lines.extend(words::unrestored_position_text(axis, now));
-    lines.extend(words::unexplained_change_text(axis, axis.facts_to_show(now)));
+    lines.extend(words::unexplained_change_text(axis, axis.displayed_facts(now)));
     lines
 }
 

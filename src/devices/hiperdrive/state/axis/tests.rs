@@ -98,7 +98,7 @@ fn go_on(axis: &mut Axis, seen: &DriveFacts) {
 }
 
 /// Enters the spindle: 4 mm per turn, a step of 0.01 mm.
-fn type_spindle(axis: &mut Axis) {
+fn enter_spindle(axis: &mut Axis) {
     axis.edit(Entries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
 
@@ -114,7 +114,7 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
 fn a_step_is_shown_for_a_minimum_time() {
     let ms = Duration::from_millis;
     assert_eq!([0, 599, 600].map(|age| Axis::check_step_settled(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
-    let (mut axis, mut seen) = until_jog();
+    let (mut axis, mut seen) = at_jog_step();
     assert!(axis.can_go_back(&seen));
     seen.moves = true;
     assert!(!axis.can_go_back(&seen), "it moves");
@@ -145,11 +145,11 @@ fn rewritten_parameters_are_reported_once() {
 }
 
 /// Goes from the beginning to the step with the slow jog: 4 mm per turn, a step of 0.01 mm.
-fn until_jog() -> (Axis, DriveFacts) {
+fn at_jog_step() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(vec![(152, 1)]));
     next(&mut axis, &seen, AxisStep::Scale);
-    type_spindle(&mut axis);
+    enter_spindle(&mut axis);
     // Reference 5: 400/256; 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Do), DriveRequest::Try(values));
@@ -171,8 +171,8 @@ fn jog(axis: &mut Axis, seen: &mut DriveFacts, to: i32, turns: Direction) {
     axis.look(seen);
 }
 
-fn until_test() -> (Axis, DriveFacts) {
-    let (mut axis, mut seen) = until_jog();
+fn at_test_step() -> (Axis, DriveFacts) {
+    let (mut axis, mut seen) = at_jog_step();
     press(&mut axis, &mut seen, AxisButton::Take);
     jog(&mut axis, &mut seen, 500, Direction::Clockwise);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_down");
@@ -200,17 +200,17 @@ fn until_test() -> (Axis, DriveFacts) {
 fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
     let DriveRequest::Move(target) = axis.ask(AxisButton::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
-    axis.note_test_move(place, target, act);
+    axis.record_test_move_start(place, target, act);
     seen.moves = true;
     axis.look(seen);
-    assert_eq!(axis.going(), Some(place));
+    assert_eq!(axis.running_test_target(), Some(place));
     (seen.moves, seen.ended) = (false, Some((act, Ended::Arrived)));
     at(seen, ends);
     axis.look(seen);
 }
 
-fn until_power() -> (Axis, DriveFacts) {
-    let (mut axis, mut seen) = until_test();
+fn at_power_cycle_step() -> (Axis, DriveFacts) {
+    let (mut axis, mut seen) = at_test_step();
     for (place, ends) in [(TestTarget::Middle, 500), (TestTarget::Lower, -1001), (TestTarget::Upper, 2002)] {
         assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_test");
         go(&mut axis, &mut seen, place, ends);
@@ -225,7 +225,7 @@ fn until_power() -> (Axis, DriveFacts) {
 
 #[test]
 fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
-    let (mut axis, mut seen) = until_power();
+    let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // Reading without switching off proves nothing.
     axis.surveyed(&seen, false);
@@ -244,7 +244,7 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, RestartEvidence::Read));
     go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
-    assert!(AxisStep::ALL.into_iter().all(|step| axis.step_status(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis.step_status(step) == StepStatus::Done));
     // Worked out by hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     let mut changes: Vec<AxisChange> = numbers.map(|(number, value)| AxisChange::Parameter(number, value)).to_vec();
@@ -257,13 +257,13 @@ fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
 #[test]
 fn values_lost_in_a_power_cycle_are_reported() {
     let survive = |change: fn(&mut DriveFacts)| {
-        let (mut axis, mut seen) = until_power();
+        let (mut axis, mut seen) = at_power_cycle_step();
         press(&mut axis, &mut seen, AxisButton::Do);
         axis.lose();
         seen.values.insert(182, 1000);
         change(&mut seen);
         axis.surveyed(&seen, false);
-        assert!(!axis.survived() && axis.step_status(AxisStep::PowerCycle) == Reached::Failed);
+        assert!(!axis.has_survived() && axis.step_status(AxisStep::PowerCycle) == StepStatus::Failed);
         assert!(axis.check_can_continue(&seen).is_err());
         words::found(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
@@ -276,7 +276,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
 #[test]
 fn impossible_steps_are_refused_with_a_reason() {
     let why = |axis: &Axis, seen: &DriveFacts, button| axis.ask(button, seen).unwrap_err().id();
-    let (axis, seen) = until_jog();
+    let (axis, seen) = at_jog_step();
     for (label, changed, id) in [
         ("gone", DriveFacts { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
         ("busy", DriveFacts { busy: true, stale: true, ..seen.clone() }, "hd_axis.busy"),
@@ -285,7 +285,7 @@ fn impossible_steps_are_refused_with_a_reason() {
     ] {
         assert_eq!(why(&axis, &changed, AxisButton::Go(TestTarget::Middle)), id, "{label}");
     }
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     seen.moves = true;
     for button in
         [AxisButton::Do, AxisButton::Widen, AxisButton::Go(TestTarget::Lower), AxisButton::Give, AxisButton::Recall]
@@ -307,7 +307,7 @@ fn impossible_steps_are_refused_with_a_reason() {
 
 #[test]
 fn taught_limits_must_contain_the_position() {
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     axis.back(&seen);
     let typed = |lower: &str, upper: &str, axis: &Axis| Entries {
         lower: lower.to_owned(),
@@ -332,7 +332,7 @@ fn taught_limits_must_contain_the_position() {
 
 #[test]
 fn a_test_that_misses_its_target_does_not_count() {
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     // 1° of 400 steps are 1.1: two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
     assert!(!axis.outcome(TestTarget::Middle).unwrap().is_good());
@@ -341,10 +341,10 @@ fn a_test_that_misses_its_target_does_not_count() {
     let DriveRequest::Move(target) = axis.ask(AxisButton::Go(TestTarget::Upper), &seen).unwrap() else {
         panic!("no move")
     };
-    axis.note_test_move(TestTarget::Upper, target, 9);
+    axis.record_test_move_start(TestTarget::Upper, target, 9);
     // An earlier act does not count for this one.
     axis.look(&seen);
-    assert_eq!((axis.going(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
+    assert_eq!((axis.running_test_target(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, Ended::Stopped));
     axis.look(&seen);
     assert!(
@@ -354,10 +354,10 @@ fn a_test_that_misses_its_target_does_not_count() {
 
 #[test]
 fn cancelling_reports_written_and_unsaved_values() {
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
-    assert!(axis.changes().len() == 8 && axis.step_status(AxisStep::Test) == Reached::Ahead);
+    assert!(axis.changes().len() == 8 && axis.step_status(AxisStep::Test) == StepStatus::Ahead);
     assert_eq!(axis.ask(AxisButton::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, AxisButton::Recall), DriveRequest::Restore(vec![(152, 0)]));
@@ -380,7 +380,7 @@ fn cancelling_reports_written_and_unsaved_values() {
 
 #[test]
 fn a_correct_position_is_not_written() {
-    let (mut axis, mut seen) = until_jog();
+    let (mut axis, mut seen) = at_jog_step();
     axis.skip(&seen, "");
     assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
     press(&mut axis, &mut seen, AxisButton::Take);
@@ -389,9 +389,9 @@ fn a_correct_position_is_not_written() {
     assert_eq!(axis.travel().clockwise_is_up, Some(false));
     next(&mut axis, &seen, AxisStep::Reference);
     axis.skip(&seen, "");
-    assert_eq!((axis.step(), axis.step_status(AxisStep::Reference)), (AxisStep::Lower, Reached::Skipped));
+    assert_eq!((axis.step(), axis.step_status(AxisStep::Reference)), (AxisStep::Lower, StepStatus::Skipped));
     axis.back(&seen);
-    assert_eq!(axis.step_status(AxisStep::Reference), Reached::Now);
+    assert_eq!(axis.step_status(AxisStep::Reference), StepStatus::Now);
 }
 
 #[test]
@@ -422,7 +422,7 @@ fn pitch_and_step_are_previewed_before_writing() {
 
 #[test]
 fn every_step_has_instructions_and_a_result() {
-    let (axis, seen) = until_power();
+    let (axis, seen) = at_power_cycle_step();
     for step in AxisStep::ALL {
         let texts = [words::title(step), words::step_instructions(step, &seen), words::button(step)];
         let found = words::found(&axis, step, &seen).unwrap();

@@ -1,6 +1,6 @@
 //! Texts for the steps of the axis set-up: names, tasks, findings.
 
-use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, Reached, RestartEvidence, TestTarget};
+use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, RestartEvidence, StepStatus, TestTarget};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, SpeedTorque};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -40,13 +40,13 @@ pub fn step_instructions(step: AxisStep, seen: &DriveFacts) -> Text {
     })
 }
 
-pub fn step_status(own: Reached) -> Text {
+pub fn step_status(own: StepStatus) -> Text {
     TEXTS.text(match own {
-        Reached::Done => "guide.done",
-        Reached::Now => "guide.waits",
-        Reached::Skipped => "guide.left_out",
-        Reached::Failed => "guide.failed",
-        Reached::Ahead => "guide.ahead",
+        StepStatus::Done => "guide.done",
+        StepStatus::Now => "guide.waits",
+        StepStatus::Skipped => "guide.left_out",
+        StepStatus::Failed => "guide.failed",
+        StepStatus::Ahead => "guide.ahead",
     })
 }
 

@@ -176,7 +176,7 @@ mod tests {
     use crate::buses::ethernet_ip::protocol::{ENCAPSULATION_STATUS, EXTENDED_STATUS, GENERAL_STATUS, Service};
 
     #[track_caller]
-    fn in_both_languages(text: &Text, error: &dyn std::fmt::Display) {
+    fn assert_in_both_languages(text: &Text, error: &dyn std::fmt::Display) {
         assert_eq!(text.words(English), error.to_string());
         assert_ne!(text.words(German), text.words(English));
     }
@@ -189,17 +189,17 @@ mod tests {
     fn every_status_is_named_in_both_languages() {
         for code in (0..=255).chain([0x1_0000]) {
             let status = EncapsulationStatus::new(code);
-            in_both_languages(&frame(status), &status);
+            assert_in_both_languages(&frame(status), &status);
         }
         for code in 0..=255 {
             for extended in [vec![], vec![0x0106], vec![0x7777, 2]] {
                 let refused = refused(code, extended);
-                in_both_languages(&refusal(&refused), &refused);
+                assert_in_both_languages(&refusal(&refused), &refused);
             }
         }
         for row in EXTENDED_STATUS {
             let refused = refused(0x01, vec![row.code]);
-            in_both_languages(&refusal(&refused), &refused);
+            assert_in_both_languages(&refusal(&refused), &refused);
         }
         // One name per row, and none for other rows.
         let unknown = TEXTS.text(UNKNOWN).words(German);
@@ -217,7 +217,7 @@ mod tests {
             PacketError::Value { what: Structure::Path, field: PacketField::Length, got: 0xFFFF },
         ];
         for error in packets {
-            in_both_languages(&packet(&error), &error);
+            assert_in_both_languages(&packet(&error), &error);
         }
         let values = [
             ValueError::Length { expected: 4, got: 2 },
@@ -226,7 +226,7 @@ mod tests {
             ValueError::TextForNumber,
         ];
         for error in values {
-            in_both_languages(&value(&error), &error);
+            assert_in_both_languages(&value(&error), &error);
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Refusal};
 use crate::devices::hiperdrive::procedures::{
     Damage, Error, LateReplyError, Refusal as Refused, RequestedItem, WrongLength,
 };
-use crate::devices::hiperdrive::profile::{Item, OtherType, PlanError, Warning};
+use crate::devices::hiperdrive::profile::{Item, PlanError, TypeMismatch, Warning};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
 };
@@ -124,8 +124,8 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
     let plans = [
         PlanError::OtherDevice { profile: profile(), device: here() },
         PlanError::OtherDrive { drive: ONE, profile: profile(), device: here() },
-        OtherType::Device { profile: Topology::Hub8, device: Topology::Adapter }.into(),
-        OtherType::Drive { drive: ONE, profile: Variant::new(7), device: Variant::OTHER }.into(),
+        TypeMismatch::Device { profile: Topology::Hub8, device: Topology::Adapter }.into(),
+        TypeMismatch::Drive { drive: ONE, profile: Variant::new(7), device: Variant::OTHER }.into(),
         PlanError::Moves { item },
         PlanError::Acts { item },
         PlanError::NotRead { item },

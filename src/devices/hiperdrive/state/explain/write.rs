@@ -10,7 +10,7 @@ use crate::app::explain::plain;
 use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
-use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, PlanError, Service, Warning};
+use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, PlanError, Service, TypeMismatch, Warning};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
 
@@ -76,16 +76,16 @@ pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
-pub fn other_type(types: &OtherType) -> Text {
+pub fn other_type(types: &TypeMismatch) -> Text {
     type_mismatch_text(types, "hd_review.other_kind", "hd_review.other_variant")
 }
 
-fn type_mismatch_text(types: &OtherType, whole: &'static str, of_drive: &'static str) -> Text {
+fn type_mismatch_text(types: &TypeMismatch, whole: &'static str, of_drive: &'static str) -> Text {
     match types {
-        OtherType::Device { profile, device } => {
+        TypeMismatch::Device { profile, device } => {
             TEXTS.text(whole).with("profile", profile.category()).with("device", device.category())
         }
-        OtherType::Drive { drive, profile, device } => TEXTS
+        TypeMismatch::Drive { drive, profile, device } => TEXTS
             .text(of_drive)
             .with("drive", drive.get())
             .with_text("profile", variant(*profile))
@@ -102,7 +102,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDrive { drive, profile, device } => {
             TEXTS.text("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => type_mismatch_text(types, "hd_plan.other_kind", "hd_plan.other_variant"),
+        PlanError::TypeMismatch(types) => type_mismatch_text(types, "hd_plan.other_kind", "hd_plan.other_variant"),
         PlanError::OutOfRange(error) => out_of_range(error),
         PlanError::ReadOnly { item } => about("hd_said.read_only", *item),
         PlanError::Moves { item } => about("hd_said.motion", *item),

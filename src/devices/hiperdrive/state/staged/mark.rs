@@ -1,6 +1,6 @@
 //! Problems of the edited values with their locations.
 
-use super::{Staged, travel};
+use super::{StagedEdits, travel};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
@@ -37,7 +37,7 @@ impl Mark {
     }
 }
 
-impl Staged {
+impl StagedEdits {
     /// Returns all findings. `position` gives the position of a drive in steps of its present scale.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };

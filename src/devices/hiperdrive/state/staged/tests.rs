@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a HIPERDRIVE.
 
-use super::{Differs, Edit, EditError, LimitsPolicy, Mark, SavedEdit, Staged};
+use super::{Edit, EditError, LimitsPolicy, Mark, SavedEdit, StagedEdits, ValueDifference};
 use crate::app::PendingEdits;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
@@ -20,8 +20,8 @@ fn read() -> Image {
     image(&[(24, 0), (154, 256), (156, 1), (158, -33_488_896), (160, 33_488_896), (166, 350), (170, 4096), (186, 20)])
 }
 
-fn staged() -> Staged {
-    let mut staged = Staged::default();
+fn staged() -> StagedEdits {
+    let mut staged = StagedEdits::default();
     staged.refresh(read());
     staged
 }
@@ -33,7 +33,7 @@ fn an_edit_is_separate_from_the_device_and_can_be_undone() {
     assert_eq!(staged.edit(&Edit::Set(number(166), 200)), Ok(true));
     assert_eq!(staged.edit(&Edit::Set(number(166), 200)), Ok(false), "nothing is other than before");
     assert_eq!(staged.edit(&Edit::Set(number(170), -64)), Ok(true));
-    assert_eq!(staged.differences()[0], Differs { number: number(166), from: Some(350), to: Some(200) });
+    assert_eq!(staged.differences()[0], ValueDifference { number: number(166), from: Some(350), to: Some(200) });
     assert_eq!(staged.edited(), image(&[(166, 200), (170, -64)]));
     assert!(staged.undo() && staged.undo() && !staged.undo());
     assert!(!staged.is_dirty());
@@ -46,7 +46,7 @@ fn an_edit_is_separate_from_the_device_and_can_be_undone() {
 #[test]
 fn invalid_edits_are_refused_with_a_reason() {
     let mut staged = staged();
-    let out = |staged: &mut Staged, own, value| match staged.edit(&Edit::Set(number(own), value)) {
+    let out = |staged: &mut StagedEdits, own, value| match staged.edit(&Edit::Set(number(own), value)) {
         Err(EditError::OutOfRange(error)) => (error.value, error.range),
         other => panic!("{other:?}"),
     };
@@ -60,7 +60,7 @@ fn invalid_edits_are_refused_with_a_reason() {
     assert_eq!(staged.edit(&Edit::Set(number(44), 100)), Err(EditError::Unknown(number(44))));
     let crossed = Edit::Limits { drive: ONE, lower: 5, upper: 5 };
     assert_eq!(staged.edit(&crossed), Err(EditError::Crossed { lower: 5, upper: 5 }));
-    assert_eq!(Staged::default().edit(&crossed), Err(EditError::NothingRead));
+    assert_eq!(StagedEdits::default().edit(&crossed), Err(EditError::NothingRead));
     assert!(!staged.is_dirty());
 }
 
@@ -70,7 +70,7 @@ fn invalid_edits_are_refused_with_a_reason() {
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();
     staged.set_families([(ONE, Family::Short)].into());
-    let out = |staged: &mut Staged, edit: Edit| match staged.edit(&edit) {
+    let out = |staged: &mut StagedEdits, edit: Edit| match staged.edit(&edit) {
         Err(EditError::OutOfRange(error)) => (error.number.get(), error.value, error.range),
         other => panic!("{other:?}"),
     };
@@ -87,7 +87,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert!(staged.undo() && staged.undo() && !staged.is_dirty());
     staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
-    let mut profile = Staged::for_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
+    let mut profile = StagedEdits::for_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
     profile.set_families([(ONE, Family::Short)].into());
     let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
     assert_eq!((error.number.get(), error.range), (158, within(204_800)));
@@ -119,7 +119,7 @@ fn a_draft_waits_until_its_parameters_are_read() {
     first.edit(&Edit::Set(number(166), 200)).unwrap();
     let kept = first.saved_edits();
     assert_eq!(kept, [SavedEdit(166, Some(200))]);
-    let mut later = Staged::default();
+    let mut later = StagedEdits::default();
     later.take_draft(kept.into_iter().chain([
         SavedEdit(266, Some(7)),
         SavedEdit(198, Some(0)),
@@ -158,7 +158,7 @@ fn a_new_scale_converts_or_moves_the_limits() {
 
 #[test]
 fn questionable_values_are_marked() {
-    let mut profile = Staged::for_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
+    let mut profile = StagedEdits::for_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
     let marks = profile.marks(|_| None);
     assert!(matches!(marks[0], Mark::OutOfRange(error) if error.number == number(166)));
     assert_eq!(marks[1..], [Mark::Crossed { drive: ONE, lower: 10, upper: 10 }, Mark::NoTimeout { drive: ONE }]);

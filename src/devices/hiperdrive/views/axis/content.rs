@@ -56,7 +56,7 @@ pub(super) fn content_ui(
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
-        let allowed = shown.axis.check_can_adopt_place(shown.seen);
+        let allowed = shown.axis.check_can_adopt_position(shown.seen);
         if button_with_reason(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
@@ -104,13 +104,13 @@ fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut V
     ui.add_space(theme.space.inside);
 }
 
-fn may_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text> {
-    shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
+fn check_can_jog(shown: &AxisPanel<'_>, direction: Direction) -> Result<(), Text> {
+    shown.axis.may_move(shown.seen).and_then(|()| shown.unit.check_can_jog(shown.axis.drive(), direction))
 }
 
 /// Draws the reason why the jog buttons are blocked, or what they do.
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>) {
-    let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
+    let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| check_can_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_limits_text(shown.axis.drive()) {
         super::line(ui, theme, Severity::Error, &outside);
     }
@@ -135,7 +135,7 @@ fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &m
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
-            let (label, enabled) = (say(theme, label), may_jog(shown, direction).is_ok());
+            let (label, enabled) = (say(theme, label), check_can_jog(shown, direction).is_ok());
             let has_ended = shown.unit.moves.has_held_jog_ended();
             let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
             let press = Motor::SlowJogPress { direction, repeated: false };
@@ -223,7 +223,7 @@ fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPanel<'_>, actions: &mut Vec<
                 ui.set_min_width(GO);
                 shown.button(ui, theme, AxisButton::Go(own), (icons::PLAY, &go), actions);
             });
-            if shown.axis.going() == Some(own) {
+            if shown.axis.running_test_target() == Some(own) {
                 ui.label(theme.label(say(theme, "hd_axis.goes")));
             } else if let Some(outcome) = shown.axis.outcome(own) {
                 let (icon, ink) = match outcome.is_good() {

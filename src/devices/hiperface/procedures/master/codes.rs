@@ -32,7 +32,7 @@ impl Master<'_> {
         }
         if repeated == MOST_REPEATED {
             // A late reply does not repeat this often. The encoder announces the same code again as soon as it is read.
-            self.station.codes_unheard = self.station.codes_unheard.saturating_sub(repeated);
+            self.station.unanswered_codes = self.station.unanswered_codes.saturating_sub(repeated);
         }
         Ok(())
     }
@@ -49,7 +49,7 @@ impl Master<'_> {
             let attempt = self.attempt(&Request::ReadStatus);
             // After a cancellation, or on a line that is never silent, the request was not sent.
             if self.station.line.quality.requests > sent {
-                self.station.codes_unheard += 1;
+                self.station.unanswered_codes += 1;
             }
             let (answered, ended) = match attempt? {
                 Ok(answered) => {
@@ -83,7 +83,7 @@ impl Master<'_> {
         if seen.contains(&codes) {
             return;
         }
-        self.station.codes_unheard = self.station.codes_unheard.saturating_sub(1);
+        self.station.unanswered_codes = self.station.unanswered_codes.saturating_sub(1);
         self.station.queue_codes(codes.iter().copied());
         seen.push(codes);
     }

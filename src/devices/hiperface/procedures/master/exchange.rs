@@ -94,7 +94,7 @@ impl Master<'_> {
 
     /// Returns the dead time tT. It must exceed the time-out, so it is one bit longer.
     fn dead_time(&self) -> Duration {
-        self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
+        self.station.timing().timeout + self.station.format.baud.duration_of_bits(1)
     }
 
     /// Returns the duration of silence after which the line is free.
@@ -123,7 +123,7 @@ impl Master<'_> {
             let first = self.strip_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
             if let Some(reply) = first {
                 // An adapter delivers several characters at once, so the first of them was complete earlier.
-                first_at = self.now() - timing.characters(reply.len() - 1);
+                first_at = self.now() - timing.time_of_characters(reply.len() - 1);
             }
         }
         let begun = self.strip_echo(&line, frame).is_some_and(|reply| !reply.is_empty());

@@ -13,7 +13,7 @@ const SHORT: &str = r#"(
 )"#;
 
 /// Returns the same profile as written by another user, with comments; with CR LF line ends.
-fn commented() -> String {
+fn commented_profile() -> String {
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
 }
 
@@ -147,13 +147,13 @@ fn a_newer_schema_is_read_only() {
 #[test]
 fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
-    assert_edit_in_place(&commented(), edit, "address: 64", "address: 0x41");
+    assert_edit_in_place(&commented_profile(), edit, "address: 64", "address: 0x41");
 }
 
 /// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.
 #[test]
 fn bytes_with_custom_line_breaks_are_reformatted() {
-    let (_, carried) = edited(&commented(), |_, own: &mut HiperfaceProfile| {
+    let (_, carried) = edited(&commented_profile(), |_, own: &mut HiperfaceProfile| {
         own.fields[0].bytes.as_mut().unwrap()[1] = 0xFF;
     });
     assert_eq!(carried.lost, ["name plate"]);

@@ -6,7 +6,7 @@ use crate::devices::hiperface::profile::HiperfaceProfile;
 /// Checks that the encoder is the one from which the profile was read. Encoders without a serial number never match.
 ///
 /// # Errors
-/// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
+/// [`PlanError::OtherDevice`], [`PlanError::TypeMismatch`].
 pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_type: u8) -> Result<(), PlanError> {
     if !is_same_device(profile, serial_number) {
         return Err(PlanError::OtherDevice {
@@ -16,7 +16,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
     }
     // Two types may count their serial numbers separately.
     if profile.identity.encoder_type != encoder_type {
-        return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
+        return Err(PlanError::TypeMismatch { profile: profile.identity.encoder_type, device: encoder_type });
     }
     Ok(())
 }
@@ -24,7 +24,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
 /// Checks that the encoder is the one from which the profile was read, unless the options allow another one.
 ///
 /// # Errors
-/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+/// [`PlanError::TypeMismatch`], [`PlanError::OtherDevice`].
 pub fn check_allowed(
     profile: &HiperfaceProfile,
     serial_number: &str,
@@ -32,7 +32,7 @@ pub fn check_allowed(
     options: &RestoreOptions,
 ) -> Result<(), PlanError> {
     if !options.allow_other_type && profile.identity.encoder_type != encoder_type {
-        return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
+        return Err(PlanError::TypeMismatch { profile: profile.identity.encoder_type, device: encoder_type });
     }
     match check_device(profile, serial_number, encoder_type) {
         Err(error @ PlanError::OtherDevice { .. }) if !options.allow_other_device => Err(error),

@@ -15,7 +15,7 @@ pub enum PlanError {
     },
     /// The profile belongs to another type of encoder.
     #[error("the profile is of type {profile:02X}h, the encoder of type {device:02X}h")]
-    OtherType {
+    TypeMismatch {
         /// Type code in the profile.
         profile: u8,
         /// Type code of the encoder.

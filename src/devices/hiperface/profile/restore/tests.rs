@@ -223,7 +223,7 @@ fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("B", vec![]);
     wanted.identity.encoder_type = 0x32;
     let now = device(10, vec![]);
-    let type_refused = PlanError::OtherType { profile: 0x32, device: 0x37 };
+    let type_refused = PlanError::TypeMismatch { profile: 0x32, device: 0x37 };
     let device_refused = PlanError::OtherDevice { profile: "B".to_owned(), device: "A".to_owned() };
     let cases = [
         (false, false, Err(type_refused.clone())),
@@ -248,7 +248,7 @@ fn another_type_and_a_missing_serial_number_are_refused() {
     let mut wanted = profile("A", vec![field(0, 0xC9, &[])]);
     wanted.identity.encoder_type = 0x22;
     let now = device(10, vec![field(0, 0xC9, &[])]);
-    let other_type = PlanError::OtherType { profile: 0x22, device: 0x37 };
+    let other_type = PlanError::TypeMismatch { profile: 0x22, device: 0x37 };
     assert_eq!(ops(&wanted, &now, RestoreOptions::default()), Err(other_type));
     let nameless = DeviceState { serial_number: String::new(), ..now };
     let wanted = profile("", vec![field(0, 0xC9, &[])]);

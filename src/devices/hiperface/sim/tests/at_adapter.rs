@@ -2,13 +2,13 @@
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;
-use crate::devices::hiperface::sim::AtAdapter;
+use crate::devices::hiperface::sim::AttachableEncoder;
 
 /// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits
 /// of silence, half of the five milliseconds that the command may take.
 #[test]
 fn the_adapters_uart_reaches_a_hiperface_encoder() {
-    let mut host = Host::to("uart=hiperface", &[&AtAdapter]);
+    let mut host = Host::to("uart=hiperface", &[&AttachableEncoder]);
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.has(Capabilities::UART));
     let transfer = |tx: &[u8]| Request::UartTransfer { timeout_us: 20_000, idle_us: 5_000, tx: tx.to_vec() };

@@ -139,18 +139,18 @@ impl Form {
     /// # Errors
     /// Returns an error that names a missing or invalid entry.
     pub fn limits(&self) -> Result<(f64, f64), Text> {
-        let (current, time) = self.each_limit();
+        let (current, time) = self.current_and_time_limits();
         Ok((current?, time?))
     }
 
     /// Returns the problems with the current limit and the time limit. An empty entry is not reported.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
-        let (current, time) = self.each_limit();
+        let (current, time) = self.current_and_time_limits();
         (current.err().filter(|_| typed(&self.current_a)), time.err().filter(|_| typed(&self.time_s)))
     }
 
-    fn each_limit(&self) -> (Result<f64, Text>, Result<f64, Text>) {
+    fn current_and_time_limits(&self) -> (Result<f64, Text>, Result<f64, Text>) {
         let current = within(TEXTS.text("commutation.current"), &self.current_a, 0.001, 1000.0);
         (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }

@@ -6,7 +6,7 @@ use crate::app::Text;
 use crate::app::number::whole;
 use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
-use crate::devices::hiperface::state::{Staged, TEXTS, rules};
+use crate::devices::hiperface::state::{StagedEdits, TEXTS, rules};
 
 /// Byte values of empty memory, which was erased or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
@@ -24,7 +24,7 @@ impl Commutation {
     ///
     /// # Errors
     /// Returns an error if no field has enough space or the typed address is invalid.
-    pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
+    pub fn place(&self, staged: &StagedEdits) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
         let wanted = staged.wanted();
@@ -43,7 +43,7 @@ impl Commutation {
 
     /// Returns a warning that names the data that the offset would replace. Returns `None` if the location is empty or
     /// already contains an offset.
-    pub fn replaced(&self, geometry: Option<Geometry>, staged: &Staged) -> Option<Text> {
+    pub fn replaced(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
@@ -88,18 +88,22 @@ mod tests {
 
     /// Returns a memory with status bytes as in section 4Dh of the manual: D8h and DAh are writable with 16 and 48
     /// bytes, and 89h is protected.
-    fn memory(fields: &[(u8, &[u8])]) -> Staged {
+    fn memory(fields: &[(u8, &[u8])]) -> StagedEdits {
         let image = |(number, (status, bytes)): (u8, &(u8, &[u8]))| FieldImage {
             number,
             status: DataFieldStatus::from_byte(*status),
             bytes: Some(bytes.to_vec()),
         };
-        let mut staged = Staged::default();
+        let mut staged = StagedEdits::default();
         staged.refresh((0..).zip(fields).map(image).collect());
         staged
     }
 
-    fn proposed(staged: &Staged, storage: Storage, field: Option<u8>) -> Result<(u8, usize), &'static str> {
+    fn proposed_location(
+        staged: &StagedEdits,
+        storage: Storage,
+        field: Option<u8>,
+    ) -> Result<(u8, usize), &'static str> {
         let mut commutation = Commutation::default();
         (commutation.form.storage, commutation.form.field) = (storage, field);
         commutation.place(staged).map(|place| (place.field, place.address)).map_err(|text| text.id())
@@ -119,11 +123,11 @@ mod tests {
             ("none", vec![], Err("commutation.no_room"), Err("commutation.no_room")),
         ] {
             let staged = memory(&fields);
-            assert_eq!(proposed(&staged, Storage::Record, None), record, "{label}");
-            assert_eq!(proposed(&staged, Storage::Number, None), number, "{label}");
+            assert_eq!(proposed_location(&staged, Storage::Record, None), record, "{label}");
+            assert_eq!(proposed_location(&staged, Storage::Number, None), number, "{label}");
         }
         let both = memory(&[(0xD9, empty), (0xDA, &service)]);
-        assert_eq!(proposed(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
+        assert_eq!(proposed_location(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
     }
 
     /// The existing record is that of the reference: offset 5305 1EB8h, four pole pairs, CRC from Python's
@@ -132,12 +136,12 @@ mod tests {
     fn an_existing_record_is_proposed_for_replacement() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
         let fields = memory(&[(0xD8, &record), (0xD9, &[0; 32])]);
-        assert_eq!(proposed(&fields, Storage::Record, None), Ok((0, 0)));
-        assert_eq!(proposed(&fields, Storage::Number, None), Ok((1, 0)));
+        assert_eq!(proposed_location(&fields, Storage::Record, None), Ok((0, 0)));
+        assert_eq!(proposed_location(&fields, Storage::Number, None), Ok((1, 0)));
         let mut damaged = record;
         damaged[7] ^= 1;
         let fields = memory(&[(0xD8, &damaged), (0xD9, &[0; 32])]);
-        assert_eq!(proposed(&fields, Storage::Record, None), Ok((1, 0)));
+        assert_eq!(proposed_location(&fields, Storage::Record, None), Ok((1, 0)));
     }
 
     #[test]

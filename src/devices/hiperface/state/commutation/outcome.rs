@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::app::number::whole;
 use crate::devices::hiperface::profile::{CommutationRecord, CommutationRecordError};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
-use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
+use crate::devices::hiperface::state::{Allowed, StagedEdits, TEXTS};
 
 /// Step size in electrical degrees from which method 2 is refused. The torque may then have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
@@ -158,7 +158,7 @@ impl Commutation {
     ///
     /// # Errors
     /// Returns an error if an entry or a reading is missing or unusable.
-    pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
+    pub fn bytes(&self, geometry: Option<Geometry>, staged: &StagedEdits) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         self.check_second_vector_agrees(geometry)?;
         let OffsetLocation { field, address } = self.place(staged)?;
@@ -211,7 +211,7 @@ impl Commutation {
     }
 }
 
-pub fn stored(staged: &Staged) -> Vec<Stored> {
+pub fn stored(staged: &StagedEdits) -> Vec<Stored> {
     let mut found = Vec::new();
     for field in staged.wanted() {
         let blocks = field.bytes.as_deref().unwrap_or_default().chunks(CommutationRecord::BYTES).enumerate();

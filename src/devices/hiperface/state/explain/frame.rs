@@ -15,8 +15,8 @@ pub fn frame(fact: &FrameDetail) -> Text {
         FrameDetail::Heading { address, command } => heading(*address, *command),
         FrameDetail::Request(arguments) => request(arguments),
         FrameDetail::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", request_error_text(*error)),
-        FrameDetail::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
-        FrameDetail::Code(code) => kind_and_code(*code),
+        FrameDetail::Refused(code) => TEXTS.text("frame.refused").with_text("code", status_code_text(*code)),
+        FrameDetail::Code(code) => status_code_text(*code),
         FrameDetail::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
     }
 }
@@ -53,13 +53,14 @@ fn request(arguments: &Arguments) -> Text {
             .with("address", address)
             .with("bytes", hex(data)),
         Arguments::Field(field) => TEXTS.text("frame.request_field").with("field", number(*field)),
-        Arguments::Define { field, status } => {
-            TEXTS.text("frame.request_define").with("field", number(*field)).with_text("status", status_byte(*status))
-        }
+        Arguments::Define { field, status } => TEXTS
+            .text("frame.request_define")
+            .with("field", number(*field))
+            .with_text("status", status_byte_text(*status)),
         Arguments::Code(code) => TEXTS.text("frame.request_code").with("number", code),
         Arguments::Address(address) => TEXTS.text("frame.request_address").with("address", address),
         Arguments::Settings(settings) => {
-            TEXTS.text("frame.request_settings").with_text("settings", settings_byte(*settings))
+            TEXTS.text("frame.request_settings").with_text("settings", settings_byte_text(*settings))
         }
     }
 }
@@ -74,7 +75,7 @@ fn request_error_text(error: RequestError) -> Text {
     }
 }
 
-fn kind_and_code(code: StatusCode) -> Text {
+fn status_code_text(code: StatusCode) -> Text {
     let named = status_with_number(code);
     if code == StatusCode::OK {
         return named;
@@ -89,7 +90,7 @@ fn answer(reply: &Reply) -> Text {
         Reply::Analogue(value) => TEXTS.text("frame.value").with("value", value),
         Reply::Counter(value) => TEXTS.text("frame.counter").with("value", value),
         Reply::Data(bytes) => TEXTS.text("frame.data").with("bytes", hex(bytes)),
-        Reply::FieldStatus(status) => TEXTS.text("frame.field_status").with_text("status", status_byte(*status)),
+        Reply::FieldStatus(status) => TEXTS.text("frame.field_status").with_text("status", status_byte_text(*status)),
         Reply::FreeMemory(free) => TEXTS
             .text(if free.fields == 1 { "frame.free_one" } else { "frame.free" })
             .with("bytes", free.bytes())
@@ -111,18 +112,18 @@ fn type_label(label: &TypeLabel) -> Text {
     let name = types.find(label.encoder_type);
     TEXTS
         .text("frame.type_label")
-        .with_text("settings", settings_byte(label.settings))
+        .with_text("settings", settings_byte_text(label.settings))
         .with("type", number(label.encoder_type))
         .with_text("name", name.map_or_else(|| TEXTS.text("frame.unknown_type"), |row| plain(&row.name)))
         .with("bytes", label.eeprom_bytes())
         .with("options", number(label.options))
 }
 
-fn status_byte(status: DataFieldStatus) -> Text {
+fn status_byte_text(status: DataFieldStatus) -> Text {
     TEXTS.text("frame.byte").with("byte", number(status.byte())).with_text("words", field_status(status))
 }
 
-fn settings_byte(settings: LineSettings) -> Text {
+fn settings_byte_text(settings: LineSettings) -> Text {
     TEXTS.text("frame.byte").with("byte", number(settings.byte())).with_text("words", line_settings(settings))
 }
 

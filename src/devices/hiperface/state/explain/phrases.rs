@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{document, in_both_languages, setting, url};
+use crate::app::explain::{assert_in_both_languages, document, setting, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::hiperface::procedures::{ReadBackValue, Station};
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, PlanItem};
@@ -32,7 +32,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in queries {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
-        in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url(&error), &error);
     }
 }
 
@@ -62,7 +62,7 @@ fn virtual_encoder_setting_errors_are_explained_in_both_languages() {
     for text in queries {
         let query: UrlQuery = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
-        in_both_languages(&setting(&error), &error);
+        assert_in_both_languages(&setting(&error), &error);
     }
 }
 
@@ -90,7 +90,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&document(&error, KINDS), &error);
     }
 }
 
@@ -111,8 +111,8 @@ fn items_checked_by_a_write_are_named_in_both_languages() {
         (PlanItem::FieldCount, "Anzahl der Datenfelder"),
     ];
     for (item, german) in cases {
-        in_both_languages(&plan_item_text(&item), &item);
+        assert_in_both_languages(&plan_item_text(&item), &item);
         assert_eq!(plan_item_text(&item).words(German), german);
     }
-    in_both_languages(&read_back(&ReadBackValue::AnotherStatus), &ReadBackValue::AnotherStatus);
+    assert_in_both_languages(&read_back(&ReadBackValue::AnotherStatus), &ReadBackValue::AnotherStatus);
 }

@@ -13,9 +13,10 @@ use crate::worker::OpenError;
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<TypeTableFileError>() {
-        Some(TypeTableFileError { path, cause }) => {
-            TEXTS.text("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
-        }
+        Some(TypeTableFileError { path, cause }) => TEXTS
+            .text("store.encoder_types")
+            .with("path", path.display())
+            .with_text("why", type_table_error_text(cause)),
         None => general::store(error),
     }
 }
@@ -27,19 +28,19 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-fn type_table(error: &TypeTableError) -> Text {
+fn type_table_error_text(error: &TypeTableError) -> Text {
     match error {
         TypeTableError::Syntax { line, column, problem: what } => syntax(*line, *column, general::plain(what)),
         TypeTableError::Range { code, entry, range } => TEXTS
             .text("detail.range")
             .with("code", format!("{code:02X}h"))
-            .with_text("entry", shape_entry(*entry))
+            .with_text("entry", geometry_entry_text(*entry))
             .with("low", range.start())
             .with("high", range.end()),
     }
 }
 
-fn shape_entry(entry: GeometryEntry) -> Text {
+fn geometry_entry_text(entry: GeometryEntry) -> Text {
     TEXTS.text(match entry {
         GeometryEntry::Periods => "shape_entry.periods",
         GeometryEntry::Turns => "shape_entry.turns",
@@ -58,7 +59,7 @@ mod tests {
     fn type_table_errors_are_explained_in_both_languages() {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
         let cause = EncoderTypes::parse(zero).unwrap_err();
-        let why = type_table(&cause);
+        let why = type_table_error_text(&cause);
         assert_eq!(why.words(English), cause.to_string());
         assert_eq!(why.terminal_text(), cause.to_string());
         assert_eq!(why.words(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");

@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{ask, number_ui, reserved_ui};
+use super::{ask, fixed_height_message_ui, number_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{CommutationAction as Assistant, Form, Storage, Stored, stored};
@@ -36,7 +36,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
             Ok(_) if is_confirmed => RichText::new(say(theme, "commutation.confirmed")).color(theme.palette.good),
             Ok(_) => RichText::new(say(theme, "commutation.unconfirmed")).color(theme.palette.warn),
         };
-        reserved_ui(ui, theme, message);
+        fixed_height_message_ui(ui, theme, message);
         ui.add_enabled_ui(!is_confirmed, |ui| {
             ui.checkbox(&mut form.without_second, say(theme, "commutation.without_second"));
         });

@@ -25,7 +25,7 @@ impl Master<'_> {
     /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
     /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
-        self.send_setting_attempt(command, 0)
+        self.try_send_setting(command, 0)
     }
 
     /// Sends a setting whose echo is ambiguous and reads the value back with `question`. Both are repeated with longer
@@ -43,7 +43,7 @@ impl Master<'_> {
     ) -> Result<(), Error> {
         let mut reads = wanted;
         for tried in 0..TRIES {
-            self.send_setting_attempt(command, tried)?;
+            self.try_send_setting(command, tried)?;
             reads = self.ask(question)?;
             if reads == wanted {
                 return Ok(());
@@ -52,7 +52,7 @@ impl Master<'_> {
         Err(Error::NotTaken { item: item(), wanted: wanted.get(), reads: reads.get() })
     }
 
-    fn send_setting_attempt(&mut self, command: Command, tried: u32) -> Result<(), Error> {
+    fn try_send_setting(&mut self, command: Command, tried: u32) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.wait_until_value_cleared()?;
         self.parameterising = true;

@@ -38,7 +38,7 @@ impl Master<'_> {
             _ => self.run_uncancellable(Self::lead_back),
         };
         let is_back = led.is_ok() || self.is_in_initial_state();
-        self.record_stores_and_return(is_back);
+        self.record_step_end(is_back);
         let Err(why) = led else {
             self.rested = self.is_in_initial_state().then(|| self.data.now());
             return ended;
@@ -76,7 +76,7 @@ impl Master<'_> {
             master.lead_back()?;
             Ok(master.is.unwrap_or(mode))
         });
-        self.record_stores_and_return(ended.is_ok());
+        self.record_step_end(ended.is_ok());
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 

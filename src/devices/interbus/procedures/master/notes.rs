@@ -107,7 +107,7 @@ impl Master<'_> {
     }
 
     /// Records the possible stores at the end of a step, and whether the encoder is back in its initial mode.
-    pub(super) fn record_stores_and_return(&mut self, is_back: bool) {
+    pub(super) fn record_step_end(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {
             return;

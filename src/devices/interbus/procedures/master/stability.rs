@@ -16,7 +16,7 @@ const STAYS: u32 = 20;
 
 /// Returns the minimum number of cycles to wait for an answer. It allows for cycles with old words, and for a lost
 /// reply that uses up the whole time limit.
-pub(super) const fn least_cycles(recorded: bool) -> u32 {
+pub(super) const fn min_wait_cycles(recorded: bool) -> u32 {
     if recorded { STAYS + 4 } else { 8 }
 }
 

@@ -99,7 +99,7 @@ fn another_type_needs_a_separate_permission() {
     );
     for other in [0, 1, 3] {
         own.identity.flags = Some(Flags::new(value(other)));
-        let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(other)) };
+        let types = TypeMismatch { profile: Flags::new(value(2)), device: Flags::new(value(other)) };
         for refused in [RestoreOptions::default(), device_only] {
             assert_eq!(plan_restore(&profile(MINE), &own, refused), Err(types.into()));
         }

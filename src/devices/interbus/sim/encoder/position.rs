@@ -31,7 +31,7 @@ impl Encoder {
         let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));
         // The disc position is below the range, which has at most 26 bits.
         let position = u64::from(gear.position(place as u32).get()) + u64::from(self.memory.zero_shift);
-        Value::of_word((position % u64::from(gear.steps())) as u32)
+        Value::from_word((position % u64::from(gear.steps())) as u32)
     }
 
     /// Returns the IN word of a running encoder.
@@ -48,7 +48,7 @@ impl Encoder {
             (Class::K3, StartupMode::Velocity) => {
                 let rpm = self.shaft.rpm().round() as i32;
                 let rpm = if self.memory.counterclockwise { -rpm } else { rpm };
-                Value::of_word(rpm as u32).get()
+                Value::from_word(rpm as u32).get()
             }
             (Class::K3, StartupMode::Cams(program)) => {
                 let outputs = self.memory.program(program).outputs(position);

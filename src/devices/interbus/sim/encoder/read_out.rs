@@ -37,7 +37,7 @@ impl Encoder {
 
     /// Sends the value of a read-out. `None` sends the error of a cam, register or number that does not exist.
     pub(super) fn show(&mut self, value: Option<u32>) {
-        let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
+        let word = value.map_or(UNKNOWN, |value| VALUE | Value::from_word(value).get());
         self.enter_activity(Activity::ReadingOut, InWordContent::Word(word));
     }
 

@@ -11,7 +11,7 @@ fn at(position: i32) -> i32 {
 }
 
 fn outputs(master: &mut Master, position: i32) -> u32 {
-    master.set_shaft(at(position));
+    master.set_shaft_position(at(position));
     master.read() & 0xFF
 }
 

@@ -60,13 +60,13 @@ impl Master {
         self.now = self.now + Duration::from_millis(milliseconds);
     }
 
-    fn set_shaft(&mut self, place: i32) {
-        self.encoder.set_shaft(self.now, place);
+    fn set_shaft_position(&mut self, place: i32) {
+        self.encoder.set_shaft_position(self.now, place);
     }
 
     /// Returns the position, at a place of the disc.
     fn position(&mut self, place: i32) -> u32 {
-        self.set_shaft(place);
+        self.set_shaft_position(place);
         self.read()
     }
 

@@ -122,7 +122,7 @@ fn each_set_preset_fires_once() {
     master.exchange(&[(0x4000_0000, 190), (0, 190)]);
     // The FRABA preset can be repeated.
     for place in [0, 6144] {
-        master.set_shaft(place);
+        master.set_shaft_position(place);
         master.exchange(&[(0x6000_0000, 100), (0x8000_0000, 100), (0, 100)]);
     }
     assert_eq!(master.encoder.stores(), 4);
@@ -192,7 +192,7 @@ fn default_restores_factory_parameters_and_keeps_the_cams() {
 fn encoders_of_other_classes_ignore_commands() {
     for (class, expected) in [("K1", 0x0FFF), ("K2", 0x0000_5FFE)] {
         let mut master = Master::with(&format!("class={class}&steps=0x2000&revolutions=1"));
-        master.set_shaft(0x5FFE);
+        master.set_shaft_position(0x5FFE);
         let expected = if class == "K2" { expected & 0x1FFF } else { expected };
         master.exchange(&[(0, expected), (0x0200_0168, expected), (0x2021_0009, expected), (0x8000_0000, expected)]);
         assert_eq!(master.encoder.stores(), 3);

@@ -1,7 +1,7 @@
 //! Changes of a cam while it or one of its edges is dragged. A part that is dragged over one end of the measuring range
 //! reappears at the other end.
 
-use super::of_edge;
+use super::edge_value;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 
@@ -27,7 +27,7 @@ pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
     if start >= whole || stop >= whole {
-        let to = (i64::from(of_edge(cam, edge).get()) + by).clamp(0, whole - 1);
+        let to = (i64::from(edge_value(cam, edge).get()) + by).clamp(0, whole - 1);
         return with(cam, edge, to, whole);
     }
     let length = (stop - start).rem_euclid(whole) + 1;
@@ -35,7 +35,7 @@ pub fn apply_drag(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
         Edge::Start => by.clamp(length - whole, length - 1),
         Edge::Stop => by.clamp(1 - length, whole - length),
     };
-    with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
+    with(cam, edge, i64::from(edge_value(cam, edge).get()) + by, whole)
 }
 
 /// Returns the cam with both edges moved by `by` steps. A cam with an edge beyond the range is not moved.
@@ -60,7 +60,7 @@ pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
 
 fn with(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
     // The position is below the range, which has at most 25 bits.
-    let to = Value::of_word(to.rem_euclid(whole) as u32);
+    let to = Value::from_word(to.rem_euclid(whole) as u32);
     match edge {
         Edge::Start => Cam { start: to, ..cam },
         Edge::Stop => Cam { stop: to, ..cam },

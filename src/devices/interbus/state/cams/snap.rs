@@ -1,6 +1,6 @@
 //! Snapping of a dragged edge to other cams and to grid lines.
 
-use super::{Chart, DragTarget, grid, of_edge};
+use super::{Chart, DragTarget, edge_value, grid};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
@@ -41,7 +41,7 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: DragTarget, cam: Cam, by: f64, s
     };
     let mut best: Option<(f64, i64)> = None;
     for edge in edges {
-        let from = f64::from(of_edge(cam, *edge).get());
+        let from = f64::from(edge_value(cam, *edge).get());
         for target in targets(chart, scale, hold.cam(), *edge, from + by, snap) {
             let distance = (target - from - by).abs();
             if distance <= snap.reach && best.is_none_or(|(least, _)| distance < least) {

@@ -9,7 +9,7 @@ use super::{
 use crate::app::Language;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Image, Parameters, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
-use crate::devices::interbus::state::staged::{Edit, Staged};
+use crate::devices::interbus::state::staged::{Edit, StagedEdits};
 
 fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
@@ -28,10 +28,10 @@ fn program() -> ProgramNumber {
 }
 
 /// Returns a profile of 1000 steps with these cams of program 1.
-fn staged(cams: &[(u8, u32, u32)]) -> Staged {
+fn staged(cams: &[(u8, u32, u32)]) -> StagedEdits {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = Staged::for_profile(Image::of(parameters), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::of(parameters), CamNames::default());
     for (number, start, stop) in cams {
         let edit = Edit::Cam { program: program(), cam: cam(*number), start: *start, stop: *stop, on: true };
         staged.edit(&edit).unwrap();
@@ -64,7 +64,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     }
     let lamps = chart.lamps(Some(50), Some(0b10_1000));
     assert_eq!(lamps[3], OutputState { simulated: Some(true), own: Some(true) });
-    assert!(!lamps[3].differs() && lamps[5].differs() && lamps[5].lit() == Some(true));
+    assert!(!lamps[3].differs() && lamps[5].differs() && lamps[5].effective_state() == Some(true));
     assert_eq!(chart.lamps(None, None)[0], OutputState { simulated: None, own: None });
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
     let says = |lamp| words::lamp(lamp).words(Language::English);

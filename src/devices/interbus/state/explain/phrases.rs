@@ -1,6 +1,6 @@
 //! Tests of the texts for errors of the lower layers, in both languages.
 
-use crate::app::explain::{document, in_both_languages};
+use crate::app::explain::{assert_in_both_languages, document};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::interbus::procedures::Exception;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -34,7 +34,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&document(&error, KINDS), &error);
     }
 }
 
@@ -42,6 +42,6 @@ fn profile_errors_are_explained_in_both_languages() {
 fn every_exception_is_named_in_both_languages() {
     for code in 0..=u8::MAX {
         let exception = Exception::new(code);
-        in_both_languages(&super::gateway::exception_name(exception), &exception.name());
+        assert_in_both_languages(&super::gateway::exception_name(exception), &exception.name());
     }
 }

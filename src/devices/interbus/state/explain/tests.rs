@@ -7,20 +7,20 @@ use crate::app::Language::{English, German};
 use crate::devices::interbus::jobs::ChangeKind;
 use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
-use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError, ProgramChange};
+use crate::devices::interbus::profile::{Edge, Item, Op, PlanError, ProgramChange, TypeMismatch};
 use crate::devices::interbus::protocol::{
     CamNumber, Code, Command, EncoderMode, Flags, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
     WindowShift,
 };
 use crate::link::LinkErrorKind;
-use crate::worker::NotBegun;
+use crate::worker::NotStarted;
 
 fn value(number: u32) -> Value {
     Value::new(number).unwrap()
 }
 
 fn error_word(word: u32) -> ErrorWord {
-    ErrorWord { code: Code::of_word(word), data: Value::of_word(word) }
+    ErrorWord { code: Code::from_word(word), data: Value::from_word(word) }
 }
 
 fn program(number: u8) -> StartupMode {
@@ -126,14 +126,14 @@ fn plan_refusals_name_both_limits() {
     };
     let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
-    let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(1)) };
+    let types = TypeMismatch { profile: Flags::new(value(2)), device: Flags::new(value(1)) };
     let cases = [
         (
             PlanError::OtherDevice { profile: "123".to_owned(), device: "456".to_owned() },
             vec!["123", "456"],
             Some("--allow-other-device"),
         ),
-        (PlanError::OtherType(types), vec!["ultiturn", "ingle"], Some("--allow-other-type")),
+        (PlanError::TypeMismatch(types), vec!["ultiturn", "ingle"], Some("--allow-other-type")),
         (PlanError::Gear(GearError::Turns { turns: 4097 }), vec!["4097", "1", "4096"], None),
         (PlanError::Gear(GearError::Steps { steps: 8193, turns: 1, most: 8192 }), vec!["8193", "8192"], None),
         (PlanError::OutOfRange(preset), vec!["3600", "0", "3599"], None),
@@ -148,7 +148,7 @@ fn plan_refusals_name_both_limits() {
         assert!(option.is_none_or(|option| text.terminal_text().contains(option)), "{}", text.terminal_text());
         assert!(option.is_none_or(|option| !text.words(English).contains(option)), "no options in the window");
     }
-    let worn = job(&JobError::NotBegun(NotBegun::Worn { seen: 448, cost: 2, limit: 449 }));
+    let worn = job(&JobError::NotStarted(NotStarted::Worn { seen: 448, cost: 2, limit: 449 }));
     assert_explains(&worn[0], &["448", "2"]);
     assert!(worn[0].terminal_text().contains("450") && worn[0].terminal_text().contains("--force-wear"), "{worn:?}");
 }
@@ -204,7 +204,7 @@ fn completing_a_write_is_advised_after_leading_back() {
 /// Issue 22.4: an unknown count is reported with the option that permits the write.
 #[test]
 fn a_write_with_unknown_wear_names_the_override() {
-    let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));
+    let refused = job(&JobError::NotStarted(NotStarted::WearUnknown { cost: 2 }));
     assert_explains(&refused[0], &["2"]);
     assert!(refused[0].terminal_text().contains("--force-wear"), "{refused:?}");
 }
@@ -249,9 +249,9 @@ fn only_a_lost_wire_counts_as_a_lost_connection() {
     let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
     let standing = LeftState { out: 0, parameterising: false, found: None, is: None };
     for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
-        assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
+        assert_eq!(connection_loss_text(&JobError::Device(error)).unwrap().id(), "link.lost");
     }
     let silent = JobError::Device(Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
-    assert!(loss(&silent).is_none() && means_no_response(&silent));
-    assert!(!means_no_response(&JobError::Device(Error::NeverSilent)));
+    assert!(connection_loss_text(&silent).is_none() && is_no_response(&silent));
+    assert!(!is_no_response(&JobError::Device(Error::NeverSilent)));
 }

@@ -10,11 +10,11 @@ use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
 use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
 use crate::devices::interbus::profile::{
-    CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange,
+    CamChange, Edge, Item, Op, ParameterChange, PlanError, ProgramChange, TypeMismatch,
 };
 use crate::devices::interbus::protocol::{Flags, GearError, Value};
 use crate::devices::interbus::state::TEXTS;
-use crate::worker::NotBegun;
+use crate::worker::NotStarted;
 
 pub fn change(change: &Change) -> Text {
     match change {
@@ -76,11 +76,11 @@ fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
     of_cams.chain(mask).chain(shift).collect()
 }
 
-pub fn other_type(types: OtherType) -> Text {
+pub fn other_type(types: TypeMismatch) -> Text {
     type_mismatch_text("ib_review.other_type", types)
 }
 
-fn type_mismatch_text(id: &'static str, types: OtherType) -> Text {
+fn type_mismatch_text(id: &'static str, types: TypeMismatch) -> Text {
     let name = |flags: Flags| match (flags.multiturn(), flags.steps_minus_one()) {
         (true, false) => "ib_type.multiturn",
         (false, false) => "ib_type.single_turn",
@@ -97,7 +97,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherType(types) => type_mismatch_text("ib_plan.other_type", *types),
+        PlanError::TypeMismatch(types) => type_mismatch_text("ib_plan.other_type", *types),
         PlanError::Gear(GearError::Turns { turns }) => TEXTS.text("ib_plan.turns").with("turns", turns),
         PlanError::Gear(GearError::Steps { steps, turns, most }) => {
             TEXTS.text("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)
@@ -141,12 +141,14 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
 
-pub(super) fn not_started_text(why: &NotBegun) -> Text {
+pub(super) fn not_started_text(why: &NotStarted) -> Text {
     match why {
-        NotBegun::Worn { seen, cost, .. } => {
+        NotStarted::Worn { seen, cost, .. } => {
             TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
-        NotBegun::OtherPlan | NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_started_text(why),
+        NotStarted::OtherPlan | NotStarted::NotKept(_) | NotStarted::WearUnknown { .. } => {
+            explain::not_started_text(why)
+        }
     }
 }
 

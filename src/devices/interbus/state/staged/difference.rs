@@ -1,6 +1,6 @@
 //! Differences between the edited values and the encoder or profile.
 
-use super::{EditedValues, Staged};
+use super::{EditedValues, StagedEdits};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 
@@ -14,7 +14,7 @@ pub enum ValueId {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Differs {
+pub struct ValueDifference {
     pub place: ValueId,
     /// Base value, or `None` if the profile does not contain it.
     pub from: Option<u32>,
@@ -56,16 +56,16 @@ impl EditedValues {
     }
 }
 
-impl Staged {
+impl StagedEdits {
     /// Returns the difference of a value, or `None` if it was not edited.
-    pub fn differs(&self, place: ValueId) -> Option<Differs> {
+    pub fn differs(&self, place: ValueId) -> Option<ValueDifference> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
-        (from != to).then_some(Differs { place, from, to })
+        (from != to).then_some(ValueDifference { place, from, to })
     }
 
     /// Returns the differences of all edited values, except names.
-    pub fn differences(&self) -> Vec<Differs> {
+    pub fn differences(&self) -> Vec<ValueDifference> {
         ValueId::all().filter_map(|place| self.differs(place)).collect()
     }
 
@@ -81,7 +81,7 @@ impl Staged {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         let is_renamed = base.names.program(program) != wanted.names.program(program)
             || CamNumber::all().any(|cam| base.name(program, cam) != wanted.name(program, cam));
-        base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_encoder()
+        base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_from_encoder()
     }
 
     pub fn count(&self) -> usize {

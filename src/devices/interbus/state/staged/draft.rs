@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{BaseSource, EditedValues, Staged, edit};
+use super::{BaseSource, EditedValues, StagedEdits, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
@@ -29,7 +29,7 @@ pub enum SavedEdit {
     ProgramName(u8, String),
 }
 
-impl Staged {
+impl StagedEdits {
     /// Returns the edits for a draft. They include those that wait until their program is read.
     pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();

@@ -156,15 +156,15 @@ pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> 
         Edit::Mirror(program) => {
             let last = last(wanted);
             move_cams(&mut after, program, |cam| Cam {
-                start: Value::of_word(last.saturating_sub(cam.stop.get())),
-                stop: Value::of_word(last.saturating_sub(cam.start.get())),
+                start: Value::from_word(last.saturating_sub(cam.stop.get())),
+                stop: Value::from_word(last.saturating_sub(cam.start.get())),
             })?;
         }
         Edit::Rotate { program, by } => {
             let range = i64::from(wanted.range().max(1));
             // The numbers are below the range, which has at most 25 bits.
             let by = by.rem_euclid(range);
-            let moved = |edge: Value| Value::of_word(((i64::from(edge.get()) + by) % range) as u32);
+            let moved = |edge: Value| Value::from_word(((i64::from(edge.get()) + by) % range) as u32);
             move_cams(&mut after, program, |cam| Cam { start: moved(cam.start), stop: moved(cam.stop) })?;
         }
         Edit::Table(ref table) => {

@@ -31,7 +31,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    pub fn is_about(&self, number: ProgramNumber, own: CamNumber) -> bool {
+    pub fn refers_to(&self, number: ProgramNumber, own: CamNumber) -> bool {
         match *self {
             Mark::Beyond { program, cam, .. } => (program, cam) == (number, own),
             Mark::Clash { program, first, second, .. } => program == number && (first == own || second == own),
@@ -71,7 +71,7 @@ impl EditedValues {
             }
             let Some(track) = self.name(program, number) else { continue };
             for other in CamNumber::all().filter(on).filter(|other| *other > number) {
-                let is_same = self.name(program, other).is_some_and(|name| is_same_track(name, track));
+                let is_same = self.name(program, other).is_some_and(|name| is_same_track_name(name, track));
                 let both =
                     self.cam(program, other).filter(|_| is_same).and_then(|other| first_common_position(cam, other));
                 if let Some(at) = both {
@@ -83,7 +83,7 @@ impl EditedValues {
 }
 
 /// Returns whether two names are equal, regardless of case and blanks at their ends.
-pub(super) fn is_same_track(one: &str, other: &str) -> bool {
+pub(super) fn is_same_track_name(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 

@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Differs, Edit, EditError, EditedValues, Mark, SavedEdit, Staged, ValueId};
+use super::{Edit, EditError, EditedValues, Mark, SavedEdit, StagedEdits, ValueDifference, ValueId};
 use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
 use crate::devices::interbus::protocol::{
@@ -30,8 +30,8 @@ fn program() -> Program {
 }
 
 /// Returns an encoder with 1000 steps whose program 1 was read.
-fn staged() -> Staged {
-    let mut staged = Staged::default();
+fn staged() -> StagedEdits {
+    let mut staged = StagedEdits::default();
     staged.refresh_parameters(parameters(1000, 1));
     staged.refresh_programs(&[(number(1), program())], WindowShift::new(8));
     staged
@@ -45,7 +45,7 @@ fn name(own: u8, name: &str) -> Edit {
     Edit::Name { program: number(1), cam: cam(own), name: name.to_owned() }
 }
 
-fn cam_of(staged: &Staged, own: u8) -> (u32, u32) {
+fn cam_edges(staged: &StagedEdits, own: u8) -> (u32, u32) {
     let cam = staged.wanted().unwrap().cam(number(1), cam(own)).unwrap();
     (cam.start.get(), cam.stop.get())
 }
@@ -58,7 +58,7 @@ fn an_edit_is_separate_from_the_encoder() {
     assert_eq!(staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }), Ok(true));
     assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(true));
     assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(false), "nothing is other than before");
-    let differs = |place, from, to| Differs { place, from: Some(from), to: Some(to) };
+    let differs = |place, from, to| ValueDifference { place, from: Some(from), to: Some(to) };
     let expected = [
         differs(ValueId::Parameter(Parameter::Direction), 3, 4),
         differs(ValueId::Edge(number(1), cam(3), Edge::Stop), 350, 399),
@@ -72,7 +72,7 @@ fn an_edit_is_separate_from_the_encoder() {
 
 #[test]
 fn refused_edits_name_the_limits_and_change_nothing() {
-    let mut staged = Staged::default();
+    let mut staged = StagedEdits::default();
     assert_eq!(staged.edit(&Edit::Preset(1)), Err(EditError::NothingRead));
     staged = self::staged();
     let beyond = |parameter, value, low, high| {
@@ -98,7 +98,7 @@ fn refused_edits_name_the_limits_and_change_nothing() {
         assert_eq!(staged.edit(&edit), Err(why), "{edit:?}");
     }
     assert!(!staged.is_dirty() && !staged.can_undo());
-    let mut unread = Staged::default();
+    let mut unread = StagedEdits::default();
     unread.refresh_parameters(parameters(1000, 1));
     assert_eq!(unread.edit(&Edit::Shift(WindowShift::default())), Err(EditError::ShiftNotRead));
 }
@@ -119,12 +119,12 @@ fn programs_are_copied_mirrored_and_shifted() {
     staged.edit(&name(3, " feed ")).unwrap();
     // 999 - 350 = 649 and 999 - 300 = 699.
     staged.edit(&Edit::Mirror(number(1))).unwrap();
-    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((949, 999), (649, 699)));
+    assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((949, 999), (649, 699)));
     // 949 + 60 = 1009 and 999 + 60 = 1059, less 1000.
     staged.edit(&Edit::Rotate { program: number(1), by: 60 }).unwrap();
-    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((9, 59), (709, 759)));
+    assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((9, 59), (709, 759)));
     staged.edit(&Edit::Rotate { program: number(1), by: -1_000_020 }).unwrap();
-    assert_eq!(cam_of(&staged, 0), (989, 39), "over the end");
+    assert_eq!(cam_edges(&staged, 0), (989, 39), "over the end");
     staged.edit(&Edit::Copy { from: number(1), to: number(5) }).unwrap();
     let wanted = staged.wanted().unwrap();
     assert_eq!(wanted.image.program(number(5)), wanted.image.program(number(1)));
@@ -140,7 +140,7 @@ fn only_an_enabled_cam_beyond_the_range_blocks_mirroring() {
     assert_eq!(staged.edit(&Edit::Rotate { program: number(1), by: 1 }), Err(refused));
     staged.edit(&Edit::Switch { program: number(1), cam: cam(3), on: false }).unwrap();
     staged.edit(&Edit::Mirror(number(1))).unwrap();
-    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((289, 339), (300, 350)), "that one stays where it is");
+    assert_eq!((cam_edges(&staged, 0), cam_edges(&staged, 3)), ((289, 339), (300, 350)), "that one stays where it is");
 }
 
 #[test]
@@ -152,8 +152,8 @@ fn a_table_is_one_edit_and_enables_its_cams() {
     staged.edit(&Edit::Table(vec![filled.clone()])).unwrap();
     let wanted = staged.wanted().unwrap();
     assert_eq!(wanted.image.program(number(1)).unwrap().mask, 0b10);
-    assert_eq!(cam_of(&staged, 1), (900, 20));
-    assert_eq!(cam_of(&staged, 0), (0, 50), "its edges cost nothing where they are");
+    assert_eq!(cam_edges(&staged, 1), (900, 20));
+    assert_eq!(cam_edges(&staged, 0), (0, 50), "its edges cost nothing where they are");
     filled.cams[4] = Some(edges(0, 1000));
     let refused = EditError::Edge { edge: Edge::Stop, to: 1000, last: 999 };
     assert_eq!(staged.edit(&Edit::Table(vec![filled])), Err(refused));
@@ -167,15 +167,15 @@ fn edits_can_be_undone_and_redone() {
         staged.edit(&edge(1, 3, Edge::Start, to)).unwrap();
     }
     assert!(staged.undo() && staged.undo());
-    assert_eq!(cam_of(&staged, 3), (310, 350));
+    assert_eq!(cam_edges(&staged, 3), (310, 350));
     assert!(staged.redo());
-    assert_eq!(cam_of(&staged, 3), (320, 350));
+    assert_eq!(cam_edges(&staged, 3), (320, 350));
     staged.edit(&edge(1, 3, Edge::Start, 0)).unwrap();
     assert!(!staged.redo(), "another way was taken");
     staged.revert();
     assert!(!staged.is_dirty());
     assert!(staged.undo());
-    assert_eq!(cam_of(&staged, 3), (0, 350));
+    assert_eq!(cam_edges(&staged, 3), (0, 350));
     for to in 0..500 {
         staged.edit(&edge(1, 0, Edge::Stop, 100 + to)).unwrap();
     }
@@ -197,12 +197,12 @@ fn edits_and_undo_survive_a_fresh_reading() {
     now.mask = 0b1000_1011; // cam 1 too, and our edit was written
     staged.refresh_programs(&[(number(1), now)], None);
     staged.refresh_parameters(Parameters { preset: 7, ..parameters(2000, 1) });
-    assert_eq!(cam_of(&staged, 3), (305, 399));
+    assert_eq!(cam_edges(&staged, 3), (305, 399));
     let wanted = staged.wanted().unwrap();
     assert_eq!((wanted.image.program(number(1)).unwrap().mask, wanted.range()), (0b1000_1011, 2000));
     assert_eq!(staged.count(), 1, "{:?}", staged.differences());
     assert!(staged.undo(), "the edit of the stop is one step still");
-    assert_eq!(cam_of(&staged, 3), (305, 350));
+    assert_eq!(cam_edges(&staged, 3), (305, 350));
     assert!(!staged.is_dirty() && !staged.undo());
 }
 
@@ -239,7 +239,7 @@ fn a_draft_is_restored_and_waits_for_unread_values() {
     let kept = staged.edits();
     assert_eq!(kept, expected);
 
-    let mut other = Staged::default();
+    let mut other = StagedEdits::default();
     let none = [
         SavedEdit::Cam(9, 0, 1, 2),
         SavedEdit::Cam(1, 8, 1, 2),
@@ -269,7 +269,7 @@ fn drafts_round_trip_as_text() {
 
 #[test]
 fn missing_values_can_be_added_to_a_profile() {
-    let mut staged = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
     assert_eq!(staged.edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
     let drawn = Edit::Cam { program: number(2), cam: cam(4), start: 900, stop: 99, on: true };
@@ -279,7 +279,7 @@ fn missing_values_can_be_added_to_a_profile() {
     assert_eq!(staged.edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
     let kept = staged.edits();
     assert_eq!(kept, [SavedEdit::Shift(3), SavedEdit::Cam(2, 4, 900, 99), SavedEdit::On(2, 4, true)]);
-    let mut other = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
+    let mut other = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     other.take_draft(kept);
     assert_eq!(other.wanted(), staged.wanted());
     let EditedValues { image, names } = staged.wanted().unwrap().clone();
@@ -298,7 +298,7 @@ fn names_are_saved_and_not_written() {
     let mut other = staged();
     other.take_draft(kept);
     assert_eq!(other.wanted(), encoder.wanted());
-    let mut profile = Staged::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
+    let mut profile = StagedEdits::for_profile(Image::of(parameters(1000, 1)), CamNames::default());
     profile.edit(&name(0, "feed")).unwrap();
     assert!(profile.is_dirty() && profile.is_program_edited(number(1)));
     profile.edit(&name(0, "  ")).unwrap();
@@ -312,7 +312,7 @@ fn marks_show_values_beyond_the_range_and_conflicts() {
     staged.edit(&Edit::Steps(340)).unwrap();
     let beyond = Mark::Beyond { program: number(1), cam: cam(3), edge: Edge::Stop, last: 339 };
     assert_eq!(staged.wanted().unwrap().marks(), [Mark::Preset { last: 339 }, beyond]);
-    assert!(beyond.is_about(number(1), cam(3)) && !beyond.is_about(number(1), cam(0)));
+    assert!(beyond.refers_to(number(1), cam(3)) && !beyond.refers_to(number(1), cam(0)));
     staged.undo();
     staged.undo();
     assert!(staged.wanted().unwrap().marks().is_empty());

@@ -44,7 +44,7 @@ pub(super) fn bar_ui(
         }
         if encoder.staged.program(program).is_some() {
             reread_button_ui(ui, theme, encoder, program, actions);
-            whole_ui(ui, theme, encoder, program, &mut view.bar, actions);
+            program_menu_ui(ui, theme, encoder, program, &mut view.bar, actions);
         }
         tables_ui(ui, theme, encoder, program, actions);
     });
@@ -59,7 +59,7 @@ fn reread_button_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: Prog
     }
 }
 
-fn whole_ui(
+fn program_menu_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

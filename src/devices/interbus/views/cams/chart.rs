@@ -9,7 +9,7 @@ use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, Preview, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
-use crate::ui::controls::{card_with, icon_button, name, paragraph};
+use crate::ui::controls::{card_with_trailing, icon_button, name, paragraph};
 use crate::ui::{Theme, icons};
 
 pub(super) struct CamChartUiState {
@@ -53,7 +53,7 @@ pub(super) fn card_ui(
     };
     let mut event = None;
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
-    card_with(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
+    card_with_trailing(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
         let label = theme.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
         // Without polling, the last reading is old and must not be shown as the present one.
         let reading = encoder.record.last().filter(|_| encoder.session.is_polling());

@@ -70,7 +70,7 @@ impl CamChart<'_> {
                 let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
                 // An edge that starts at `begin` and is dragged to `to` snaps to this step.
                 let snapped = |edge, begin: i64, to: f64| {
-                    let place = Value::of_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
+                    let place = Value::from_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
                     let one = Cam { start: place, stop: place };
                     let hold = DragTarget::Edge(number, edge);
                     begin + cams::snap(self.chart, self.scale, hold, one, to - begin as f64, snap)
@@ -199,7 +199,7 @@ impl CamChart<'_> {
         let own = self.chart.lane(cam)?.edges?;
         if let Some(value) = set {
             // The value is within the range, which has at most 25 bits.
-            let value = Value::of_word(value.round().clamp(0.0, f64::from(last)) as u32);
+            let value = Value::from_word(value.round().clamp(0.0, f64::from(last)) as u32);
             let to = match edge {
                 Edge::Start => Cam { start: value, ..own },
                 Edge::Stop => Cam { stop: value, ..own },
@@ -235,7 +235,7 @@ impl CamChart<'_> {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
         let words = match drag.hold {
-            DragTarget::Edge(_, edge) => words::position(cams::of_edge(to, edge).get(), self.scale, range),
+            DragTarget::Edge(_, edge) => words::position(cams::edge_value(to, edge).get(), self.scale, range),
             DragTarget::Whole(_) | DragTarget::New(_) => words::stretch(to, self.scale, range),
         };
         let font = FontId::proportional(theme.sizes.caption);

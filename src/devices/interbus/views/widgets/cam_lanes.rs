@@ -56,7 +56,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
     let looked = lanes.look(range);
     lanes.paint(drag);
     let pulled = lanes.draw_handles(drag);
-    let switched = lanes.draw_heads();
+    let switched = lanes.draw_lane_headers();
     if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
         ui.data_mut(|data| data.remove::<Drag>(base));
     }

@@ -128,7 +128,7 @@ impl Ring<'_> {
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
         let under = |place: Pos2| {
             let lane = self.model.chart.lane(self.dial.cam(place)?)?;
-            let position = Value::of_word(self.dial.position(place) as u32);
+            let position = Value::from_word(self.dial.position(place) as u32);
             lane.edges.filter(|cam| cam.is_on(position)).map(|_| DragTarget::Whole(lane.cam))
         };
         let hovered = response.hover_pos();
@@ -263,7 +263,7 @@ impl Ring<'_> {
                 painter.add(Shape::line((0..=count).map(point).collect(), marked));
             }
         }
-        let cam = name_position(dial, lane.cam);
+        let cam = cam_number_pos(dial, lane.cam);
         let font = FontId::monospace((theme.sizes.caption).min(dial.pitch()));
         let ink = if lane.on { theme.palette.text } else { theme.palette.muted };
         let label = Rect::from_center_size(cam, Vec2::splat(dial.pitch().min(13.0)));
@@ -289,6 +289,6 @@ impl Ring<'_> {
 }
 
 /// Returns the place of a cam's number, which is at the start of the range.
-fn name_position(dial: Dial, cam: CamNumber) -> Pos2 {
+fn cam_number_pos(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle(cam))
 }

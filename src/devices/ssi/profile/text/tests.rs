@@ -45,7 +45,7 @@ fn a_handwritten_profile_parses() {
 }
 
 /// Returns everything that a frame can have, at once.
-fn full() -> SsiProfile {
+fn full_profile() -> SsiProfile {
     let error = |name: &str, clock, meaning, active_low| ErrorBit {
         name: name.to_owned(),
         clock,
@@ -121,8 +121,8 @@ const FULL: &str = r#"(
 
 #[test]
 fn a_profile_is_emitted_as_if_handwritten() {
-    assert_eq!(document(full()).emit(), FULL);
-    assert_eq!(profile(FULL), full());
+    assert_eq!(document(full_profile()).emit(), FULL);
+    assert_eq!(profile(FULL), full_profile());
     let cases = [
         ("atm60,mt=11,align=right24,shift=1", "        lead: 0,", false),
         ("atm60,shift=1", "        shift: true,", true),

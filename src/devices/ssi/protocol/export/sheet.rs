@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::svg::role_name;
-use super::text::{ExportText, ModuleObstacle, Say, SettingMeaning};
+use super::text::{ExportText, ModuleObstacle, SettingMeaning, TranslateFn};
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::GrayCoverage;
 use crate::devices::ssi::protocol::explain::Role;
@@ -25,7 +25,7 @@ struct BitLocations {
 }
 
 impl BitLocations {
-    fn new(layout: &Layout, say: Say<'_>) -> Self {
+    fn new(layout: &Layout, say: TranslateFn<'_>) -> Self {
         let frame = layout.clocks();
         let bits = (0..frame).rev().zip(layout.clock_roles());
         let (mut position, mut turns, mut steps, mut others) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -51,7 +51,7 @@ impl BitLocations {
 }
 
 /// Returns the settings for common interface modules, one paragraph per module.
-pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: Say<'_>) -> String {
+pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: TranslateFn<'_>) -> String {
     let places = BitLocations::new(layout, say);
     let descriptor = layout.descriptor();
     let heading = say(&ExportText::SheetTitle(title.to_owned()));
@@ -130,7 +130,7 @@ fn is_gray(layout: &Layout) -> bool {
 }
 
 /// Returns the code setting: 1 for Gray, 0 for binary.
-fn code_number(layout: &Layout) -> Setting {
+fn code_setting(layout: &Layout) -> Setting {
     let (number, value) = if is_gray(layout) { (1, SettingMeaning::Gray) } else { (0, SettingMeaning::Binary) };
     Setting::Said(ExportText::Setting(number, value))
 }
@@ -169,7 +169,7 @@ fn beckhoff_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabel,
     let bits = places.lowest_bit() - fails;
     let error = if fails == 1 { Setting::Said(ExportText::LastIsError) } else { Setting::Plain("0".to_owned()) };
     let mut settings = vec![
-        (SheetLabel::Own(":06 SSI coding"), code_number(layout)),
+        (SheetLabel::Own(":06 SSI coding"), code_setting(layout)),
         (SheetLabel::Own(":0F SSI frame type"), Setting::Said(frame_type)),
         (SheetLabel::Own(":11 SSI frame size"), Setting::Plain(places.frame.to_string())),
         (SheetLabel::Own(":12 SSI data length"), Setting::Plain((places.frame - fails).to_string())),
@@ -221,6 +221,6 @@ fn synapticon_settings(layout: &Layout, places: &BitLocations) -> Vec<(SheetLabe
         (SheetLabel::Own("Singleturn bits"), count(steps)),
         (SheetLabel::Own(":9 Singleturn first bit"), first(steps)),
         (SheetLabel::Own(":12 Parity type"), Setting::Said(ExportText::Setting(number, parity))),
-        (SheetLabel::Own(":14 Data ordering"), code_number(layout)),
+        (SheetLabel::Own(":14 Data ordering"), code_setting(layout)),
     ]
 }

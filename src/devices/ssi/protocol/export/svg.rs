@@ -1,7 +1,7 @@
 //! Pictures of a layout: the frame as a row of cells, and the timing of a burst to scale.
 
 use super::picture::{FAINT, MARGIN, Picture, PictureLabel, PictureLength, PictureShape, PolylineSegment};
-use super::text::{ExportText, Say};
+use super::text::{ExportText, TranslateFn};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::{ReadConditions, Times};
@@ -37,7 +37,7 @@ fn family(role: Role) -> &'static str {
 }
 
 /// Returns the name of a clock's content in the language of `say`. See also [`Layout::role_name`].
-pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
+pub(super) fn role_name(layout: &Layout, role: Role, say: TranslateFn<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),
         role => layout.role_name(role),
@@ -45,7 +45,7 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
 }
 
 /// Draws the frame with one cell per clock. The cells show the bits of `frame`, if it is given.
-pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<'_>) -> Picture {
+pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: TranslateFn<'_>) -> Picture {
     let roles = layout.clock_roles();
     let clocks = u32::from(layout.clocks());
     let mut picture = Picture::with_title(2 * MARGIN + clocks * CELL, 112, title);
@@ -100,7 +100,13 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
 
 /// Draws a burst and the pause after it to scale, with the clock, the data and the transfer times. See figure 2 of the
 /// manual.
-pub fn timing_picture(layout: &Layout, times: &Times, reads: &ReadConditions, title: &str, say: Say<'_>) -> Picture {
+pub fn timing_picture(
+    layout: &Layout,
+    times: &Times,
+    reads: &ReadConditions,
+    title: &str,
+    say: TranslateFn<'_>,
+) -> Picture {
     let timing = times.calculate_timing(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());
     let scale = f64::from(WIDTH - 2 * MARGIN) / (burst + pause).max(1e-9);

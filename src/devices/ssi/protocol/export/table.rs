@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::svg::role_name;
-use super::text::{ExportText, Say};
+use super::text::{ExportText, TranslateFn};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 
@@ -24,7 +24,7 @@ impl Layout {
 }
 
 /// Returns a CSV table with the number, the bit and the content of each clock.
-pub fn bit_table(layout: &Layout, say: Say<'_>) -> String {
+pub fn bit_table(layout: &Layout, say: TranslateFn<'_>) -> String {
     let mut text = say(&ExportText::TableHeading) + "\n";
     let clocks = layout.clocks();
     for (clock, role) in (1..=clocks).zip(layout.clock_roles()) {

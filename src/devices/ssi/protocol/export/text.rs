@@ -116,7 +116,7 @@ pub enum SettingMeaning {
 }
 
 /// Function that converts an export text to a string in the language of the caller.
-pub type Say<'a> = &'a dyn Fn(&ExportText) -> String;
+pub type TranslateFn<'a> = &'a dyn Fn(&ExportText) -> String;
 
 /// Returns the English text, which the command line uses.
 pub fn english(text: &ExportText) -> String {

@@ -10,7 +10,7 @@ fn resolve(text: &str) -> Result<ResolvedFrame, String> {
     settings.resolve(family).map_err(|error| error.to_string())
 }
 
-fn raised(resolved: &ResolvedFrame, name: &str) -> Flags {
+fn error_flag(resolved: &ResolvedFrame, name: &str) -> Flags {
     let errors = &resolved.layout.descriptor().errors;
     errors.iter().position(|bit| bit.name == name).map_or(Flags::NONE, Flags::error)
 }
@@ -105,7 +105,7 @@ fn frames_match_the_reference() {
         };
         // In one row the error bit is 1 in the reference's picture although its title says otherwise; that row would fail
         // here.
-        let flags = raised(&resolved, error);
+        let flags = error_flag(&resolved, error);
         assert_eq!(error.is_empty(), flags == Flags::NONE, "{text}");
         let frame = layout.encode(position, flags).unwrap();
         assert_eq!(format!("{frame:0width$b}", width = bits.len()), bits, "{text}");

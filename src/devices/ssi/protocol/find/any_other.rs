@@ -4,7 +4,7 @@
 use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
 use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, encoder_parity, find_ambiguous_parity, sum};
-use super::plausible::{bit_shares, width_penalty};
+use super::plausible::{common_bit_splits, width_penalty};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{ErrorBit, FrameDescriptor, GrayCoverage, Meaning, Parity, Repeat};
@@ -34,7 +34,8 @@ pub(super) fn try_custom_frames(
     let Some(above) = (reading.first - 1).checked_sub(least - moved) else { return };
     let most = if read.closed || reading.code == Code::Bcd { least } else { least + above };
     let mut widths_of: Vec<u8> = (least..=most).collect();
-    let rank = |bits: &u8| bit_shares(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
+    let rank =
+        |bits: &u8| common_bit_splits(*bits, 1).first().map_or(9.0, |(turns, steps)| width_penalty(*turns, *steps));
     // These are the complete frame up to the lowest bit, the bits that changed, and the most usual widths in between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
@@ -104,7 +105,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         let range = Range::Bits { multiturn: bits - singleturn, singleturn };
         return vec![(range, width_penalty(bits - singleturn, singleturn))];
     }
-    let shares = bit_shares(bits, SHARES).into_iter();
+    let shares = common_bit_splits(bits, SHARES).into_iter();
     shares
         .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, width_penalty(multiturn, singleturn)))
         .collect()

@@ -71,7 +71,7 @@ impl FrameSet {
 
     /// Returns whether nearly all frames have one of a few values, because the shaft stood still or jittered. Disturbed
     /// frames are tolerated.
-    pub(super) fn is_standing(&self) -> bool {
+    pub(super) fn is_at_rest(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
         let few: usize = counts.iter().take(8).sum();

@@ -66,7 +66,7 @@ impl Motion {
     }
 
     /// Returns the number of frames that are consistent with the previous or the next frame.
-    pub(super) fn explained_frame_count(&self) -> usize {
+    pub(super) fn consistent_frame_count(&self) -> usize {
         let frames = self.steps.len() + 1;
         (0..frames).filter(|index| self.is_good(*index)).count()
     }

@@ -37,7 +37,7 @@ pub(super) fn width_penalty(multiturn: u8, singleturn: u8) -> f64 {
 }
 
 /// Returns the most usual ways to divide bits into turns and steps, with the most usual one first.
-pub(super) fn bit_shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
+pub(super) fn common_bit_splits(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();
     all.sort_by(|a, b| width_penalty(a.0, a.1).total_cmp(&width_penalty(b.0, b.1)));
@@ -51,12 +51,12 @@ mod tests {
 
     #[test]
     fn common_widths_rank_first() {
-        assert_eq!(bit_shares(25, 1), [(12, 13)]);
-        assert_eq!(bit_shares(24, 1), [(12, 12)]);
-        assert_eq!(bit_shares(13, 1), [(0, 13)]);
-        assert_eq!(bit_shares(30, 1), [(12, 18)]);
-        assert_eq!(bit_shares(1, 4), [(0, 1)]);
+        assert_eq!(common_bit_splits(25, 1), [(12, 13)]);
+        assert_eq!(common_bit_splits(24, 1), [(12, 12)]);
+        assert_eq!(common_bit_splits(13, 1), [(0, 13)]);
+        assert_eq!(common_bit_splits(30, 1), [(12, 18)]);
+        assert_eq!(common_bit_splits(1, 4), [(0, 1)]);
         assert!(width_penalty(12, 1) > width_penalty(0, 13) + 6.0, "4096 turns of 2 steps");
-        assert!(bit_shares(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
+        assert!(common_bit_splits(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
     }
 }

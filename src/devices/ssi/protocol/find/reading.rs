@@ -134,7 +134,7 @@ impl Reading {
     }
 
     /// Returns the information in bits of everything except the motion, with the list of unexplained clocks.
-    fn other_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
+    fn non_motion_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;
         let mut unexplained = Vec::new();
@@ -174,7 +174,7 @@ impl Read {
     pub(super) fn new(seen: &FrameSet, reading: Reading) -> Self {
         let numbers = reading.numbers(seen.words(), seen.clocks);
         let motion = Motion::of(&numbers, reading.round());
-        let (bits, unexplained) = reading.other_information(seen);
+        let (bits, unexplained) = reading.non_motion_information(seen);
         let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
         // A disturbed frame does not prove that the end of the range was passed. At a real end, no higher bit changes,
         // even briefly.
@@ -211,7 +211,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
         let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
         let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
-        tried.push((whole + reading.other_information(seen).0, reading));
+        tried.push((whole + reading.non_motion_information(seen).0, reading));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut all: Vec<Read> = Vec::new();

@@ -30,7 +30,7 @@ fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
 }
 
 /// Compares the frames that encoders send, not the names of their settings.
-fn same_frame(one: &Layout, other: &Layout) -> bool {
+fn is_same_frame(one: &Layout, other: &Layout) -> bool {
     let shape = |layout: &Layout| (layout.clock_roles().len(), layout.coding().code(), layout.descriptor().coded);
     one.clock_roles() == other.clock_roles() && shape(one) == shape(other)
 }
@@ -52,7 +52,7 @@ fn the_class_of_every_family_ranks_first() {
             let first = &search.classes[0];
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
-            assert!(named.clone().any(|member| same_frame(&member.layout, &truth)), "{text} at {speed}");
+            assert!(named.clone().any(|member| is_same_frame(&member.layout, &truth)), "{text} at {speed}");
             // A change only in the first frames counts as disturbed.
             assert!(first.evidence.misfits <= 2, "{text} at {speed}");
         }
@@ -78,7 +78,7 @@ fn settings_are_found() {
         let search = find(&turning(&truth, 1.3), truth.clocks(), &families);
         assert_eq!(search.doubt, Some(SearchUncertainty::Open), "{text}");
         let first = &search.classes[0];
-        assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)), "{text}");
+        assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)), "{text}");
     }
 }
 
@@ -90,7 +90,7 @@ fn indistinguishable_layouts_form_one_class() {
     let first = find(&turning(&atm60, 3.1), 25, &families).classes.remove(0);
     for align in ["mt=12,st=13,align=tree12_13", "mt=13,st=12,align=tree13_12"] {
         let split = layout(&format!("atm60,code=gray,{align}"));
-        assert!(first.members.iter().any(|member| same_frame(&member.layout, &split)), "{align}");
+        assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &split)), "{align}");
     }
     assert!(first.open.contains(&Open::TurnOnce));
     let afm60 = layout("afm60");
@@ -162,7 +162,7 @@ fn disturbed_frames_do_not_hide_the_layout() {
     let first = &search.classes[0];
     // The disturbed bit is one of turns that do not change.
     assert_eq!((search.doubt, first.evidence.misfits), (Some(SearchUncertainty::Open), 40));
-    assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)));
+    assert!(first.members.iter().any(|member| is_same_frame(&member.layout, &truth)));
 }
 
 /// Returns frames of a file of `tests/vectors/ssi_find`, with the intended positions; none if a frame is disturbed.

@@ -141,7 +141,7 @@ fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> ClassEvidence {
     let weight = members.first().map_or(0.0, |member| member.weight);
     let fit =
         1.0 - (read.bits + WEIGHT_BITS * weight) / (random + read.unexplained.len() as f64 * frames as f64).max(1.0);
-    let explained = read.motion.explained_frame_count();
+    let explained = read.motion.consistent_frame_count();
     let outside = words.bits().filter(|(clock, bit)| !read.reading.has(*clock) && !bit.moves);
     let misfits = outside.map(|(_, bit)| bit.unusual).max().unwrap_or(0).max(read.motion.nones);
     ClassEvidence {

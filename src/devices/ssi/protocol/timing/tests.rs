@@ -23,7 +23,7 @@ fn times(key: &str) -> Times {
 #[test]
 fn any_encoder_has_the_general_times() {
     let reads = ReadConditions { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
-    let timing = Times::of_any_encoder(&reads);
+    let timing = Times::for_any_encoder(&reads);
     assert_eq!(timing.burst, Duration::from_nanos(82_500));
     assert_eq!(timing.cycle, Duration::from_nanos(102_500));
     assert_eq!(timing.monoflop, (Duration::from_micros(15), Duration::from_micros(25)));
@@ -33,8 +33,8 @@ fn any_encoder_has_the_general_times() {
     let fast = ReadConditions { clock_hz: 2.5e6, pause: Duration::from_micros(30), cable_metres: None, ..reads };
     let synchronous = ReadConditions { synchronous: true, ..fast };
     let too_fast = Warning::EncoderClock { most_hz: 2_000_000 };
-    assert_eq!(Times::of_any_encoder(&fast).warnings, [too_fast]);
-    assert_eq!(Times::of_any_encoder(&synchronous).warnings, [Warning::SynchronousUnknown, too_fast]);
+    assert_eq!(Times::for_any_encoder(&fast).warnings, [too_fast]);
+    assert_eq!(Times::for_any_encoder(&synchronous).warnings, [Warning::SynchronousUnknown, too_fast]);
 }
 
 /// Reference section 1: "Duration (bits/f)".

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::app::Language::German;
-use crate::app::explain::{document, in_both_languages, url};
+use crate::app::explain::{assert_in_both_languages, document, url};
 use crate::app::{DeviceType, KindRegistry};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
@@ -20,7 +20,7 @@ fn link_errors_are_explained_in_both_languages() {
     for text in ["margin=x", "clock=1", "pause=0", "voltage=48"] {
         let query: UrlQuery = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
-        in_both_languages(&url(&error), &error);
+        assert_in_both_languages(&url(&error), &error);
     }
 }
 
@@ -64,7 +64,7 @@ fn profile_errors_are_explained_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = ProfileDocument::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error, KINDS), &error);
+        assert_in_both_languages(&document(&error, KINDS), &error);
     }
 }
 

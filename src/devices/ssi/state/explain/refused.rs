@@ -149,11 +149,11 @@ pub(super) fn layout_reason(error: &LayoutError) -> Text {
         LayoutError::Overlap { clock, first, second } => TEXTS
             .text("ssi_reason.overlap")
             .with("clock", clock)
-            .with_text("first", clock_user_name(first))
-            .with_text("second", clock_user_name(second)),
+            .with_text("first", clock_use_text(first))
+            .with_text("second", clock_use_text(second)),
         LayoutError::Behind { name, clock, clocks } => TEXTS
             .text("ssi_reason.behind")
-            .with_text("name", clock_user_name(name))
+            .with_text("name", clock_use_text(name))
             .with("clock", clock)
             .with("clocks", clocks),
         LayoutError::Many { what, limit, count } => {
@@ -169,7 +169,7 @@ pub(super) fn layout_reason(error: &LayoutError) -> Text {
                 WordOperation::Coded => "ssi_reason.inside_coded",
                 WordOperation::Shifted => "ssi_reason.inside_shifted",
             };
-            TEXTS.text(id).with_text("name", clock_user_name(name)).with("clock", clock).with("area", area)
+            TEXTS.text(id).with_text("name", clock_use_text(name)).with("clock", clock).with("area", area)
         }
         LayoutError::Lost => TEXTS.text("ssi_reason.lost"),
         LayoutError::Repeat { needed, clocks } => {
@@ -200,7 +200,7 @@ fn code_reason(error: &CodeError) -> Text {
     }
 }
 
-fn clock_user_name(taker: &ClockUse) -> Text {
+fn clock_use_text(taker: &ClockUse) -> Text {
     match taker {
         ClockUse::Position => TEXTS.text("ssi_reason.position"),
         ClockUse::Parity => TEXTS.text("ssi_reason.parity"),

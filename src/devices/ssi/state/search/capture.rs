@@ -60,7 +60,7 @@ impl<'t> Table<'t> {
         let delimiter = [',', ';', '\t'].into_iter().max_by_key(|own| (count(own), *own == ','))?;
         let cells = |line: &'t str| line.split(delimiter).map(cell).collect::<Vec<_>>();
         let heading = cells(first);
-        let has_time = heading.first().is_some_and(|own| time_unit(own, rate_hz).is_some() || is_time(own));
+        let has_time = heading.first().is_some_and(|own| time_unit(own, rate_hz).is_some() || is_time_column(own));
         let is_saleae = heading.first().is_some_and(|own| own.to_ascii_lowercase().starts_with("time ["));
         // A table that has only columns of 0 and 1 contains levels. Other tables also have a time column.
         let are_levels = rows.get(1).is_some_and(|(_, row)| {
@@ -83,7 +83,7 @@ impl<'t> Table<'t> {
             return Ok(Times::Column(unit));
         }
         match self.rate_hz {
-            Some(rate) if !is_time(first) => Ok(Times::Samples(1.0 / rate)),
+            Some(rate) if !is_time_column(first) => Ok(Times::Samples(1.0 / rate)),
             _ => Err(TEXTS.text("ssi_capture.no_times")),
         }
     }
@@ -175,7 +175,7 @@ fn cell(text: &str) -> &str {
     text.trim().trim_matches('"').trim()
 }
 
-fn is_time(name: &str) -> bool {
+fn is_time_column(name: &str) -> bool {
     name.to_ascii_lowercase().starts_with("time")
 }
 

@@ -7,7 +7,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
 }
 
 fn of(text: &str, clocks: u8) -> Result<Frames, Text> {
-    frames_of(text, "own".to_owned(), clocks)
+    parse_frame_file(text, "own".to_owned(), clocks)
 }
 
 #[test]
@@ -87,7 +87,7 @@ const EDGES: [(f64, &str); 13] = [
     (68.0, "1,1"),
 ];
 
-fn saleae(heading: &str, delimiter: char, decimal: char) -> String {
+fn saleae_csv(heading: &str, delimiter: char, decimal: char) -> String {
     let rows = EDGES.map(|(micros, levels)| {
         let time = format!("{:.9}", micros * 1e-6).replace('.', &decimal.to_string());
         format!("{time}{delimiter}{}\n", levels.replace(',', &delimiter.to_string()))
@@ -101,9 +101,9 @@ fn edges_of_logic_analysers_are_frames() {
         let read = of(text, 27).unwrap();
         assert_eq!((read.clocks, read.frames, read.left_out), (4, vec![0b1011], 0), "{text}");
     };
-    expected(&saleae("Time [s],Channel 0,Channel 1", ',', '.'));
-    expected(&saleae("\u{feff}\"Time [s]\",\"D0\",\"D1\"", ',', '.').replace('\n', "\r\n"));
-    expected(&saleae("Time [s];Channel 0;Channel 1", ';', ','));
+    expected(&saleae_csv("Time [s],Channel 0,Channel 1", ',', '.'));
+    expected(&saleae_csv("\u{feff}\"Time [s]\",\"D0\",\"D1\"", ',', '.').replace('\n', "\r\n"));
+    expected(&saleae_csv("Time [s];Channel 0;Channel 1", ';', ','));
     // The other way round: by names, and by what changes more often.
     let exchanged = |heading: &str| {
         let rows = EDGES.map(|(micros, own)| format!("{:.9},{},{}\n", micros * 1e-6, &own[2..], &own[..1]));
@@ -112,7 +112,7 @@ fn edges_of_logic_analysers_are_frames() {
     expected(&exchanged("Time [s],DATA+,CLOCK+"));
     expected(&exchanged("Time [s],Channel 0,Channel 1"));
     // A channel beside them that does not change.
-    let rows = saleae("Time [s],Channel 0,Channel 1", ',', '.');
+    let rows = saleae_csv("Time [s],Channel 0,Channel 1", ',', '.');
     let beside = |(number, row): (usize, &str)| format!("{row},{}\n", if number == 0 { "Channel 2" } else { "0" });
     expected(&rows.lines().enumerate().map(beside).collect::<String>());
     // sigrok: times in a unit that is named, or that follows from the sample rate; or a row for each sample.
@@ -132,7 +132,7 @@ fn edges_of_logic_analysers_are_frames() {
 
 #[test]
 fn what_is_no_recording_of_clock_and_data_says_why_and_what_to_do() {
-    let good = saleae("Time [s],Channel 0,Channel 1", ',', '.');
+    let good = saleae_csv("Time [s],Channel 0,Channel 1", ',', '.');
     let cases = [
         ("Time [s],Channel 0\n0,1\n1,0\n".to_owned(), "ssi_capture.one_channel"),
         // Analogue values.

@@ -32,7 +32,7 @@ pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
         PositionParts::One(_) => handles.extend([Handle::LeadEnd, Handle::StepsEnd]),
         PositionParts::Whole(_) => {}
     }
-    if is_area_end_used(descriptor) {
+    if depends_on_area_end(descriptor) {
         handles.push(Handle::AreaEnd);
     }
     handles.extend((0..descriptor.errors.len()).map(Handle::Error));
@@ -56,7 +56,7 @@ pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
         (Handle::Split | Handle::TurnsEnd, PositionParts::Both(turns, _)) => Some(begins + turns),
         (Handle::BetweenEnd, PositionParts::Both(turns, _)) => Some(begins + turns + descriptor.between),
         (Handle::StepsEnd, parts) => is_bits.then_some(begins + descriptor.between + parts.bits()),
-        (Handle::AreaEnd, _) => is_area_end_used(descriptor).then_some(descriptor.area),
+        (Handle::AreaEnd, _) => depends_on_area_end(descriptor).then_some(descriptor.area),
         (Handle::WordEnd, _) => descriptor.repeat.map(|repeat| repeat.word),
         (Handle::GapEnd, _) => descriptor.repeat.map(|repeat| repeat.word + repeat.gap),
         (Handle::FrameEnd, _) => Some(descriptor.clocks),
@@ -98,7 +98,7 @@ pub(super) fn end(layout: &Layout) -> u8 {
 }
 
 /// Returns whether the frame depends on the end of the area.
-const fn is_area_end_used(descriptor: &FrameDescriptor) -> bool {
+const fn depends_on_area_end(descriptor: &FrameDescriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, GrayCoverage::Position)
 }
 
@@ -151,7 +151,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
         Handle::Parity => put(&mut new, Single::Parity, at, to),
     }
-    if !is_area_end_used(&new) {
+    if !depends_on_area_end(&new) {
         // The area has no effect on the frame, but it must have room for the position.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
@@ -173,7 +173,7 @@ fn follow(old: &Layout, new: &mut FrameDescriptor, by: i16, following: bool) -> 
     if !following || chain.is_empty() {
         return Some(());
     }
-    if is_area_end_used(new) && end(old) == new.area {
+    if depends_on_area_end(new) && end(old) == new.area {
         new.area = plus(new.area, by)?;
     }
     for single in chain {

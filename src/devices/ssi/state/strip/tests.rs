@@ -240,7 +240,7 @@ fn step_positions_move_as_one_field() {
 fn cells_show_their_decoded_values() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
     // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
-    let shown = strip.cells_of(0x91A2 << 2 | 1);
+    let shown = strip.cell_states(0x91A2 << 2 | 1);
     let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
     assert_eq!(tells, [(15, Meaning::Invalid), (18, Meaning::Warning)]);
     let bits: String = shown.iter().map(|cell| if cell.bit { '1' } else { '0' }).collect();

@@ -47,14 +47,14 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
 
 /// Returns the label below a field. The label of zeros is only their number.
 pub fn name(strip: &Strip, own: &Field) -> Text {
-    if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
+    if own.is_zero_field() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
 /// Returns a short label for a narrow field, with the width in bits.
 pub fn short(strip: &Strip, field: &Field) -> Text {
-    let id = match field.is_zeros() {
+    let id = match field.is_zero_field() {
         true => "ssi.strip_short_zeros",
-        false if field.is_single() => "ssi.strip_name",
+        false if field.is_single_bit() => "ssi.strip_name",
         false => "ssi.strip_short",
     };
     TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
@@ -63,7 +63,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
 /// Returns the short name of a field, which exports use as well.
 pub fn bare(strip: &Strip, field: &Field) -> String {
     match field.kind {
-        _ if field.is_zeros() => "0".to_owned(),
+        _ if field.is_zero_field() => "0".to_owned(),
         Kind::Turns => "MT".to_owned(),
         Kind::Steps => "ST".to_owned(),
         Kind::Position => "P".to_owned(),

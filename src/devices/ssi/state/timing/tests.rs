@@ -84,7 +84,7 @@ fn a_long_pause_is_drawn_with_a_marked_break() {
 fn a_point_in_time_is_described() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let told =
-        |at: f64| diagram.state_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
+        |at: f64| diagram.texts_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
     assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: bit MT11 of the turns (number of turn bits: 12)"]);
     assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
     assert_eq!(told(0.5), ["500 ns after the first edge"]);

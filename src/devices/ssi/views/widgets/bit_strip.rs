@@ -75,10 +75,11 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     // The cells show the frame after the drag, while the handles stay at their present places.
     let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
-    let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cells_of(frame)).unwrap_or_default();
+    let cells =
+        model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cell_states(frame)).unwrap_or_default();
     let room = ui.available_width();
     let rows = Rows::new(room, model.strip.layout().clocks());
-    let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
+    let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single_bit());
     let (tags, levels) = names::name_tags(ui, theme, shown, &rows, meaning_of);
     let clocks = shown.layout().clocks();
     let sized = rows.clone().at(egui::Pos2::ZERO, &levels);

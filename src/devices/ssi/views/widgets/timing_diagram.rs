@@ -54,10 +54,10 @@ struct Rows {
 }
 
 pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
-    theme.sunken_frame().show(ui, |ui| draw_ui(ui, theme, model));
+    theme.sunken_frame().show(ui, |ui| diagram_ui(ui, theme, model));
 }
 
-fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
+fn diagram_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let diagram = model.diagram;
     let caption = |text: &Text, colour: Color32| {
         ui.painter().layout_no_wrap(theme.words(text), FontId::proportional(theme.sizes.caption), colour)
@@ -117,7 +117,7 @@ fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let under = response.hover_pos().and_then(|pos| axis.at(pos.x - outer.left()));
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
-            for (number, text) in diagram.state_at(at).iter().enumerate() {
+            for (number, text) in diagram.texts_at(at).iter().enumerate() {
                 let words = theme.words(text);
                 if number == 0 {
                     ui.label(theme.caption(words))
@@ -187,7 +187,8 @@ impl Picture<'_> {
         if let Some(first) = bits.first() {
             self.painter.hline(from..=self.x(first.from), row.min, stroke);
         }
-        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().cells_of(frame)).unwrap_or_default();
+        let shown: Vec<CellState> =
+            self.model.frame.map(|frame| diagram.strip().cell_states(frame)).unwrap_or_default();
         for (number, bit) in bits.iter().enumerate() {
             let cell = diagram.strip().cells().get(number);
             let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));

@@ -5,11 +5,11 @@ use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
 /// Goes back to the step that no longer holds: by a press, and not before.
 #[track_caller]
-fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
+fn go_back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
     axis.look(seen);
     assert_eq!((axis.step(), axis.invalidated_step()), (shown, Some(step)), "the page is left by a press alone");
-    assert_eq!(axis.step_status(step), Reached::Failed);
+    assert_eq!(axis.step_status(step), StepStatus::Failed);
     assert_eq!(axis.check_can_continue(seen).unwrap_err().id(), "hd_axis.fallen");
     assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
     axis.back(seen);
@@ -18,12 +18,12 @@ fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 
 #[test]
 fn limits_are_confirmed_with_the_scale_of_the_drive() {
-    let (mut axis, mut seen) = until_jog();
+    let (mut axis, mut seen) = at_jog_step();
     press(&mut axis, &mut seen, AxisButton::Take);
     assert_eq!(axis.may_move(&seen), Ok(()));
     // Another master has changed the scale.
     seen.scale = Some(PositionScale::FACTORY);
-    back_to(&mut axis, &seen, AxisStep::Scale);
+    go_back_to(&mut axis, &seen, AxisStep::Scale);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_scale");
     press(&mut axis, &mut seen, AxisButton::Do);
     next(&mut axis, &seen, AxisStep::Confirm);
@@ -32,19 +32,19 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
     press(&mut axis, &mut seen, AxisButton::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
     seen.locks = vec![Lock::LimitsUnconfirmed];
-    back_to(&mut axis, &seen, AxisStep::Confirm);
+    go_back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 
 /// Issue 21.6 (i): an earlier fact becomes void, and the page stays until the user goes back.
 #[test]
 fn setup_restarts_at_the_first_step_with_lost_values() {
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     // Everything is discarded.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
-    back_to(&mut axis, &seen, AxisStep::Request);
-    assert!(AxisStep::ALL[1..].iter().all(|step| axis.step_status(*step) == Reached::Ahead));
+    go_back_to(&mut axis, &seen, AxisStep::Request);
+    assert!(AxisStep::ALL[1..].iter().all(|step| axis.step_status(*step) == StepStatus::Ahead));
     // Nothing is concluded from a drive that does not answer.
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     seen.connected = false;
     seen.scale = None;
     axis.look(&seen);
@@ -55,12 +55,13 @@ fn setup_restarts_at_the_first_step_with_lost_values() {
 #[test]
 fn steps_after_a_changed_value_are_undone() {
     let tested = || {
-        let (mut axis, mut seen) = until_test();
+        let (mut axis, mut seen) = at_test_step();
         go(&mut axis, &mut seen, TestTarget::Middle, 500);
         assert!(axis.outcome(TestTarget::Middle).is_some());
         (axis, seen)
     };
-    let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.step_status(*step) == Reached::Done).count();
+    let done =
+        |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.step_status(*step) == StepStatus::Done).count();
     // Changed on another page or by another master: the drive has it, and that counts.
     type Case<'c> = (&'c str, fn(&mut DriveFacts), AxisStep);
     let cases: [Case<'_>; 5] = [
@@ -111,7 +112,7 @@ fn steps_after_a_changed_value_are_undone() {
 /// Issue 21.6 (b): a jump of the position, and motion without a held button, are not a jog.
 #[test]
 fn only_motion_while_the_pad_is_held_is_a_jog() {
-    let (mut axis, mut seen) = until_jog();
+    let (mut axis, mut seen) = at_jog_step();
     press(&mut axis, &mut seen, AxisButton::Take);
     for position in [0, 5000, -5000, 0] {
         at(&mut seen, position);
@@ -151,21 +152,21 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
         axis.surveyed(seen, false);
     };
     // Nothing was marked: the user has to state it, and the result says so.
-    let (mut axis, mut seen) = until_power();
+    let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(axis.ask(AxisButton::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
-    assert!(!axis.survived() && axis.step_status(AxisStep::PowerCycle) == Reached::Failed);
+    assert!(!axis.has_survived() && axis.step_status(AxisStep::PowerCycle) == StepStatus::Failed);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, AxisButton::Restarted);
     assert!(
-        axis.survived()
+        axis.has_survived()
             && found(&axis, &seen)
                 .contains("You confirmed that the supply was switched off, but the program could not verify this"),
         "{}",
         found(&axis, &seen)
     );
     // It was marked, and still is: the user cannot state the opposite.
-    let (mut axis, mut seen) = until_power();
+    let (mut axis, mut seen) = at_power_cycle_step();
     press(&mut axis, &mut seen, AxisButton::Do);
     again(&mut axis, &seen);
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.not_restarted");
@@ -174,22 +175,22 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
-    assert!(axis.survived() && found(&axis, &seen).contains("The drive has restarted"));
+    assert!(axis.has_survived() && found(&axis, &seen).contains("The drive has restarted"));
     // Another master has changed it before: that proves it as well.
-    let (mut axis, mut seen) = until_power();
+    let (mut axis, mut seen) = at_power_cycle_step();
     seen.values.insert(182, 500);
     axis.look(&seen);
     assert_eq!(axis.ask(AxisButton::Do, &seen).unwrap_err().id(), "hd_axis.already");
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
-    assert!(axis.survived());
+    assert!(axis.has_survived());
 }
 
 /// Issue 21.6 (g): a fault is shown with its code, blocks all motion, and can be acknowledged here.
 #[test]
 fn a_fault_is_shown_and_can_be_acknowledged() {
-    let (axis, mut seen) = until_test();
+    let (axis, mut seen) = at_test_step();
     assert_eq!(axis.ask(AxisButton::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
     // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
     for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
@@ -262,7 +263,7 @@ fn millimetres_need_a_confirmed_pitch() {
     seen.scale = PositionScale::new(400, 256).ok();
     assert_eq!(axis.entries().pitch, "");
     assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
-    type_spindle(&mut axis);
+    enter_spindle(&mut axis);
     assert_eq!((position(&seen), axis.check_can_continue(&seen)), ("400 steps".to_owned(), Ok(())));
     confirm_spindle(&mut axis, &mut seen);
     assert_eq!(position(&seen), "4.00 mm");
@@ -275,7 +276,7 @@ fn millimetres_need_a_confirmed_pitch() {
 #[test]
 fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
-    let (mut axis, mut seen) = until_power();
+    let (mut axis, mut seen) = at_power_cycle_step();
     assert_eq!(report(&axis, &seen, &device, Language::English), None, "it goes on");
     axis.lose();
     axis.surveyed(&seen, true);

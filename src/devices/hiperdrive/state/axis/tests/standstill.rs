@@ -18,7 +18,7 @@ fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
 
 /// In the test step, read at 10 s: the axis stands still at 2000, with 400 steps per turn.
 fn at_standstill() -> (Axis, DriveFacts) {
-    let (mut axis, mut seen) = until_test();
+    let (mut axis, mut seen) = at_test_step();
     read(&mut seen, 10_000, 2000, STANDS);
     axis.look(&seen);
     (axis, seen)
@@ -113,7 +113,7 @@ fn an_unobserved_position_change_is_reported_as_unexplained() {
     };
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
     // No reference was set or confirmed yet: nothing counts by it.
-    let (mut early, mut fresh) = until_jog();
+    let (mut early, mut fresh) = at_jog_step();
     read(&mut fresh, 0, 0, STANDS);
     early.look(&fresh);
     early.lose();

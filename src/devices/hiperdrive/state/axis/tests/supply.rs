@@ -6,7 +6,7 @@ use super::*;
 #[test]
 fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
-        let (mut axis, seen) = until_power();
+        let (mut axis, seen) = at_power_cycle_step();
         let ask = axis.ask(AxisButton::Do, &seen).unwrap();
         axis.begin(ask, &seen);
         axis.handle_write_failure(begun);
@@ -19,7 +19,7 @@ fn a_failed_mark_keeps_saved_values() {
 #[test]
 fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {
-        let (mut axis, mut seen) = until_power();
+        let (mut axis, mut seen) = at_power_cycle_step();
         let ask = axis.ask(AxisButton::Do, &seen).unwrap();
         axis.begin(ask, &seen);
         axis.lose();
@@ -34,7 +34,7 @@ fn an_interrupted_write_of_the_mark_is_read_back() {
         axis.surveyed(seen, false);
         axis.look(seen);
         let Some(Power::Back { restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
-        (restart, axis.survived(), axis.is_saved())
+        (restart, axis.has_survived(), axis.is_saved())
     };
     // It has arrived: the drive was not off, whatever the user states, and a restart can be read.
     let (mut axis, mut seen) = cut_off(1001);

@@ -8,7 +8,7 @@ use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{CamNames, Direction, Edge, Filled, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, apply_drag};
-use crate::devices::interbus::state::staged::{Edit, Staged};
+use crate::devices::interbus::state::staged::{Edit, StagedEdits};
 
 /// Steps of one session.
 const STEPS: usize = 10_000;
@@ -143,7 +143,7 @@ fn stop(start: u32, length: u32, range: u32) -> u32 {
 }
 
 /// Applies the same step to the tested code.
-fn play_event(staged: &mut Staged, step: &Step, range: u32) {
+fn play_event(staged: &mut StagedEdits, step: &Step, range: u32) {
     let edit = match *step {
         Step::Undo => {
             staged.undo();
@@ -188,7 +188,7 @@ fn play_event(staged: &mut Staged, step: &Step, range: u32) {
 }
 
 /// Checks that the chart equals the table, and both equal the model.
-fn compare(staged: &Staged, model: &Model, program: usize) {
+fn compare(staged: &StagedEdits, model: &Model, program: usize) {
     let range = model.range;
     let chart = Chart::of(staged, number(program)).unwrap();
     let table = staged.program(number(program)).unwrap();
@@ -225,7 +225,7 @@ fn chart_and_table_agree_after_ten_thousand_edits() {
                 zero_shift: 0,
             });
             image.programs = [Some(Program { cams: [Some(none); 8], mask: 0 }); 8];
-            let mut staged = Staged::for_profile(image, CamNames::default());
+            let mut staged = StagedEdits::for_profile(image, CamNames::default());
             let mut model = Model { range, past: vec![[[(0, 1, false); 8]; 8]], at: 0 };
             for (count, step) in steps.iter().enumerate() {
                 play_event(&mut staged, step, range);

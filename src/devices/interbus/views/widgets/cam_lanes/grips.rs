@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
 
 use super::LanePainter;
-use super::paint::Grip;
+use super::paint::GripState;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::Cam;
 use crate::devices::interbus::state::cams::{DragTarget, Lane, Stretch, words};
@@ -52,7 +52,8 @@ impl LanePainter<'_> {
         let mut event = None;
         for stretch in &stretches {
             let is_widest = Some(*stretch) == widest;
-            let Some(rect) = self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.head_rect(lane.cam)))
+            let Some(rect) =
+                self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.lane_header_rect(lane.cam)))
             else {
                 continue;
             };
@@ -116,7 +117,8 @@ impl LanePainter<'_> {
         if self.model.movable && (is_held || response.hovered()) {
             self.ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
         }
-        let state = Grip { active: is_held || response.hovered() && self.model.movable, focused: response.has_focus() };
+        let state =
+            GripState { active: is_held || response.hovered() && self.model.movable, focused: response.has_focus() };
         self.paint_grip(lane.cam, edge, state);
         if drag.is_none() {
             self.model.show_tooltip(self.theme, response, hold);
@@ -156,11 +158,11 @@ impl LanePainter<'_> {
         let (view, range) = (self.place.view, self.model.chart.range);
         let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
         let is_out = last < view.first() || first > view.first() + view.span();
-        let moved = response.gained_focus() || response.has_focus() && is_out && self.has_moved_by_key();
+        let moved = response.gained_focus() || response.has_focus() && is_out && self.is_arrow_key_released();
         (moved && is_out).then(|| CamEvent::Viewed(view.panned(first - view.first() - view.span() / 2.0, range)))
     }
 
-    fn has_moved_by_key(&self) -> bool {
+    fn is_arrow_key_released(&self) -> bool {
         use egui::Key::{ArrowLeft, ArrowRight};
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }

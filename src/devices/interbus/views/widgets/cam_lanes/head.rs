@@ -17,11 +17,11 @@ const NUMBER: f32 = 18.0;
 const LAMP: f32 = 34.0;
 
 impl LanePainter<'_> {
-    pub(super) fn draw_heads(&self) -> Option<CamEvent> {
+    pub(super) fn draw_lane_headers(&self) -> Option<CamEvent> {
         let lamps = self.model.chart.lamps(self.model.position, self.model.own);
         let mut event = None;
         for (lane, lamp) in self.shown.lanes.iter().zip(lamps) {
-            let head = self.place.head_rect(lane.cam);
+            let head = self.place.lane_header_rect(lane.cam);
             event = self.name(lane, head).or(event);
             self.lamp(lane, lamp, head);
         }
@@ -29,7 +29,7 @@ impl LanePainter<'_> {
     }
 
     pub(super) fn switch(&self, lane: &Lane) -> Option<CamEvent> {
-        let (ui, head) = (self.ui, self.place.head_rect(lane.cam));
+        let (ui, head) = (self.ui, self.place.lane_header_rect(lane.cam));
         let can = self.model.movable && (lane.edges.is_some() || lane.on);
         let size = ui.spacing().icon_width;
         let square = Rect::from_center_size(pos2(head.left() + size / 2.0 + 1.0, head.center().y), Vec2::splat(size));
@@ -125,7 +125,7 @@ impl LanePainter<'_> {
         let painter = self.ui.painter();
         let middle = pos2(rect.right() - 9.0, rect.center().y);
         let colour = display_colour(theme, lane.cam);
-        match lamp.lit() {
+        match lamp.effective_state() {
             Some(true) => {
                 painter.circle_filled(middle, 8.0, colour.gamma_multiply(0.25));
                 painter.circle_filled(middle, 5.5, colour);

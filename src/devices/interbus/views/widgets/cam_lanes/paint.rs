@@ -17,7 +17,7 @@ const BEYOND: f32 = 14.0;
 const NARROW: f32 = 6.0;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grip {
+pub(super) struct GripState {
     pub(super) active: bool,
     pub(super) focused: bool,
 }
@@ -29,7 +29,7 @@ impl LanePainter<'_> {
         let corners = CornerRadius::same(2);
         painter.rect_filled(place.plot, corners, theme.palette.sunken);
         if let Some(cam) = self.model.selected {
-            let lane = place.lane(cam).union(place.head_rect(cam));
+            let lane = place.lane(cam).union(place.lane_header_rect(cam));
             painter.rect_filled(lane, corners, Color32::from(theme.palette.accent).gamma_multiply(0.1));
         }
         self.draw_rulers();
@@ -164,7 +164,7 @@ impl LanePainter<'_> {
     }
 
     /// Draws the handle of an edge.
-    pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
+    pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: GripState) {
         let lit = state.active || state.focused;
         let is_selected = self.model.selected == Some(cam) && self.model.movable;
         if !lit && !is_selected {

@@ -67,7 +67,7 @@ impl PlotArea {
         Rect::from_min_size(pos2(self.plot.left(), top), Vec2::new(self.plot.width(), LANE))
     }
 
-    pub(super) fn head_rect(&self, cam: CamNumber) -> Rect {
+    pub(super) fn lane_header_rect(&self, cam: CamNumber) -> Rect {
         let lane = self.lane(cam);
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
     }

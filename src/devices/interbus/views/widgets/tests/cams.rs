@@ -8,12 +8,12 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use crate::devices::interbus::profile::{CamNames, Direction, Image, Parameters, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange};
-use crate::devices::interbus::state::staged::{Edit, Staged};
+use crate::devices::interbus::state::staged::{Edit, StagedEdits};
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::widgets::tests::{NONE, SHIFT, focus, press, theme, window};
 
 struct Page {
-    staged: Staged,
+    staged: StagedEdits,
     scale: Scale,
     view: VisibleRange,
     selected: Option<CamNumber>,
@@ -38,7 +38,7 @@ fn edges(start: u32, stop: u32) -> Cam {
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
-    let mut staged = Staged::for_profile(Image::of(parameters), CamNames::default());
+    let mut staged = StagedEdits::for_profile(Image::of(parameters), CamNames::default());
     for (number, start, stop, on) in [(0, 100, 299, true), (3, 900, 49, true), (4, 600, 700, false)] {
         staged.edit(&Edit::Cam { program: program(), cam: cam(number), start, stop, on }).unwrap();
     }
@@ -49,10 +49,10 @@ fn page() -> Page {
 }
 
 fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
-    draw_with(page, ring, false)
+    draw_with_options(page, ring, false)
 }
 
-fn draw_with(page: Page, ring: bool, snaps: bool) -> Harness<'static, Page> {
+fn draw_with_options(page: Page, ring: bool, snaps: bool) -> Harness<'static, Page> {
     window(page, move |ui, page: &mut Page| {
         let chart = Chart::of(&page.staged, program()).unwrap();
         let model = CamChart {
@@ -265,7 +265,7 @@ fn the_wheel_zooms_and_keys_scroll_into_view() {
 /// Cam 4 is drawn from a few steps beside the start of cam 0, which is at 100, to a few beside its end, which is 299.
 #[test]
 fn both_edges_of_a_drawn_cam_snap() {
-    let mut harness = draw_with(page(), false, true);
+    let mut harness = draw_with_options(page(), false, true);
     let lane = harness.get_by_label("Output 7").rect();
     let start = harness.get_by_label("Cam 0: start").rect().center();
     let from = egui::pos2(start.x + steps(&harness, 3.0).x, lane.center().y);

@@ -43,13 +43,13 @@ pub(super) fn draw_handles(view: &StripContext<'_>, drag: Option<Drag>) -> Optio
         event = apply_drag(view, &response, *handle, at, drag).or(keys(view, &response, *handle, at)).or(event);
         let is_held = response.dragged();
         if is_held || response.hovered() {
-            ui.set_cursor_icon(match (handle.is_cell(), is_held) {
+            ui.set_cursor_icon(match (handle.is_on_clock(), is_held) {
                 (true, true) => CursorIcon::Grabbing,
                 (true, false) => CursorIcon::Grab,
                 (false, _) => CursorIcon::ResizeHorizontal,
             });
         }
-        let state = paint::Grip { active: is_held || response.hovered(), focused: response.has_focus() };
+        let state = paint::GripState { active: is_held || response.hovered(), focused: response.has_focus() };
         paint::grip(view, *handle, state, drag.filter(|_| is_held));
         if !is_held {
             show_tooltip(view, response, *handle);

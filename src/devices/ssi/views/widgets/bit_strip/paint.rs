@@ -39,7 +39,7 @@ impl StripContext<'_> {
                 self.bracket(field, Rows::lane(run));
             }
             let (run, _) = widest_run(self.rows, field);
-            let worst = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
+            let worst = tells(self.cells, field.first..=field.last).filter(|_| field.is_single_bit());
             let colour = worst.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
             tag.paint(painter, self.theme, (self.rows, Rows::lane(run)), colour);
         }
@@ -74,7 +74,7 @@ impl StripContext<'_> {
     fn bracket(&self, field: &Field, lane: Rect) {
         let ink = display_colour(self.theme, field.kind);
         let is_moved = self.model.movable
-            && (field.is_single() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
+            && (field.is_single_bit() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
         let stroke = Stroke::new(if is_moved { 3.0 } else { 1.0 }, ink);
         let (left, right, y) = (lane.left() + 1.0, lane.right() - 1.0, lane.center().y);
         let painter = self.ui.painter();
@@ -86,16 +86,16 @@ impl StripContext<'_> {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grip {
+pub(super) struct GripState {
     pub(super) active: bool,
     pub(super) focused: bool,
 }
 
-pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: Option<Drag>) {
+pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: GripState, drag: Option<Drag>) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let accent = Color32::from(theme.palette.accent);
     let lit = state.active || state.focused;
-    if handle.is_cell() {
+    if handle.is_on_clock() {
         let runs = match (handle, view.shown.clock(handle)) {
             (Handle::Position, _) => {
                 view.shown.position().map(|(first, last)| view.rows.runs(first, last)).unwrap_or_default()
@@ -139,7 +139,7 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: O
 fn draw_drag_ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };
-    let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_cell()) {
+    let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_on_clock()) {
         Some(edge) => pos2(edge.center().x, edge.top() - 8.0),
         None => view.rows.number(clock),
     };
