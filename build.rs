@@ -11,7 +11,7 @@ fn main() {
             .set_manifest_file("assets/windows/encoder-studio.manifest")
             .set("LegalCopyright", "MIT OR Apache-2.0")
             .compile_for("encoder-studio");
-        // Without its icon the program works all the same.
+        // The program also works without an icon.
         if let Err(error) = compiled {
             println!("cargo::warning=The executable has no icon, version and manifest: {error}");
         }

@@ -47,8 +47,8 @@ pub(super) const STEPS: [&str; 3] = [
     ) STRICT;
     CREATE INDEX status_of_device ON status (kind, device_type, serial_number, is_virtual);
 ",
-    // Rows of these tables are only ever added: a result is a row of its own, and `uid` identifies an event on every
-    // computer.
+    // Rows of these tables are only added, never changed: a result is a separate row, and `uid` identifies an event on
+    // every computer.
     "
     CREATE TABLE event (
         id             INTEGER PRIMARY KEY,
