@@ -92,11 +92,11 @@ impl Outcome {
 /// Computer, user and program version of an entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
-    /// Name of the computer. It is empty in entries of versions before 0.2.
+    /// Name of the computer. It is empty in entries of older logbooks.
     pub bench: String,
     /// Name of the user, if known.
     pub user: Option<String>,
-    /// Version of the program. It is empty in entries of versions before 0.2.
+    /// Version of the program. It is empty in entries of older logbooks.
     pub version: String,
 }
 
@@ -132,7 +132,7 @@ pub struct Entry {
     pub device: DeviceKey,
     /// Description. For a write, it contains the changed items.
     pub description: String,
-    /// Changed items. The list is empty in entries of versions before 0.2.
+    /// Changed items. The list is empty in entries of older logbooks.
     pub items: Vec<ChangedItem>,
     pub planned_cycles: u64,
     /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.

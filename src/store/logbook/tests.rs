@@ -242,7 +242,7 @@ fn a_logbook_without_a_folder_is_an_error() {
     assert_eq!(error.problem, FileErrorKind::NotFolder);
 }
 
-/// A logbook of schema 2, made with these statements by version 0.1.
+/// A logbook of schema 2, made with the statements of that schema.
 #[test]
 fn an_older_logbook_keeps_its_entries() {
     let (_root, path) = place();
@@ -294,6 +294,14 @@ fn entries_are_filtered_and_searched() {
     assert_eq!(found(EntryFilter { kind: Some("biss".into()), ..all.clone() }), [at(20)]);
     assert_eq!(found(EntryFilter { serial_number: Some("GB1".into()), ..all.clone() }), [at(20), at(0)]);
     assert_eq!(found(EntryFilter { since: Some(at(10)), ..all.clone() }), [at(20), at(10)]);
+    let half = at(10) + jiff::SignedDuration::from_millis(500);
+    logbook.record_status(half, &device("GB3"), "1Eh").unwrap();
+    let found = |filter: EntryFilter| {
+        let entries = logbook.entries(&filter, 10).unwrap();
+        entries.into_iter().map(|entry| entry.at).collect::<Vec<_>>()
+    };
+    let since = |since| found(EntryFilter { since: Some(since), ..all.clone() });
+    assert_eq!((since(at(10)).len(), since(at(11)).len()), (3, 1), "half a second later");
     let search = |text: &str| found(EntryFilter { search: text.to_owned(), ..all.clone() });
     assert_eq!(search("OVERHEATED"), [at(10)]);
     assert_eq!((search("100 %"), search("5_0")), (vec![at(10)], vec![at(10)]), "no character has a special meaning");

@@ -16,7 +16,7 @@ use crate::link::{Direction, TraceEntry};
 /// Decoder that explains frames. It remembers the requests without a reply, because a reply does not name the parameter.
 #[derive(Default)]
 pub(super) struct FrameDecoder {
-    /// Headers and messages of the latest requests, oldest first.
+    /// Headers and messages of the latest requests, newest first.
     requests: VecDeque<(Frame, Request)>,
 }
 
