@@ -15,7 +15,8 @@ const COLUMNS: &str = "id, event.at AS at, what, kind, device_type, serial_numbe
 
 /// Returns the last `limit` entries that match the filter, newest first.
 pub(super) fn entries(database: &Connection, filter: &EntryFilter, limit: u32) -> rusqlite::Result<Vec<Entry>> {
-    // `instr` takes any character as it is, unlike LIKE. Without the Z, times with and without a fraction compare as text.
+    // `instr` takes any character as it is, unlike LIKE. Without the Z, times with and without a fraction can be compared
+    // as text.
     let condition = "(:kind IS NULL OR kind = :kind)
         AND (:serial_number IS NULL OR serial_number = :serial_number)
         AND (:since IS NULL OR rtrim(event.at, 'Z') >= rtrim(:since, 'Z'))
