@@ -100,7 +100,7 @@ impl Drop for Target {
 }
 
 fn permit() -> Permit {
-    Permit::within(-33_000_000, 33_000_000)
+    Permit::for_range(-33_000_000, 33_000_000)
 }
 
 /// An implementation of a cyclic connection.
@@ -127,7 +127,7 @@ impl DeviceConnection for Ours {
     }
 
     fn intend(&self, wish: MotionRequest) {
-        self.motion.intend(DriveNumber::FIRST, wish);
+        self.motion.request_motion(DriveNumber::FIRST, wish);
     }
 
     fn refresh(&self) {
@@ -135,7 +135,7 @@ impl DeviceConnection for Ours {
     }
 
     fn arrivals(&self) -> Histogram {
-        self.motion.view().link.intervals
+        self.motion.snapshot().link.intervals
     }
 }
 
@@ -193,14 +193,15 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
     };
     // They are not read again here: the time is that of a reading at the end.
     let read = clock.now() + Duration::from_secs(3600);
-    motion.publish_limits(DriveNumber::FIRST, DriveLimits::of(rules, (Topology::Adapter, Variant::new(7)), read));
+    motion
+        .publish_limits(DriveNumber::FIRST, DriveLimits::from_rules(rules, (Topology::Adapter, Variant::new(7)), read));
     let cyclic = Cyclic::start(packets, &opened(target.port), &[DriveNumber::FIRST], clock, &motion).unwrap();
     (Box::new(Ours { motion, _cyclic: cyclic }), target)
 }
 
 fn naive() -> (Box<dyn DeviceConnection>, Target) {
     let (mut packets, target, clock) = port();
-    let intent = MotionIntent::rest(DriveNumber::FIRST, 1, clock.now());
+    let intent = MotionIntent::idle(DriveNumber::FIRST, 1, clock.now());
     let shared = Arc::new(Mutex::new((intent, Histogram::default())));
     let end = Arc::new(AtomicBool::new(false));
     let (ends, cell, time) = (end.clone(), shared.clone(), clock.clone());
@@ -216,7 +217,7 @@ fn naive() -> (Box<dyn DeviceConnection>, Target) {
             if let Some(packet) = drives.poll(drives.poll_at().max(time.now()), &intent, |_| permit()) {
                 packets.send(&packet).unwrap();
             }
-            cell.lock().unwrap().1 = drives.figures().intervals.clone();
+            cell.lock().unwrap().1 = drives.statistics().intervals.clone();
         }
     });
     (Box::new(Naive { shared, clock, end, thread: Some(thread) }), target)
@@ -228,7 +229,11 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     let mut took = Vec::with_capacity(count);
     sleep(INTERVAL * 5);
     while took.len() < count {
-        way.intend(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
+        way.intend(MotionRequest::Jog {
+            direction: Direction::Clockwise,
+            effort: SpeedTorque::DEFAULT_JOG,
+            outward: false,
+        });
         let held = Instant::now() + Duration::from_micros(random.u64(120_000..160_000));
         while Instant::now() < held {
             way.refresh();

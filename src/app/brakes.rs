@@ -14,9 +14,9 @@ use crate::worker::WorkerStopHandle;
 pub trait DriveStopHandle: Send {
     /// Stops and switches off all drives, and closes their connection. Later requests cannot start a motion. This
     /// function does not block, and it may be called repeatedly.
-    fn leave(&self);
+    fn release_drives(&self);
 
-    /// Returns whether the device has a connection over which drives can move. After [`leave`](Self::leave), this is
+    /// Returns whether the device has a connection over which drives can move. After [`release_drives`](Self::release_drives), this is
     /// `false` as soon as the drives have stopped and the connection is closed.
     fn is_connected(&self) -> bool;
 
@@ -29,38 +29,38 @@ pub trait DriveStopHandle: Send {
 pub struct DriveStopHandles(Arc<Shared>);
 
 /// The stop handles of a session with drives: for the drives, and for the jobs.
-type Session = (Box<dyn DriveStopHandle>, WorkerStopHandle);
+type SessionStopHandles = (Box<dyn DriveStopHandle>, WorkerStopHandle);
 
 #[derive(Default)]
 struct Shared {
-    sessions: Mutex<Vec<Session>>,
+    sessions: Mutex<Vec<SessionStopHandles>>,
     /// Whether the drives have been released. No motion is allowed after that.
     released: AtomicBool,
     closing: AtomicBool,
 }
 
 /// Interval between checks for closed connections.
-const LOOKS: Duration = Duration::from_millis(5);
+const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 impl DriveStopHandles {
     /// Maximum time for stopping the drives and closing the connections. The program then ends in any case.
-    pub const PATIENCE: Duration = Duration::from_secs(1);
+    pub const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 
     pub(crate) fn add(&self, brake: Box<dyn DriveStopHandle>, stop_handle: WorkerStopHandle) {
-        let mut sessions = self.sessions();
+        let mut sessions = self.lock_sessions();
         sessions.retain(|(own, _)| !own.is_orphaned());
         // `begin` takes the same lock, so one of the two functions always releases the session.
         if self.has_begun() {
-            brake.leave();
+            brake.release_drives();
             stop_handle.stop();
         }
         sessions.push((brake, stop_handle));
     }
 
-    pub fn begin(&self) {
+    pub fn begin_stop(&self) {
         self.0.released.store(true, Ordering::SeqCst);
-        let sessions = self.sessions();
-        sessions.iter().for_each(|(brake, _)| brake.leave());
+        let sessions = self.lock_sessions();
+        sessions.iter().for_each(|(brake, _)| brake.release_drives());
         // This ends the jobs and wakes waiting threads.
         sessions.iter().for_each(|(_, stop_handle)| stop_handle.stop());
     }
@@ -71,11 +71,11 @@ impl DriveStopHandles {
 
     /// Returns whether no drive is connected.
     pub fn is_done(&self) -> bool {
-        !self.sessions().iter().any(|(brake, _)| brake.is_connected())
+        !self.lock_sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
     /// Waits until no drive is connected, for at most `patience`. Returns whether this is the case.
-    pub fn wait(&self, patience: Duration) -> bool {
+    pub fn wait_for_disconnect(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
 
@@ -88,7 +88,7 @@ impl DriveStopHandles {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }
 
-    fn sessions(&self) -> MutexGuard<'_, Vec<Session>> {
+    fn lock_sessions(&self) -> MutexGuard<'_, Vec<SessionStopHandles>> {
         self.0.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -102,6 +102,6 @@ fn wait_for(patience: Duration, condition: impl Fn() -> bool) -> bool {
         if Instant::now() >= until {
             return false;
         }
-        sleep(LOOKS);
+        sleep(CHECK_INTERVAL);
     }
 }

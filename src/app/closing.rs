@@ -99,7 +99,7 @@ impl Studio {
         if std::mem::replace(&mut self.closing, true) {
             return;
         }
-        self.services.brakes.begin();
+        self.services.brakes.begin_stop();
         self.services.brakes.set_closing();
         self.stop_tools();
         let patience = self.services.world.patience;

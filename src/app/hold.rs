@@ -86,31 +86,31 @@ pub struct HoldState {
 
 impl HoldState {
     /// Begins a frame. `follows` states whether the button was present in the previous frame.
-    pub fn begin(&mut self, scene: HoldContext, follows: bool) {
+    pub fn begin_frame(&mut self, scene: HoldContext, follows: bool) {
         let before = self.scene.replace(scene).filter(|_| follows);
         self.pointer &= before.is_some();
         self.was_held = self.holder.is_some();
         (self.began, self.stop) = (false, false);
         let same = before.is_some_and(|own| (own.enabled, own.window) == (scene.enabled, scene.window));
         if !same {
-            self.let_go();
-            self.keys.forget();
+            self.release_all();
+            self.keys.reset_keys();
         }
         if before.is_none_or(|own| own.keyboard != scene.keyboard) {
-            self.keys.forget();
+            self.keys.reset_keys();
             if matches!(self.holder, Some(HoldSource::Key(_))) {
-                self.let_go();
+                self.release_all();
             }
         }
     }
 
     /// Handles an input of the frame. `now` is the time on the clock of the window.
-    pub fn take(&mut self, now: f64, input: HoldInput) {
+    pub fn handle_input(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
             HoldInput::WindowFocus(_) => {
-                self.keys.forget();
-                self.let_go();
+                self.keys.reset_keys();
+                self.release_all();
             }
             HoldInput::Down { key, plain } => self.key_down(key, plain, scene),
             HoldInput::Up(key) => {
@@ -118,18 +118,18 @@ impl HoldState {
                     self.keys.release(key, now);
                 }
                 if self.holder == Some(HoldSource::Key(key)) {
-                    self.let_go();
+                    self.release_all();
                 }
             }
             HoldInput::OtherKey => {
-                self.keys.doubt(now);
-                self.let_go();
+                self.keys.mark_suspect(now);
+                self.release_all();
             }
-            HoldInput::Modifiers | HoldInput::Finger => self.let_go(),
+            HoldInput::Modifiers | HoldInput::Finger => self.release_all(),
             HoldInput::PointerDown { on } => {
                 let alone = self.holder.is_none() && !self.pointer && !self.is_any_key_down();
                 self.pointer = true;
-                self.let_go();
+                self.release_all();
                 if on && alone && scene.enabled && scene.window {
                     self.start_hold(HoldSource::Pointer);
                 }
@@ -145,7 +145,7 @@ impl HoldState {
 
     /// Ends the frame and returns the effect on the hold. `pointer_down` states whether the pointer is pressed, and
     /// `inside` whether it is on the button.
-    pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
+    pub fn end_frame(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.finish_ui_frame(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
@@ -153,7 +153,7 @@ impl HoldState {
         }
         // If a hold ended and another one began between two frames, the new one is ignored.
         if self.stop || self.was_held && self.began {
-            self.let_go();
+            self.release_all();
         }
         match (self.was_held, self.holder.is_some()) {
             _ if self.stop => Some(HoldEvent::Stop),
@@ -186,10 +186,10 @@ impl HoldState {
     }
 
     fn key_down(&mut self, key: PressKey, plain: bool, scene: HoldContext) {
-        let fresh = self.keys.press(key);
+        let fresh = self.keys.is_fresh_press(key);
         match self.holder {
             Some(HoldSource::Key(own)) if own == key && plain => {}
-            Some(_) => self.let_go(),
+            Some(_) => self.release_all(),
             None if !scene.keyboard => {}
             None if scene.moving => self.stop = true,
             None if fresh && plain && scene.enabled && scene.window && !self.pointer => {
@@ -208,13 +208,13 @@ impl HoldState {
         self.began = true;
     }
 
-    fn let_go(&mut self) {
+    fn release_all(&mut self) {
         self.holder = None;
     }
 
     fn release_pointer(&mut self) {
         if self.holder == Some(HoldSource::Pointer) {
-            self.let_go();
+            self.release_all();
         }
     }
 }

@@ -18,7 +18,7 @@ pub enum PressKey {
 
 /// Minimum time in seconds between the release of a key and a fresh press. Some remote desktops and displays repeat a
 /// key by a release and an immediate press.
-const LEAST: f64 = 0.05;
+const MIN_RELEASE_S: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
@@ -40,28 +40,28 @@ pub struct KeyStates {
 
 impl KeyStates {
     /// State in which both keys are up and the keyboard focus was never lost.
-    pub const UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
+    pub const ALL_UP: KeyStates = KeyStates { space: KeyState::Up, enter: KeyState::Up };
 
     /// Discards the states of the keys, because the keyboard focus has changed or has another purpose.
-    pub fn forget(&mut self) {
+    pub fn reset_keys(&mut self) {
         *self = KeyStates::default();
     }
 
     /// Handles a key press and returns whether it is fresh. An earlier frame must have seen the key up for long enough.
-    pub fn press(&mut self, key: PressKey) -> bool {
-        std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
+    pub fn is_fresh_press(&mut self, key: PressKey) -> bool {
+        std::mem::replace(self.state_mut(key), KeyState::Down) == KeyState::Up
     }
 
     /// Handles the release of a key while the window has the keyboard focus.
     pub fn release(&mut self, key: PressKey, now: f64) {
-        *self.of(key) = KeyState::Released(now);
+        *self.state_mut(key) = KeyState::Released(now);
     }
 
     /// Records that another key was pressed. The system repeats only the key pressed last, so a later press of a key in
     /// an unknown state is not a repetition.
     pub fn record_other_key_press(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
-            let own = self.of(key);
+            let own = self.state_mut(key);
             if *own == KeyState::Nothing {
                 *own = KeyState::Released(now);
             }
@@ -70,9 +70,9 @@ impl KeyStates {
 
     /// Records that another key was pressed outside a text entry. A press immediately after it is not fresh, because
     /// only a barcode scanner types digits and Enter that fast.
-    pub fn doubt(&mut self, now: f64) {
+    pub fn mark_suspect(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
-            let own = self.of(key);
+            let own = self.state_mut(key);
             if *own == KeyState::Up {
                 *own = KeyState::Released(now);
             }
@@ -85,9 +85,9 @@ impl KeyStates {
     pub fn finish_ui_frame(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
         for key in [PressKey::Space, PressKey::Enter] {
-            let own = self.of(key);
+            let own = self.state_mut(key);
             let KeyState::Released(since) = *own else { continue };
-            let rest = since + LEAST - now;
+            let rest = since + MIN_RELEASE_S - now;
             if rest > 0.0 {
                 next = Some(next.map_or(rest, |next| next.min(rest)));
             } else {
@@ -114,7 +114,7 @@ impl KeyStates {
         }
     }
 
-    const fn of(&mut self, key: PressKey) -> &mut KeyState {
+    const fn state_mut(&mut self, key: PressKey) -> &mut KeyState {
         match key {
             PressKey::Space => &mut self.space,
             PressKey::Enter => &mut self.enter,
@@ -140,21 +140,21 @@ mod tests {
         let mut keys = KeyStates::default();
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
-            assert!(!keys.press(Space), "a key that is held repeats itself");
+            assert!(!keys.is_fresh_press(Space), "a key that is held repeats itself");
             assert_eq!(keys.finish_ui_frame(f64::from(at) * 0.04), None);
         }
         keys.release(Space, 2.0);
         assert!(keys.is_armed(Space) && !keys.is_armed(Enter));
         pictures(&mut keys, 2.0, 0.1, 5);
-        assert!(keys.press(Space) && keys.is_down(Space));
+        assert!(keys.is_fresh_press(Space) && keys.is_down(Space));
         pictures(&mut keys, 3.0, 0.1, 5);
-        assert!(!keys.press(Space), "held");
-        assert!(!keys.press(Enter), "each key for itself");
+        assert!(!keys.is_fresh_press(Space), "held");
+        assert!(!keys.is_fresh_press(Enter), "each key for itself");
         keys.release(Space, 5.0);
         pictures(&mut keys, 5.0, 0.1, 5);
-        keys.forget();
+        keys.reset_keys();
         pictures(&mut keys, 5.5, 0.1, 5);
-        assert!(!keys.press(Space), "the keyboard was elsewhere meanwhile");
+        assert!(!keys.is_fresh_press(Space), "the keyboard was elsewhere meanwhile");
     }
 
     /// Issue 21.2: a release followed immediately by a press counts as a repetition, in one frame or in two, however
@@ -162,17 +162,17 @@ mod tests {
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
-            let mut keys = KeyStates::UP;
-            assert!(keys.press(Enter));
+            let mut keys = KeyStates::ALL_UP;
+            assert!(keys.is_fresh_press(Enter));
             let _ = keys.finish_ui_frame(0.0);
             for number in 1..30 {
                 let now = f64::from(number) * 3.0 * apart;
                 keys.release(Enter, now);
-                assert!(!keys.press(Enter), "{apart}: in one picture");
+                assert!(!keys.is_fresh_press(Enter), "{apart}: in one picture");
                 let _ = keys.finish_ui_frame(now);
                 keys.release(Enter, now + apart);
                 let _ = keys.finish_ui_frame(now + apart);
-                assert!(!keys.press(Enter), "{apart}: a picture later");
+                assert!(!keys.is_fresh_press(Enter), "{apart}: a picture later");
                 let _ = keys.finish_ui_frame(now + 2.0 * apart);
             }
         }
@@ -183,8 +183,8 @@ mod tests {
     #[test]
     fn a_users_press_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
-            let mut keys = KeyStates::UP;
-            assert!(keys.press(Enter));
+            let mut keys = KeyStates::ALL_UP;
+            assert!(keys.is_fresh_press(Enter));
             assert_eq!(keys.finish_ui_frame(0.0), None, "it is down, and nothing is to be waited for");
             keys.release(Enter, 1.0);
             let (mut now, mut pictures) = (1.0, 0);
@@ -195,7 +195,7 @@ mod tests {
                 pictures += 1;
             }
             assert!(pictures >= 1 && now < 1.0501, "{pictures} pictures until {now}");
-            assert!(keys.press(Enter), "100 ms after the release");
+            assert!(keys.is_fresh_press(Enter), "100 ms after the release");
         }
     }
 
@@ -203,36 +203,36 @@ mod tests {
     fn another_key_ends_the_repeats_of_an_unknown_key() {
         let mut keys = KeyStates::default();
         keys.record_other_key_press(1.0);
-        assert!(!keys.press(Enter), "at once");
-        keys.forget();
+        assert!(!keys.is_fresh_press(Enter), "at once");
+        keys.reset_keys();
         keys.record_other_key_press(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
-        assert!(keys.press(Enter));
+        assert!(keys.is_fresh_press(Enter));
         keys.record_other_key_press(1.2);
         pictures(&mut keys, 1.2, 0.05, 2);
-        assert!(!keys.press(Enter), "it is known to be down");
+        assert!(!keys.is_fresh_press(Enter), "it is known to be down");
     }
 
     /// Issue 22.29: Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
     fn a_press_right_after_another_key_is_not_fresh() {
-        let mut keys = KeyStates::UP;
-        keys.doubt(1.0);
-        assert!(!keys.press(Enter), "in the same picture");
-        let mut keys = KeyStates::UP;
-        keys.doubt(1.0);
+        let mut keys = KeyStates::ALL_UP;
+        keys.mark_suspect(1.0);
+        assert!(!keys.is_fresh_press(Enter), "in the same picture");
+        let mut keys = KeyStates::ALL_UP;
+        keys.mark_suspect(1.0);
         let _ = keys.finish_ui_frame(1.0);
-        assert!(!keys.press(Enter), "in the next one, whenever that is");
-        let mut keys = KeyStates::UP;
-        keys.doubt(1.0);
+        assert!(!keys.is_fresh_press(Enter), "in the next one, whenever that is");
+        let mut keys = KeyStates::ALL_UP;
+        keys.mark_suspect(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
-        assert!(keys.press(Enter), "a person's");
-        keys.doubt(2.0);
+        assert!(keys.is_fresh_press(Enter), "a person's");
+        keys.mark_suspect(2.0);
         pictures(&mut keys, 2.0, 0.05, 2);
-        assert!(!keys.press(Enter), "it is down");
+        assert!(!keys.is_fresh_press(Enter), "it is down");
         let mut keys = KeyStates::default();
-        keys.doubt(1.0);
+        keys.mark_suspect(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
-        assert!(!keys.press(Enter), "it may be held");
+        assert!(!keys.is_fresh_press(Enter), "it may be held");
     }
 }

@@ -9,8 +9,8 @@ pub use permit::{Permit, PermitToggle};
 use super::session::Kind;
 use super::{Severity, Text, explain};
 use crate::profile::{Plan, PlanId};
-use crate::worker::commit::Planned;
-use crate::worker::{Committed, is_uncounted};
+use crate::worker::commit::PlannedWrite;
+use crate::worker::{CommitResult, is_uncounted};
 
 pub struct Review<K: Reviewable> {
     pub title: Text,
@@ -30,7 +30,7 @@ pub enum ReviewState<K: Reviewable> {
     Ready(Box<K::Prepared>),
     Writing(Box<K::Prepared>),
     /// The plan was executed, and the values were read back.
-    Done(Box<K::Prepared>, Committed<K::Written>),
+    Done(Box<K::Prepared>, CommitResult<K::Written>),
     /// The write is impossible or ended early.
     Failed {
         /// Texts that state what happened and what to do.
@@ -226,7 +226,7 @@ pub enum Stage {
 /// A kind of device with a memory, with the texts for its writes.
 pub trait Reviewable: Kind<Review = Review<Self>> {
     type Change: Clone;
-    type Prepared: Planned + Clone;
+    type Prepared: PlannedWrite + Clone;
     type Written;
 
     fn change(change: &Self::Change) -> Text;
@@ -275,9 +275,9 @@ pub trait Reviewable: Kind<Review = Review<Self>> {
     }
 }
 
-pub(crate) type Op<K> = <<K as Reviewable>::Prepared as Planned>::Op;
+pub(crate) type Op<K> = <<K as Reviewable>::Prepared as PlannedWrite>::Op;
 
-pub fn written_texts<K: Reviewable>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+pub fn written_texts<K: Reviewable>(committed: &CommitResult<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
@@ -322,7 +322,7 @@ impl<K: Reviewable> Review<K> {
         };
         let carried = prepared.or(cut_off.map(|(prepared, _)| prepared));
         let is_over = matches!(self.state, ReviewState::Done(..));
-        let plan = prepared.map(Planned::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
+        let plan = prepared.map(PlannedWrite::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
         let stage = match &self.state {
             ReviewState::Planning => Stage::Planning,
             ReviewState::Ready(_) => plan.map_or(Stage::Nothing, Stage::Ready),

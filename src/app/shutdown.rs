@@ -32,7 +32,7 @@ pub struct GracePeriods {
 impl Default for GracePeriods {
     fn default() -> Self {
         GracePeriods {
-            drives: DriveStopHandles::PATIENCE,
+            drives: DriveStopHandles::SHUTDOWN_TIMEOUT,
             disk: Duration::from_secs(3),
             job: Duration::from_secs(10),
             write: Duration::from_secs(90),

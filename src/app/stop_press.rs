@@ -3,7 +3,7 @@
 //! may have started in the meantime. Times are those of the frames, in seconds.
 
 /// Time in seconds after a stop in which another press is also a stop.
-const FRIGHT: f64 = 0.5;
+const REPEAT_WINDOW_S: f64 = 0.5;
 
 /// Times of the last stop of a motion, and of the last press of a stop button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,7 +25,7 @@ impl StopPresses {
 
     /// Returns whether the last stop was so recent that a press must be meant for the same motion.
     pub fn has_recently_stopped(&self, pressed: f64) -> bool {
-        self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
+        self.stopped.is_some_and(|stopped| pressed - stopped <= REPEAT_WINDOW_S)
     }
 
     pub fn press_began(&mut self, now: f64) {

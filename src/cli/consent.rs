@@ -8,7 +8,7 @@ use super::output::{Output, say};
 use super::runner::{JobFailure, Runs};
 use super::{Failure, Result};
 use crate::profile::Consent;
-use crate::worker::commit::{ApprovedPlan, Planned};
+use crate::worker::commit::{ApprovedPlan, PlannedWrite};
 use crate::worker::{self, NotStarted};
 
 /// Requires that consent is possible. Without a terminal the user cannot be asked, and the command is refused before
@@ -27,7 +27,7 @@ pub(crate) fn can_prompt() -> bool {
 
 /// Shows the plan and all other points that require consent. Asks about each of them unless the command line has
 /// already consented. Returns the approved plan.
-pub fn confirm_plan<P: Planned>(
+pub fn confirm_plan<P: PlannedWrite>(
     output: &Output,
     consent: &ConsentArgs,
     prepared: P,
@@ -45,7 +45,7 @@ pub fn confirm_plan<P: Planned>(
 
 /// Refuses a write if the device has reached its limit of write cycles, or if its write cycles are unknown. This
 /// happens before consent is requested.
-pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl Planned) -> Result<()>
+pub fn check_wear<D>(consent: &ConsentArgs, prepared: &impl PlannedWrite) -> Result<()>
 where
     D: Runs,
     D::Error: From<NotStarted>,

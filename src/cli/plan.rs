@@ -6,9 +6,9 @@ use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
 use crate::app::explain;
-use crate::profile::{Operation, Plan, Written};
+use crate::profile::{Operation, Plan, WrittenChanges};
 use crate::store::LogbookError;
-use crate::worker::Committed;
+use crate::worker::CommitResult;
 
 pub struct PlanReport {
     pub operations: Vec<Json>,
@@ -89,10 +89,10 @@ pub struct WriteSummary {
 
 impl WriteSummary {
     /// Summarises an executed plan. Prints a warning if the result could not be recorded in the logbook.
-    pub fn of(output: &Output, committed: Committed<Written>) -> Self {
-        let Committed { written, backup, logbook_warning } = committed;
+    pub fn of(output: &Output, committed: CommitResult<WrittenChanges>) -> Self {
+        let CommitResult { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
-        let Written { written, verified, write_cycles, .. } = written;
+        let WrittenChanges { written, verified, write_cycles, .. } = written;
         WriteSummary { written, verified, write_cycles, backup }
     }
 }

@@ -26,7 +26,10 @@ pub trait Write {
     ///
     /// # Errors
     /// Returns an error if the device or the values have changed.
-    fn confirm(&mut self, plan: &Plan<Self::Base, Self::Op>) -> Result<(), <Self::Error as OperationError>::Device>;
+    fn confirm_base(
+        &mut self,
+        plan: &Plan<Self::Base, Self::Op>,
+    ) -> Result<(), <Self::Error as OperationError>::Device>;
 
     /// Prepares the device for the first operation.
     ///
@@ -43,7 +46,7 @@ pub trait Write {
     fn apply(
         &mut self,
         op: &Self::Op,
-        confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
         done: &mut Self::Written,
     ) -> Result<(), Self::Error>;
 
@@ -53,7 +56,7 @@ pub trait Write {
     /// Returns an error if a value differs from the plan.
     fn finish(
         &mut self,
-        _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        _confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
         _done: &mut Self::Written,
     ) -> Result<(), Self::Error> {
         Ok(())
@@ -65,7 +68,7 @@ pub trait Write {
     /// Returns the reason why the operations ended early, or why the mode of the device cannot be restored.
     fn lead_back(
         &mut self,
-        _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        _confirmed: &ConfirmedPlan<'_, Self::Base, Self::Op>,
         ended: Result<(), Self::Error>,
         _done: &mut Self::Written,
     ) -> Result<(), Self::Error> {
@@ -112,13 +115,13 @@ impl<E: DeviceError> OperationError for E {
 }
 
 /// A plan that the user approved and whose base is unchanged. Every operation requires one.
-pub struct Confirmed<'p, Base, Op> {
+pub struct ConfirmedPlan<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
 
 /// The progress and cause of an interrupted write.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Interrupted<Op, E, Done, Left> {
+pub struct InterruptedWrite<Op, E, Done, Left> {
     /// Changes that were written before the interruption.
     pub done: Done,
     /// Operation that was interrupted and may have begun. `None` if all operations were completed.
@@ -129,10 +132,10 @@ pub struct Interrupted<Op, E, Done, Left> {
     pub end_state: Left,
 }
 
-pub(crate) type InterruptedWrite<W> =
-    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
+pub(crate) type InterruptedWriteOf<W> =
+    InterruptedWrite<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
-impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
+impl<'p, Base: Hash, Op: Clone + Hash> ConfirmedPlan<'p, Base, Op> {
     /// Checks the consent and reads the base of the plan again. Returns `None` if the consent was given for another
     /// plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
@@ -140,7 +143,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         consent: Consent,
         write: &mut W,
     ) -> Option<Result<Self, <W::Error as OperationError>::Device>> {
-        consent.covers(plan.id()).then(|| write.confirm(plan).map(|()| Confirmed { plan }))
+        consent.covers(plan.id()).then(|| write.confirm_base(plan).map(|()| ConfirmedPlan { plan }))
     }
 
     /// Returns the confirmed plan.
@@ -156,7 +159,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         &self,
         write: &mut W,
         tell: &mut dyn FnMut(usize, &Op),
-    ) -> Result<W::Written, Box<InterruptedWrite<W>>> {
+    ) -> Result<W::Written, Box<InterruptedWriteOf<W>>> {
         let (mut at, mut done) = (0, W::Written::default());
         let mut carry_out = || {
             write.begin()?;
@@ -170,19 +173,19 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         let ended = carry_out();
         let Err(cause) = write.lead_back(self, ended, &mut done) else { return Ok(done) };
         let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.end_state(&cause));
-        Err(Box::new(Interrupted { done, unfinished, cause, end_state: left }))
+        Err(Box::new(InterruptedWrite { done, unfinished, cause, end_state: left }))
     }
 }
 
-impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
+impl<Op, E: OperationError, Done: WriteRecord, Left> InterruptedWrite<Op, E, Done, Left> {
     /// Returns the cause to record in the logbook, or `None` if the user cancelled.
     pub(crate) fn reason(&self) -> Option<String> {
         (!self.cause.is_only_cancelled()).then(|| self.cause.to_string())
     }
 }
 
-impl<Op, E: fmt::Display, Done: WriteRecord, Left> fmt::Display for Interrupted<Op, E, Done, Left> {
+impl<Op, E: fmt::Display, Done: WriteRecord, Left> fmt::Display for InterruptedWrite<Op, E, Done, Left> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "after {} of the operations: {}", self.done.ops(), self.cause)
+        write!(f, "after {} of the operations: {}", self.done.operation_count(), self.cause)
     }
 }

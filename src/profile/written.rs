@@ -2,7 +2,7 @@
 
 /// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Written {
+pub struct WrittenChanges {
     /// Number of operations of the plan that were carried out.
     pub ops: usize,
     /// Number of changed values, counted as in a comparison. Some operations count as one value.
@@ -16,13 +16,13 @@ pub struct Written {
 /// A record of the progress of a write.
 pub trait WriteRecord: Default {
     /// Returns the number of operations of the plan that were carried out.
-    fn ops(&self) -> usize;
+    fn operation_count(&self) -> usize;
     /// Returns the number of persistent writes, including those that may not have taken place.
     fn write_cycles(&self) -> u64;
 }
 
-impl WriteRecord for Written {
-    fn ops(&self) -> usize {
+impl WriteRecord for WrittenChanges {
+    fn operation_count(&self) -> usize {
         self.ops
     }
 
@@ -31,9 +31,9 @@ impl WriteRecord for Written {
     }
 }
 
-impl Written {
+impl WrittenChanges {
     /// Counts a completed operation and the number of values that it changed.
-    pub fn carried_out(&mut self, changed: u64) {
+    pub fn count_operation(&mut self, changed: u64) {
         self.ops += 1;
         self.written += changed;
     }

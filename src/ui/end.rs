@@ -7,34 +7,34 @@ use std::time::Duration;
 
 use crate::app::{Action, ActionMailbox, DriveStopHandles, Studio};
 
-const ANSWERS: Duration = Duration::from_secs(2);
+const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
-const ENDED: i32 = 143;
+const TERMINATED_STATUS: i32 = 143;
 
 /// Guard that releases the drives when its thread ends, or when that thread ends the program.
 struct ReleaseOnDrop(DriveStopHandles);
 
 impl Drop for ReleaseOnDrop {
     fn drop(&mut self) {
-        self.0.begin();
-        self.0.wait(DriveStopHandles::PATIENCE);
+        self.0.begin_stop();
+        self.0.wait_for_disconnect(DriveStopHandles::SHUTDOWN_TIMEOUT);
     }
 }
 
 thread_local! {
     /// Guard in the window's thread. It releases the drives when the display is lost. The display library then ends the
     /// program, but thread-local values are still dropped.
-    static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
+    static RELEASE_GUARD: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
 /// Installs the handlers for signals and for the end of the window's thread.
-pub(super) fn prepare(studio: &Studio) {
+pub(super) fn install_handlers(studio: &Studio) {
     let (brakes, mailbox) = (studio.brakes(), studio.mailbox());
-    LAST.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
+    RELEASE_GUARD.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
     let again = AtomicBool::new(false);
     let heard = ctrlc::set_handler(move || {
-        if !end(&brakes, &mailbox) || again.swap(true, Ordering::SeqCst) {
-            std::process::exit(ENDED);
+        if !stop_and_close(&brakes, &mailbox) || again.swap(true, Ordering::SeqCst) {
+            std::process::exit(TERMINATED_STATUS);
         }
     });
     if let Err(why) = heard {
@@ -44,9 +44,9 @@ pub(super) fn prepare(studio: &Studio) {
 }
 
 /// Ends the drives first. Then closes the window without any question. Returns whether the window closes.
-fn end(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
-    brakes.begin();
+fn stop_and_close(brakes: &DriveStopHandles, mailbox: &ActionMailbox) -> bool {
+    brakes.begin_stop();
     mailbox.send(Action::Quit);
-    brakes.wait(DriveStopHandles::PATIENCE);
-    brakes.wait_for_window(ANSWERS)
+    brakes.wait_for_disconnect(DriveStopHandles::SHUTDOWN_TIMEOUT);
+    brakes.wait_for_window(REPLY_TIMEOUT)
 }

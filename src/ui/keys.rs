@@ -16,7 +16,7 @@ pub(super) struct KeyboardFilter {
 
 impl KeyboardFilter {
     pub(super) fn new() -> Self {
-        KeyboardFilter { fresh: KeyStates::UP, asked: false }
+        KeyboardFilter { fresh: KeyStates::ALL_UP, asked: false }
     }
 
     /// Removes the events that no widget may receive from the current frame. Returns whether all motion must stop.
@@ -24,7 +24,7 @@ impl KeyboardFilter {
     /// that was released since the request can give consent.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
-            self.fresh.forget();
+            self.fresh.reset_keys();
         }
         self.asked = asks;
         let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_focus(ctx));
@@ -36,7 +36,7 @@ impl KeyboardFilter {
         let mut stops = false;
         let mut passes = |event: &Event| match event {
             Event::WindowFocused(_) => {
-                fresh.forget();
+                fresh.reset_keys();
                 true
             }
             Event::Key { key, pressed: false, .. } => {
@@ -49,13 +49,13 @@ impl KeyboardFilter {
                 let own = press_key(*key);
                 let repeats = own.is_some_and(|own| fresh.is_down(own));
                 let counts = match own {
-                    Some(own) => fresh.press(own),
+                    Some(own) => fresh.is_fresh_press(own),
                     None => {
                         if !asks {
                             fresh.record_other_key_press(now);
                         }
                         if !typing {
-                            fresh.doubt(now);
+                            fresh.mark_suspect(now);
                         }
                         true
                     }

@@ -42,7 +42,7 @@ fn open(start: Start, kinds: KindRegistry, tabs: TabViews) -> Result<(), String>
         Studio::new(StudioEnvironment { given: start.given, ..StudioEnvironment::real(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
-    end::prepare(&studio);
+    end::install_handlers(&studio);
     let options = |renderer| eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("encoder-studio")

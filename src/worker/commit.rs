@@ -1,7 +1,7 @@
 //! The only way to write, in the same order for every kind of device. The plan needs consent and must match its base. A
 //! backup is saved on disk, and the logbook records the intention. Each operation is written and read back, and the
 //! logbook records the result. A device supplies its own parts as a [`Write`] and cannot omit a step: its operations
-//! require a [`Confirmed`], which only [`write_plan`] creates.
+//! require a [`ConfirmedPlan`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;
@@ -13,8 +13,8 @@ use jiff::Timestamp;
 
 use super::{JobError, Progress};
 use crate::profile::{
-    Body, ChangedItem, Confirmed, Consent, InterruptedWrite, Operation, OperationError, Plan, ProfileDocument, Write,
-    WriteRecord,
+    Body, ChangedItem, ConfirmedPlan, Consent, InterruptedWriteOf, Operation, OperationError, Plan, ProfileDocument,
+    Write, WriteRecord,
 };
 use crate::store::{DeviceKey, EntryId, EntryKind, FileError, Intent, Logbook, LogbookError, Outcome, Store};
 
@@ -37,7 +37,7 @@ struct WriteIntent {
 
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
-pub struct Committed<W> {
+pub struct CommitResult<W> {
     /// Outcome of the write, in the form that the kind of device uses.
     pub written: W,
     /// Path of the before-image. `None` if there was nothing to write.
@@ -74,7 +74,7 @@ pub enum NotStarted {
 }
 
 /// A plan made by a job, with all the data that a write needs besides the connection.
-pub trait Planned {
+pub trait PlannedWrite {
     /// Values on which the plan is based.
     type Base: Hash;
     /// A single operation of the plan.
@@ -83,7 +83,7 @@ pub trait Planned {
     type Kind;
 
     /// Returns the plan with its kind of change and the wear of the device.
-    fn head(&self) -> PlanHeader<'_, Self>;
+    fn header(&self) -> PlanHeader<'_, Self>;
 
     /// Returns the key that identifies the device in backups and the logbook.
     fn device(&self, is_virtual: bool) -> DeviceKey;
@@ -99,28 +99,28 @@ pub trait Planned {
 
     /// Returns the plan to write.
     fn plan(&self) -> &Plan<Self::Base, Self::Op> {
-        self.head().plan
+        self.header().plan
     }
 
     /// Returns the kind of change of the plan.
     fn kind(&self) -> Self::Kind {
-        self.head().kind
+        self.header().kind
     }
 
     /// Returns the write cycles recorded for the device in the logbook of this computer. Returns `None` if the logbook
     /// cannot be read.
     fn cycles_seen(&self) -> Option<u64> {
-        self.head().cycles_seen
+        self.header().cycles_seen
     }
 
     /// Returns the number of write cycles beyond which the device counts as worn.
     fn wear_limit(&self) -> u64 {
-        self.head().wear_limit
+        self.header().wear_limit
     }
 }
 
 /// A plan with its kind of change and the wear of the device.
-pub struct PlanHeader<'p, P: Planned + ?Sized> {
+pub struct PlanHeader<'p, P: PlannedWrite + ?Sized> {
     /// Plan to write.
     pub plan: &'p Plan<P::Base, P::Op>,
     /// Kind of change that the plan makes.
@@ -133,32 +133,32 @@ pub struct PlanHeader<'p, P: Planned + ?Sized> {
 
 /// The error of a write that did not begin or was interrupted. It is the device's error if the base has changed.
 type WritePlanError<P, W, E> =
-    JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
+    JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWriteOf<W>, <P as PlannedWrite>::Kind>;
 
 /// Writes a plan to which the user has consented. Each operation is reported before it begins. A plan without
 /// operations succeeds.
 ///
 /// # Errors
 /// Returns a [`JobError`] if the write did not begin or was not completed.
-pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
+pub fn write_plan<P: PlannedWrite, W: Write<Base = P::Base, Op = P::Op>, E>(
     store: &Store,
     is_virtual: bool,
     agreed: &ApprovedPlan<P>,
     write: &mut W,
     tell: &mut dyn FnMut(Progress<&P::Op>),
-) -> Result<Committed<W::Written>, WritePlanError<P, W, E>> {
+) -> Result<CommitResult<W::Written>, WritePlanError<P, W, E>> {
     let ApprovedPlan { prepared, consent, force_wear } = agreed;
     let plan = prepared.plan();
     if plan.is_empty() {
-        return Ok(Committed::default());
+        return Ok(CommitResult::default());
     }
     let (cost, planned) = (plan.write_cycles(), plan.ops.len());
     check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), *force_wear)?;
     let confirmed =
-        Confirmed::confirm(plan, *consent, write).ok_or(NotStarted::OtherPlan)?.map_err(JobError::Device)?;
+        ConfirmedPlan::confirm(plan, *consent, write).ok_or(NotStarted::OtherPlan)?.map_err(JobError::Device)?;
     let items = plan.ops.iter().flat_map(|op| prepared.changed_items(op)).collect();
     let intent = Intent { kind: prepared.entry_kind(), items, planned_cycles: cost, backup: None };
-    let intended = WriteIntent::note(store, &prepared.device(is_virtual), intent, &prepared.before_image());
+    let intended = WriteIntent::record(store, &prepared.device(is_virtual), intent, &prepared.before_image());
     let intended = intended.map_err(NotStarted::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
@@ -172,7 +172,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     };
     let (backup, logbook_warning) = intended.record_outcome(outcome, spent);
     match ended {
-        Ok(written) => Ok(Committed { written, backup: Some(backup), logbook_warning }),
+        Ok(written) => Ok(CommitResult { written, backup: Some(backup), logbook_warning }),
         Err(interrupted) => {
             if let Some(why) = logbook_warning {
                 tracing::warn!("{why}");
@@ -191,7 +191,7 @@ pub fn backup_document(body: Body) -> ProfileDocument {
 
 /// Returns the minimum total of write cycles of a device after `cost` more. Returns `None` if `cost` is zero or the
 /// total is below `warning`.
-pub(crate) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
+pub(crate) fn total_cycles_to_report(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.unwrap_or(0).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
 }
@@ -232,7 +232,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 
 impl WriteIntent {
     /// Saves the before-image and records the intended write in the logbook.
-    fn note(store: &Store, device: &DeviceKey, intent: Intent, before: &str) -> Result<Self, FileError> {
+    fn record(store: &Store, device: &DeviceKey, intent: Intent, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intent = Intent { backup: Some(backup.clone()), ..intent };
         let intend = |mut logbook: Logbook| {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::NotStarted;
-use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
+use crate::profile::{DeviceError, InterruptedWrite, OperationError, WriteRecord};
 
 /// The reason why a job ended early, for any kind of device.
 pub trait JobInterruption {
@@ -21,7 +21,7 @@ pub trait JobInterruption {
     }
 }
 
-/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`Interrupted`]
+/// The reason why a job ended early. `E` are the errors of the device, `P` those of planning, `I` is an [`InterruptedWrite`]
 /// write, and `K` the kind of change.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
@@ -48,7 +48,9 @@ pub enum JobError<E, P, I, K> {
     },
 }
 
-impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K> {
+impl<P, Op, E: OperationError, Done: WriteRecord, Left, K>
+    JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
+{
     /// Returns the error of the device or its connection, whether or not the device had been written to.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
@@ -59,7 +61,7 @@ impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P
     }
 }
 
-impl<P, Op, E, Done, Left, K> JobInterruption for JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K>
+impl<P, Op, E, Done, Left, K> JobInterruption for JobError<E::Device, P, InterruptedWrite<Op, E, Done, Left>, K>
 where
     E: OperationError<Device: DeviceError>,
     Done: WriteRecord,
@@ -70,7 +72,7 @@ where
 
     fn done(&self) -> Option<usize> {
         match self {
-            JobError::Interrupted { interrupted, .. } => Some(interrupted.done.ops()),
+            JobError::Interrupted { interrupted, .. } => Some(interrupted.done.operation_count()),
             JobError::Device(_) | JobError::Plan(_) | JobError::NotStarted(_) => None,
         }
     }

@@ -204,7 +204,7 @@ fn only_the_window_and_the_command_line_give_consent() {
 /// well.
 #[test]
 fn only_write_plan_confirms_a_plan() {
-    let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("Confirmed::confirm("));
+    let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("ConfirmedPlan::confirm("));
     let found: Vec<String> = sources().into_iter().filter(confirms).map(|source| source.path).collect();
     assert_eq!(found, ["src/worker/commit.rs"]);
 }

@@ -307,8 +307,8 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
         let mut session = session(&bench, &foreign, "");
         let motion = session.motion();
         session.run_inline(HiperdriveJob::Take).unwrap_or_else(|why| panic!("{options:?}: {why}"));
-        comes("what the drives say", || motion.view().link.received > 3);
-        let view = motion.view();
+        comes("what the drives say", || motion.snapshot().link.received > 3);
+        let view = motion.snapshot();
         assert!(view.open && view.lost.is_none(), "{options:?}: {view:?}");
         assert!(view.drives.iter().all(|own| own.actual.position == 4711), "{options:?}: {view:?}");
         let drives: Vec<u8> = view.drives.iter().map(|own| own.number.get()).collect();
@@ -344,12 +344,12 @@ fn temperatures_are_read_through_the_parameter_words() {
         let mut session = session(&bench, &foreign, "");
         let motion = session.motion();
         session.run_inline(HiperdriveJob::Take).unwrap();
-        comes("what the drive says", || motion.view().link.received > 3);
+        comes("what the drive says", || motion.snapshot().link.received > 3);
         let mut watch = |what, celsius| {
             let Watched::Sample(Sample::Temperature(reading)) = session.watch_value(&what).unwrap() else { panic!() };
             assert_eq!(reading.celsius, Some(celsius), "{options:?}");
         };
-        let readings = || motion.view().parameters;
+        let readings = || motion.snapshot().parameters;
         comes("both readings", || {
             watch(Temperature::Device, 29);
             watch(Temperature::Drive(DriveNumber::FIRST), 33);
@@ -382,9 +382,9 @@ fn another_master_is_reported_and_a_lost_target_ends_the_connection() {
     let error = session(&bench, &foreign, "").run_inline(HiperdriveJob::Take).unwrap_err();
     assert!(matches!(error, JobError::Device(Error::OtherMaster { extended: 0x0100 })), "{error}");
     let motion = first.motion();
-    comes("what the drive says", || motion.view().link.received > 3);
+    comes("what the drive says", || motion.snapshot().link.received > 3);
     foreign.kill();
-    comes("the loss", || motion.view().lost.is_some());
+    comes("the loss", || motion.snapshot().lost.is_some());
     assert!(first.sample().is_err() && !motion.is_open());
 }
 
@@ -395,7 +395,7 @@ fn dropping_a_session_stops_its_connection() {
     let mut session = session(&bench, &foreign, "");
     session.run_inline(HiperdriveJob::Take).unwrap();
     let motion = session.motion();
-    comes("what the drive says", || motion.view().link.received > 3);
+    comes("what the drive says", || motion.snapshot().link.received > 3);
     drop(session);
     comes("the end", || !motion.is_open());
     let mut log = foreign.requests();

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::ConnectionLoss;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest, SpeedTorque};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionRequest, SpeedTorque};
 use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, Percent, State};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, Session, Worker};
@@ -125,9 +125,9 @@ impl Host {
         while drive.actual().speed <= 100 {
             assert!(Instant::now() < until, "it does not move: {:?}", self.motion);
             // A busy computer may have delayed the refreshes.
-            let over = self.motion.view().drives[0].ended.is_some_and(|(number, _)| number >= act);
+            let over = self.motion.snapshot().drives[0].ended.is_some_and(|(number, _)| number >= act);
             if act == 0 || over {
-                act = self.motion.intend(DriveNumber::FIRST, JOG);
+                act = self.motion.request_motion(DriveNumber::FIRST, JOG);
             }
             self.motion.refresh();
             sleep(Duration::from_millis(5));
@@ -135,8 +135,8 @@ impl Host {
         self.motion.refresh();
     }
 
-    fn ended(&self) -> Option<Ended> {
-        self.motion.view().drives[0].ended.map(|(_, ended)| ended)
+    fn ended(&self) -> Option<ActionEnd> {
+        self.motion.snapshot().drives[0].ended.map(|(_, ended)| ended)
     }
 }
 
@@ -147,7 +147,7 @@ fn a_frozen_window_stops_the_drive() {
     host.jogs(&mut drive);
     // No further report is sent.
     drive.stops_within(FROZEN + WATCHDOG);
-    assert_eq!(host.ended(), Some(Ended::Stale));
+    assert_eq!(host.ended(), Some(ActionEnd::Stale));
     // A returned window with the same button still pressed causes no motion.
     let stood = drive.actual().position;
     host.holds(Duration::from_millis(500));
@@ -156,7 +156,7 @@ fn a_frozen_window_stops_the_drive() {
     host.jogs(&mut drive);
     host.motion.stop();
     drive.stops_within(WATCHDOG);
-    assert_eq!(host.ended(), Some(Ended::Stopped));
+    assert_eq!(host.ended(), Some(ActionEnd::Stopped));
 }
 
 /// The window is closed: the session is dropped.
@@ -167,7 +167,7 @@ fn closing_the_session_stops_the_drive() {
     host.jogs(&mut drive);
     assert!(host.worker.close(Duration::from_secs(5)));
     drive.stops_within(Duration::ZERO);
-    assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault: it was told");
+    assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault: it was told");
     // The drive is free: the next host may take it.
     let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     assert!(next.motion.is_open());
@@ -190,7 +190,7 @@ fn a_cut_parameter_connection_stops_the_drive() {
     });
     drive.stops_within(Duration::from_millis(500) + WATCHDOG);
     held.join().unwrap();
-    assert_eq!(host.motion.view().lost, Some(ConnectionLoss::Session));
+    assert_eq!(host.motion.snapshot().lost, Some(ConnectionLoss::Session));
 }
 
 #[test]
@@ -215,11 +215,11 @@ fn cut_packet_wires_stop_the_drive() {
             assert!(Instant::now() < until, "{ways:?}: the loss is not noticed");
             sleep(Duration::from_millis(10));
         }
-        assert!(matches!(host.motion.view().lost, Some(ConnectionLoss::Silent { .. })), "{ways:?}");
+        assert!(matches!(host.motion.snapshot().lost, Some(ConnectionLoss::Silent { .. })), "{ways:?}");
         // Restored: it remains stopped, even if the button is held.
         ways.iter().for_each(|way| wires.restore(*way));
         let stood = drive.actual().position;
-        host.motion.intend(DriveNumber::FIRST, JOG);
+        host.motion.request_motion(DriveNumber::FIRST, JOG);
         host.holds(Duration::from_millis(500));
         assert_eq!(drive.actual().position, stood);
     }
@@ -237,7 +237,7 @@ fn a_release_stops_the_drive_during_a_flood() {
     host.motion.stop();
     drive.stops_within(WATCHDOG + FROZEN);
     assert!(flood.end() > 1000);
-    let figures = host.motion.view().link;
+    let figures = host.motion.snapshot().link;
     assert!(figures.malformed > 0, "{figures:?}");
 }
 
@@ -281,7 +281,7 @@ fn an_interrupt_stops_the_drive() {
     let ran = ended(child, Instant::now());
     let position = drive.actual().position.to_string();
     ran.fails(1, &["stopped", &position]);
-    assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault");
+    assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "off, and no fault");
 }
 
 /// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog
@@ -298,6 +298,6 @@ fn terminating_signals_stop_the_drive() {
         drive.stops_within(WATCHDOG);
         let ran = ended(child, Instant::now());
         assert!(ran.status.is_some_and(|status| status != 0), "{name}: {ran:?}");
-        assert_eq!(drive.actual().status.word() & 0x000F, 0, "{name}, {times} times: off, and no fault");
+        assert_eq!(drive.actual().status.to_u16() & 0x000F, 0, "{name}, {times} times: off, and no fault");
     }
 }

@@ -7,7 +7,7 @@ mod model;
 mod watch;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Ended, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal, SpeedTorque, TargetState,
+    ActionEnd, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
 use encoder_studio::devices::hiperdrive::sim::SpindleLoad;
@@ -18,7 +18,7 @@ const FULL: SpeedTorque = SpeedTorque { speed: Percent::FULL, torque: Percent::F
 const TURN: i32 = 65_536;
 
 fn jog(direction: Direction) -> MotionRequest {
-    MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward: false }
+    MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward: false }
 }
 
 fn run_endless() -> MotionRequest {
@@ -42,16 +42,16 @@ fn the_published_words_move_to_a_target() {
     bench.run(50);
     assert_eq!(words(&mut bench), "0000");
     bench.act(to(163_840));
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(words(&mut bench), "0000 0400 0401 0409 0439 0479 0449");
     assert_eq!((bench.position(), bench.man.phase()), (163_840, Phase::Idle));
     bench.run(100);
     bench.act(MotionRequest::Step { by: -TURN, effort: FULL });
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(words(&mut bench), "0449 0479 0439 0409");
     assert_eq!(bench.position(), 163_840 - TURN);
     bench.act(MotionRequest::Lead(TargetState::Off));
-    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!(bench.until_over(), ActionEnd::Done);
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
 
@@ -60,7 +60,7 @@ fn the_published_words_move_to_a_target() {
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(TargetState::Enabled));
-    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!(bench.until_over(), ActionEnd::Done);
     words(&mut bench);
     for (direction, sent, sign) in [
         (Direction::Clockwise, "0409 1419 1459 1419 0400", 1),
@@ -75,14 +75,17 @@ fn a_jog_runs_while_it_is_held() {
         );
         // 10 % of 35 rpm, in tenths.
         assert_eq!(bench.actual().speed, sign * 35);
-        assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+        assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
         bench.act(MotionRequest::Stop);
         bench.run(500);
         assert_eq!(words(&mut bench), sent);
-        assert_eq!((bench.man.phase(), bench.man.ended().map(|ended| ended.1)), (Phase::Idle, Some(Ended::Stopped)));
+        assert_eq!(
+            (bench.man.phase(), bench.man.last_end().map(|ended| ended.1)),
+            (Phase::Idle, Some(ActionEnd::Stopped))
+        );
         let stood = bench.position();
         assert!(stood * i32::from(sign) > 0 || sign < 0, "{stood}");
-        assert_eq!(bench.man.sent().target, stood, "the target is where it stands");
+        assert_eq!(bench.man.last_setpoint().target, stood, "the target is where it stands");
         bench.run(1000);
         assert_eq!((bench.position(), bench.status()), (stood, 0x2A31));
     }
@@ -103,7 +106,7 @@ fn repeated_jogs_never_start_a_job() {
     bench.run(2000);
     assert_eq!((bench.position(), bench.man.phase()), (stood, Phase::Idle));
     bench.act(to(stood + 1000));
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(bench.position(), stood + 1000);
 }
 
@@ -115,19 +118,19 @@ fn a_job_can_be_paused_and_resumed() {
     let pause = bench.act(MotionRequest::Pause);
     bench.run(300);
     assert_eq!(bench.man.phase(), Phase::Paused { target: 3 * TURN });
-    assert_eq!((bench.status() & 0x2000, bench.man.act()), (0x2000, pause));
-    assert!(job < pause && bench.man.ended().is_none());
+    assert_eq!((bench.status() & 0x2000, bench.man.action_number()), (0x2000, pause));
+    assert!(job < pause && bench.man.last_end().is_none());
     let waited = bench.position();
     bench.run(1000);
     assert_eq!(bench.position(), waited);
     bench.act(MotionRequest::Resume);
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
     assert_eq!(bench.position(), 3 * TURN);
     // There is nothing to pause or resume now.
     bench.act(MotionRequest::Pause);
-    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToPause));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToPause));
     bench.act(MotionRequest::Resume);
-    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
     // A waiting job that is stopped is discarded.
     bench.act(to(0));
     bench.run(1000);
@@ -136,7 +139,7 @@ fn a_job_can_be_paused_and_resumed() {
     bench.act(MotionRequest::Stop);
     bench.run(300);
     bench.act(MotionRequest::Resume);
-    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::NothingToResume));
     // A jog is not paused but ended.
     bench.act(jog(Direction::Clockwise));
     bench.run(500);
@@ -149,30 +152,40 @@ fn a_job_can_be_paused_and_resumed() {
 #[test]
 fn invalid_requests_are_refused() {
     let none = SpeedTorque { speed: Percent::NONE, ..FULL };
-    let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), ..Permit::within(0, 0) };
+    let permit = |limits, locks: &[MotionLock]| Permit { limits, locks: locks.to_vec(), ..Permit::for_range(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
-    let outside = |target| Refusal::Outside { target, low: -TURN, high: TURN };
+    let outside = |target| MotionRefusal::Outside { target, low: -TURN, high: TURN };
     for (label, wish, permit, refusal) in [
-        ("not read", to(1), Permit::default(), Refusal::Locked(Lock::Unread)),
-        ("limits not read", to(1), permit(None, &[]), Refusal::Locked(Lock::Unread)),
+        ("not read", to(1), Permit::default(), MotionRefusal::Locked(MotionLock::Unread)),
+        ("limits not read", to(1), permit(None, &[]), MotionRefusal::Locked(MotionLock::Unread)),
         (
             "no time-out",
             jog(Direction::Clockwise),
-            permit(Some((0, 9)), &[Lock::NoTimeout]),
-            Refusal::Locked(Lock::NoTimeout),
+            permit(Some((0, 9)), &[MotionLock::NoTimeout]),
+            MotionRefusal::Locked(MotionLock::NoTimeout),
         ),
-        ("limits", to(1), permit(Some((0, 9)), &[Lock::LimitsUnconfirmed]), Refusal::Locked(Lock::LimitsUnconfirmed)),
-        ("not requested", to(1), permit(Some((0, 9)), &[Lock::NotRequested]), Refusal::Locked(Lock::NotRequested)),
+        (
+            "limits",
+            to(1),
+            permit(Some((0, 9)), &[MotionLock::LimitsUnconfirmed]),
+            MotionRefusal::Locked(MotionLock::LimitsUnconfirmed),
+        ),
+        (
+            "not requested",
+            to(1),
+            permit(Some((0, 9)), &[MotionLock::NotRequested]),
+            MotionRefusal::Locked(MotionLock::NotRequested),
+        ),
         ("above", to(TURN + 1), free(), outside(TURN + 1)),
         ("below", to(i32::MIN), free(), outside(i32::MIN)),
         ("a step beyond", MotionRequest::Step { by: i32::MAX, effort: FULL }, free(), outside(i32::MAX)),
-        ("no speed", MotionRequest::Move { target: 1, effort: none }, free(), Refusal::NoEffort),
-        ("endless", run_endless(), free(), Refusal::Endless),
+        ("no speed", MotionRequest::Move { target: 1, effort: none }, free(), MotionRefusal::NoEffort),
+        ("endless", run_endless(), free(), MotionRefusal::Endless),
     ] {
         let mut bench = Bench::new();
         bench.permit = permit;
         bench.act(wish);
-        assert_eq!(bench.until_over(), Ended::Refused(refusal), "{label}");
+        assert_eq!(bench.until_over(), ActionEnd::Refused(refusal), "{label}");
         bench.run(500);
         assert_eq!((words(&mut bench).as_str(), bench.position()), ("0000", 0), "{label}");
     }
@@ -192,22 +205,22 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     bench.run(1000);
     words(&mut bench);
     bench.fail(ErrorCode::OVER_CURRENT);
-    assert_eq!(bench.until_over(), Ended::Fault);
+    assert_eq!(bench.until_over(), ActionEnd::Fault);
     bench.run(1000);
     assert_eq!(words(&mut bench), "0479 0469 0401");
     let stood = bench.position();
     bench.act(to(0));
-    assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Fault));
     bench.act(MotionRequest::Lead(TargetState::Enabled));
-    assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
+    assert_eq!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Fault));
     words(&mut bench);
     bench.act(MotionRequest::Acknowledge);
-    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!(bench.until_over(), ActionEnd::Done);
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0401 0481 0401 0400", 0x2A31));
     bench.run(1000);
     assert_eq!(bench.position(), stood);
     bench.act(to(0));
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
 }
 
 /// An obstacle blocks the drive.
@@ -216,7 +229,7 @@ fn a_blocked_drive_ends_the_motion() {
     let mut bench = Bench::new();
     bench.load(SpindleLoad { wall_above: Some(f64::from(TURN)), ..SpindleLoad::default() });
     bench.act(to(2 * TURN));
-    assert_eq!(bench.until_over(), Ended::Fault);
+    assert_eq!(bench.until_over(), ActionEnd::Fault);
     assert_eq!(bench.position(), TURN);
 }
 
@@ -226,12 +239,12 @@ fn a_run_ends_at_the_end_of_the_range() {
     let mut bench = Bench::new();
     bench.write(160, TURN.into());
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
-    assert_eq!(bench.until_over(), Ended::RangeEnd);
+    assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
     bench.run(500);
     assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A31, Phase::Idle));
     // Again, with no range left.
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
-    assert_eq!(bench.until_over(), Ended::RangeEnd);
+    assert_eq!(bench.until_over(), ActionEnd::RangeEnd);
 }
 
 /// Switch S3 points to a drive: the commands on the bus have no effect.
@@ -241,7 +254,7 @@ fn an_unresponsive_drive_is_reported() {
     bench.station.set_s3(bench.now, 1);
     bench.act(to(TURN));
     let ended = bench.until_over();
-    assert!(matches!(ended, Ended::NoAnswer(_)), "{ended:?}");
+    assert!(matches!(ended, ActionEnd::NoAnswer(_)), "{ended:?}");
     bench.station.set_s3(bench.now, 0);
     bench.run(3000);
     assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
@@ -257,7 +270,7 @@ fn a_restarted_drive_does_not_resume_its_job() {
         // 47 = -4: the drives are reset, and the connection stays.
         bench.write(47, -4);
         let ended = bench.until_over();
-        assert!(matches!(ended, Ended::Left(_) | Ended::NoAnswer(_)), "{after} ms: {ended:?}");
+        assert!(matches!(ended, ActionEnd::Left(_) | ActionEnd::NoAnswer(_)), "{after} ms: {ended:?}");
         let stood = bench.position();
         bench.run(3000);
         assert_eq!(bench.position(), stood, "{after} ms");

@@ -6,7 +6,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::devices::hiperdrive::procedures::DiscoveredDevice;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, TargetState};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
 };
@@ -221,15 +221,15 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
         own.session.is_ready() && own.session.phase == Phase::Connected && own.moves.motion().is_some()
     });
     until_read(&mut desk);
-    assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "also over a connection");
+    assert!(unit(&desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed), "also over a connection");
     desk.settle();
     let mut desk = desk.crash();
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
-    assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "and over a crash");
+    assert!(unit(&desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed), "and over a crash");
     drive(&mut desk, Motor::ConfirmLimits(ONE));
-    assert!(unit(&desk).limits_to_confirm(ONE).is_none() && unit(&desk).moves.locks(ONE).is_empty());
+    assert!(unit(&desk).limits_to_confirm(ONE).is_none() && unit(&desk).moves.motion_locks(ONE).is_empty());
 }
 
 #[test]

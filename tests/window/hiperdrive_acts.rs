@@ -6,7 +6,7 @@ use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Severity, Studio};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Ended;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::ActionEnd;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 
@@ -14,14 +14,14 @@ use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
 /// Returns how the last act of a drive ended, with its number.
-pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, Ended)> {
+pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, ActionEnd)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
 
 /// Returns whether an act of a drive has ended since then because it was no longer refreshed.
-pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, Ended)>) -> bool {
+pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, ActionEnd)>) -> bool {
     let end = last_end(studio, drive);
-    end != since && matches!(end, Some((_, Ended::Stale)))
+    end != since && matches!(end, Some((_, ActionEnd::Stale)))
 }
 
 /// Number of repetitions of a lapsed act.
@@ -149,7 +149,7 @@ pub(crate) fn hold_pad_until(
         drive(desk, Motor::JogRelease);
         desk.until("it stands", |studio| !studio.moves());
         let end = last_end(&desk.studio, shown);
-        assert!(end != before && matches!(end, Some((_, Ended::Stale))), "never: {what}: {before:?}, then {end:?}");
+        assert!(end != before && matches!(end, Some((_, ActionEnd::Stale))), "never: {what}: {before:?}, then {end:?}");
     }
     panic!("never: {what}: it has lapsed {ATTEMPTS} times");
 }

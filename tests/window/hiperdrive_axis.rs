@@ -84,7 +84,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
     target.with(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
     let motion = unit(&desk).moves.motion().unwrap().clone();
     let began = std::time::Instant::now();
-    while motion.permitted(DriveNumber::FIRST).limits != Some((-204_400, 1000)) {
+    while motion.motion_permit(DriveNumber::FIRST).limits != Some((-204_400, 1000)) {
         assert!(began.elapsed() < crate::support::LONG, "nobody looks at the limits");
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
@@ -156,11 +156,11 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
         (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
         held_until(&mut desk, press, "it turns", |own| own.moves.held_jog(own.drive()).is_some());
-        let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
+        let sent = unit(&desk).moves.last_setpoint(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
         until_stopped(&mut desk);
-        assert_eq!(unit(&desk).moves.jog_effort(unit(&desk).drive()), chosen);
+        assert_eq!(unit(&desk).moves.jog_speed_torque(unit(&desk).drive()), chosen);
     }
 }
 

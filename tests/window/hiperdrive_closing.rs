@@ -20,7 +20,7 @@ fn drive_state(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| {
         let status = station.drive(ONE).unwrap().actual(Moment::default()).status;
-        (status.state(), status.has(StatusBit::StandingStill), station.is_open(Moment::default()))
+        (status.state(), status.is_set(StatusBit::StandingStill), station.is_open(Moment::default()))
     })
 }
 
@@ -106,8 +106,8 @@ fn drives_are_released_without_the_window() {
     let desk = moving();
     let brakes = desk.studio.brakes();
     assert!(!brakes.is_done() && !brakes.has_begun());
-    brakes.begin();
-    assert!(brakes.wait(LONG) && brakes.has_begun());
+    brakes.begin_stop();
+    assert!(brakes.wait_for_disconnect(LONG) && brakes.has_begun());
     until_let_go(&desk);
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }

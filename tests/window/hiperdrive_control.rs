@@ -7,7 +7,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, State, Value};
 use encoder_studio::devices::hiperdrive::state::axis::{AxisAction as Run, AxisButton};
 use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor, Unit};
@@ -71,7 +71,7 @@ fn limits_set_by_another_master_under_control_are_read_and_applied() {
         let own = studio.hiperdrive().unwrap();
         own.limits(ONE) == Some((-33_488_896, 65_536)) && own.session.is_ready()
     });
-    assert!(unit(&desk).moves.locks(ONE).is_empty());
+    assert!(unit(&desk).moves.motion_locks(ONE).is_empty());
     drive(&mut desk, Motor::Move { target: 65_537 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
@@ -96,7 +96,9 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
     // 400 steps per turn instead of 65536.
     set(&desk, 154, 400);
     set(&desk, 156, 256);
-    desk.until("it is locked", |studio| studio.hiperdrive().unwrap().moves.locks(ONE) == [Lock::LimitsUnconfirmed]);
+    desk.until("it is locked", |studio| {
+        studio.hiperdrive().unwrap().moves.motion_locks(ONE) == [MotionLock::LimitsUnconfirmed]
+    });
     // Limits read before cannot be confirmed.
     drive(&mut desk, Motor::ConfirmLimits(ONE));
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
@@ -104,7 +106,7 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && (own.number(ONE, 154), own.number(ONE, 156)) == (Some(400), Some(256))
     });
-    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
+    assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::LimitsUnconfirmed]);
     drive(&mut desk, Motor::Step { by: 4 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
     // Again, before the confirmation: the limits keep their numbers, and are at other places again.
@@ -113,15 +115,15 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.number(ONE, 154) == Some(100)
     });
-    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
+    assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::LimitsUnconfirmed]);
     desk.settle();
     drive(&mut desk, Motor::ConfirmLimits(ONE));
-    assert!(unit(&desk).moves.locks(ONE).is_empty());
+    assert!(unit(&desk).moves.motion_locks(ONE).is_empty());
     drive_until(
         &mut desk,
         |_| Motor::Step { by: 4 },
         "it moves",
-        |studio| studio.hiperdrive().unwrap().moves.view().drives.iter().any(|own| own.act > 0),
+        |studio| studio.hiperdrive().unwrap().moves.snapshot().drives.iter().any(|own| own.act > 0),
     );
 }
 

@@ -41,18 +41,21 @@ fn settings_of_one_drive_do_not_apply_to_another() {
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     until_free(&mut desk, two());
     let moves = &unit(&desk).moves;
-    assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (SpeedTorque::MOVE, SpeedTorque::JOG));
+    assert_eq!(
+        (moves.move_speed_torque(two()), moves.jog_speed_torque(two())),
+        (SpeedTorque::DEFAULT_MOVE, SpeedTorque::DEFAULT_JOG)
+    );
     assert_eq!((moves.allows_endless_run(ONE), moves.allows_endless_run(two())), (true, false));
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.endless"]);
     let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(own.drive()).unwrap().position };
     drive_until(&mut desk, to_64, "it has been sent", |studio| {
-        studio.hiperdrive().unwrap().moves.sent(two()).is_some_and(|own| own.target == 64)
+        studio.hiperdrive().unwrap().moves.last_setpoint(two()).is_some_and(|own| own.target == 64)
     });
-    let sent = unit(&desk).moves.sent(two()).unwrap();
+    let sent = unit(&desk).moves.last_setpoint(two()).unwrap();
     assert_eq!((sent.speed.get(), sent.torque.get()), (25, 100), "as a step usually is");
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
-    assert_eq!((unit(&desk).moves.move_effort(ONE), unit(&desk).moves.jog_effort(ONE)), (slow, slow));
+    assert_eq!((unit(&desk).moves.move_speed_torque(ONE), unit(&desk).moves.jog_speed_torque(ONE)), (slow, slow));
 }
 
 /// Issue 21.7: a second motion is refused with a message, and ends no running one, for any drive.
@@ -159,16 +162,17 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
     until_free(&mut desk, ONE);
     let (before, after) = (
-        SpeedTorque { speed: percent(40), ..SpeedTorque::MOVE },
-        SpeedTorque { speed: percent(20), ..SpeedTorque::MOVE },
+        SpeedTorque { speed: percent(40), ..SpeedTorque::DEFAULT_MOVE },
+        SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE },
     );
-    assert_eq!(unit(&desk).moves.running_move_effort(ONE), None);
+    assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), None);
     drive(&mut desk, Motor::MoveEffort(before));
     let seen = while_it_moves(&mut desk, |desk| {
         drive(desk, Motor::MoveEffort(after));
         desk.settle();
         let moves = &unit(desk).moves;
-        let seen = (moves.move_effort(ONE), moves.running_move_effort(ONE), moves.running_jog_effort(ONE));
+        let seen =
+            (moves.move_speed_torque(ONE), moves.running_move_speed_torque(ONE), moves.running_jog_speed_torque(ONE));
         // For another attempt.
         drive(desk, Motor::MoveEffort(before));
         seen
@@ -178,7 +182,7 @@ fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
     drive_until(&mut desk, |_| Motor::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
-    assert_eq!(unit(&desk).moves.running_move_effort(ONE), Some(after));
+    assert_eq!(unit(&desk).moves.running_move_speed_torque(ONE), Some(after));
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
 }
@@ -222,7 +226,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     for _ in 0..20 {
         screen.act(own(Hiperdrive::SelectDrive(ONE)));
         screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.moves());
-        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(SpeedTorque::MOVE))));
+        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(SpeedTorque::DEFAULT_MOVE))));
         screen.act(own(Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
         screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.moves());
         screen.act(own(then()));
@@ -279,7 +283,7 @@ fn drive_buttons_show_the_drive_states() {
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();
-    let slower = Motor::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::MOVE });
+    let slower = Motor::MoveEffort(SpeedTorque { speed: percent(20), ..SpeedTorque::DEFAULT_MOVE });
     let waits = "sent: 25 %";
     assert!(!screen.shows(waits));
     assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));

@@ -78,7 +78,7 @@ fn pads_state_and_travel_are_seen_together() {
 #[test]
 fn a_preset_sets_the_speed_and_begins_nothing() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);
-    let speed = |screen: &Screen| screen.studio().hiperdrive().unwrap().moves.jog_effort(ONE).speed.get();
+    let speed = |screen: &Screen| screen.studio().hiperdrive().unwrap().moves.jog_speed_torque(ONE).speed.get();
     assert_eq!(speed(&screen), 10);
     for percent in ["1", "50", "100", "10"] {
         preset(&screen, percent).click();
@@ -87,7 +87,7 @@ fn a_preset_sets_the_speed_and_begins_nothing() {
         assert_eq!(typed_speed(&screen).accesskit_node().value().unwrap_or_default(), percent);
         assert!(!screen.studio().is_motion_active() && !screen.studio().moves(), "{percent}");
     }
-    let torque = screen.studio().hiperdrive().unwrap().moves.jog_effort(ONE).torque.get();
+    let torque = screen.studio().hiperdrive().unwrap().moves.jog_speed_torque(ONE).torque.get();
     assert_eq!(torque, 25);
     typed_speed(&screen).focus();
     screen.steps();
@@ -106,12 +106,12 @@ fn every_connection_begins_slowly() {
     let mut desk = in_control("sim:");
     let fast = SpeedTorque { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, Motor::JogEffort(fast));
-    assert_eq!(unit(&desk).moves.jog_effort(ONE), fast);
+    assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), fast);
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected again", |studio| {
         studio.hiperdrive().is_some_and(|own| own.session.is_ready() && !own.moves.is_open())
     });
-    assert_eq!(unit(&desk).moves.jog_effort(ONE), SpeedTorque::JOG);
+    assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
 }
 
 /// Issue 26.2: limits, position and target in the user's unit; outside the limits the way back in.

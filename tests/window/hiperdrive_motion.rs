@@ -7,7 +7,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Action, Language, Severity, Studio, connect};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, SpeedTorque, TargetState};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
 };
@@ -26,7 +26,7 @@ fn status(desk: &Desk) -> StatusWord {
 }
 
 fn is_at_standstill(desk: &Desk) -> bool {
-    status(desk).has(StatusBit::StandingStill)
+    status(desk).is_set(StatusBit::StandingStill)
 }
 
 /// Returns a studio in control of the drives of a virtual device.
@@ -69,10 +69,10 @@ fn until_standstill(desk: &Desk) {
 fn a_jog_turns_the_drive_while_it_is_held() {
     let mut desk = in_control("sim:");
     assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
-    assert_eq!(unit(&desk).moves.jog_effort(ONE), SpeedTorque::JOG);
+    assert_eq!(unit(&desk).moves.jog_speed_torque(ONE), SpeedTorque::DEFAULT_JOG);
     jog(&mut desk);
     assert!(desk.studio.moves() && !is_at_standstill(&desk));
-    let sent = unit(&desk).moves.sent(ONE).unwrap();
+    let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
     assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
     drive(&mut desk, Motor::JogRelease);
     assert!(!unit(&desk).moves.is_held(), "at once");
@@ -107,7 +107,7 @@ fn a_frozen_window_stops_motion() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
     until_standstill(&desk);
-    assert!(status(&desk).has(StatusBit::StandingStill) && !status(&desk).has(StatusBit::TargetReached));
+    assert!(status(&desk).is_set(StatusBit::StandingStill) && !status(&desk).is_set(StatusBit::TargetReached));
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn hiding_the_jog_pad_ends_a_jog_immediately() {
         while !target
             .with(|station| station.drive(ONE).unwrap().actual(Moment::default()))
             .status
-            .has(StatusBit::StandingStill)
+            .is_set(StatusBit::StandingStill)
         {
             assert!(began.elapsed() < LONG, "{what}: it still moves");
             std::thread::sleep(Duration::from_millis(1));
@@ -267,14 +267,14 @@ fn states_can_be_requested_and_a_fault_acknowledged() {
 #[test]
 fn locks_name_a_remedy() {
     let mut desk = in_control("sim:?hub=4&drives=1");
-    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NotRequested], "as a hub comes from the factory");
+    assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::NotRequested], "as a hub comes from the factory");
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.not_requested"]);
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Set(number(186), 255));
     assert!(matches!(unit(&desk).marks()[..], [Mark::NoTimeout { .. }]));
     write(&mut desk);
-    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NoTimeout]);
+    assert_eq!(unit(&desk).moves.motion_locks(ONE), [MotionLock::NoTimeout]);
 }
 
 #[test]
@@ -316,7 +316,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     target.with(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
     desk.until("it is outside", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.outside(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
+        own.out_of_range_position(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
     });
     let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
     let own = unit(&desk);
@@ -334,7 +334,7 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
         };
         let press = Motor::JogPress { direction: up, repeated: false };
         hold_pad_until(&mut desk, press, "it moves out", free, moves);
-        let sent = unit(&desk).moves.sent(ONE).unwrap();
+        let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
         assert!(unit(&desk).check_can_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
         drive(&mut desk, Motor::JogRelease);
@@ -361,7 +361,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");
     desk.until("what it says is known", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.outside(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
+        own.out_of_range_position(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
     });
     let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
     assert_eq!(unit(&desk).outside_limits_text(ONE).unwrap().id(), "hd_outside.unclear");
@@ -377,7 +377,7 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
         };
         let press = Motor::JogPress { direction: way, repeated: false };
         hold_pad_until(&mut desk, press, "it moves", free, moves);
-        let sent = unit(&desk).moves.sent(ONE).unwrap();
+        let sent = unit(&desk).moves.last_setpoint(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
         drive(&mut desk, Motor::JogRelease);
         desk.until("it stands", |studio| {

@@ -254,7 +254,7 @@ fn limits_are_confirmed_in_one_place() {
     }
     screen.act(Action::device(id, Hiperdrive::Take));
     screen.until("it is locked", |studio| {
-        is_ready(studio, true) && studio.hiperdrive().unwrap().moves.locks(ONE).len() == 2
+        is_ready(studio, true) && studio.hiperdrive().unwrap().moves.motion_locks(ONE).len() == 2
     });
     let confirm = screen.say("hd_limits.confirm");
     assert_eq!(screen.harness.query_all_by_label(&confirm).count(), 1);

@@ -9,7 +9,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::DriveSnapshot;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{OutputData, State};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
@@ -88,7 +88,7 @@ pub(crate) fn until_stopped(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
     let moves = |own: &DriveSnapshot| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;
-    while motion.view().drives.iter().any(moves) {
+    while motion.snapshot().drives.iter().any(moves) {
         assert!(began.elapsed() < LONG, "it does not stand");
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -181,7 +181,7 @@ fn a_click_after_the_page_stop_stops_nothing_else() {
 fn a_quick_second_click_on_pause_does_not_resume() {
     let mut screen = moving();
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
-    let phase = || motion.view().drives[0].phase;
+    let phase = || motion.snapshot().drives[0].phase;
     screen.until("it can be paused", |studio| {
         matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_)))
     });
@@ -216,8 +216,8 @@ fn escape_with_a_modifier_stops() {
         screen.harness.key_press_modifiers(modifiers, Key::Escape);
         screen.harness.step();
         until_stopped(&screen);
-        let ended = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().view().drives[0].ended;
-        assert!(matches!(ended, Some((_, Ended::Stopped))), "{modifiers:?}: {ended:?}");
+        let ended = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().snapshot().drives[0].ended;
+        assert!(matches!(ended, Some((_, ActionEnd::Stopped))), "{modifiers:?}: {ended:?}");
     }
 }
 
@@ -231,7 +231,7 @@ fn held_escape_stops_a_newly_started_motion() {
     screen.harness.key_down(Key::Escape);
     screen.until("it stands", |studio| !studio.moves());
     let ended = screen.studio().hiperdrive().unwrap().moves.drive(ONE).unwrap().ended;
-    assert!(matches!(ended, Some((_, Ended::Stopped))) && is_watched(&screen), "{ended:?}");
+    assert!(matches!(ended, Some((_, ActionEnd::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
 /// Returns a drive that is watched here, and moved by another master.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
 use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, StudioEnvironment};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, PositionUnit};
 use encoder_studio::kinds::program;
@@ -79,7 +79,7 @@ fn scale(desk: &mut Desk, numerator: i64) {
 }
 
 fn is_locked(desk: &Desk) -> bool {
-    unit(desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed)
+    unit(desk).moves.motion_locks(ONE).contains(&MotionLock::LimitsUnconfirmed)
 }
 
 /// Issue 21.11: settings are merged by key, however often the windows take turns.

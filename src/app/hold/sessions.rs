@@ -23,11 +23,11 @@ struct TestOperator {
     is_on_button: bool,
 }
 
-fn down(key: usize) -> HoldInput {
+fn key_down(key: usize) -> HoldInput {
     KEYS.get(key).map_or(HoldInput::OtherKey, |key| HoldInput::Down { key: *key, plain: true })
 }
 
-fn up(key: usize) -> Option<HoldInput> {
+fn key_up(key: usize) -> Option<HoldInput> {
     KEYS.get(key).map(|key| HoldInput::Up(*key))
 }
 
@@ -54,31 +54,31 @@ fn any_session_holds_only_what_a_person_has_pressed_since_the_last_change() {
                     let key = dice.usize(..=OTHER);
                     if hands.down[key].is_none() {
                         (hands.down[key], hands.last, acted) = (Some(now), Some(key), true);
-                        inputs.extend(scene.window.then(|| down(key)));
+                        inputs.extend(scene.window.then(|| key_down(key)));
                     }
                 }
                 5..=8 => {
                     let key = dice.usize(..=OTHER);
                     if hands.down[key].take().is_some() && scene.window {
-                        inputs.extend(up(key));
+                        inputs.extend(key_up(key));
                     }
                 }
                 9..=16 => {
                     if let Some(key) = hands.last.filter(|key| scene.window && hands.down[*key].is_some()) {
-                        match (dice.u8(..3), up(key)) {
-                            (0, Some(released)) => inputs.extend([released, down(key)]),
+                        match (dice.u8(..3), key_up(key)) {
+                            (0, Some(released)) => inputs.extend([released, key_down(key)]),
                             (1, Some(released)) => {
                                 inputs.push(released);
-                                late = Some(down(key));
+                                late = Some(key_down(key));
                             }
-                            _ => inputs.push(down(key)),
+                            _ => inputs.push(key_down(key)),
                         }
                     }
                 }
                 25 => {
                     scene.window = !scene.window;
                     if !scene.window {
-                        inputs.extend((0..OTHER).filter(|key| hands.down[*key].is_some()).filter_map(up));
+                        inputs.extend((0..OTHER).filter(|key| hands.down[*key].is_some()).filter_map(key_up));
                         late = None;
                     }
                     inputs.push(HoldInput::WindowFocus(scene.window));
@@ -100,9 +100,9 @@ fn any_session_holds_only_what_a_person_has_pressed_since_the_last_change() {
                 }
                 _ => {}
             }
-            state.begin(scene, follows);
-            inputs.iter().for_each(|input| state.take(now, *input));
-            let event = state.end(now, hands.down[POINTER].is_some(), hands.is_on_button);
+            state.begin_frame(scene, follows);
+            inputs.iter().for_each(|input| state.handle_input(now, *input));
+            let event = state.end_frame(now, hands.down[POINTER].is_some(), hands.is_on_button);
             let context = format!("seed {seed}, frame {frame}: {inputs:?}, {scene:?}");
             assert!(!state.is_held() || scene.enabled && scene.window, "{context}");
             assert!(event != Some(HoldEvent::Press) || acted, "{context}: nothing was pressed");

@@ -42,16 +42,16 @@ impl TestButton {
 
     fn picture(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
         self.now += self.apart;
-        self.state.begin(self.scene, self.follows);
+        self.state.begin_frame(self.scene, self.follows);
         for input in inputs {
             self.pointer = match input {
                 HoldInput::PointerDown { .. } => true,
                 HoldInput::PointerUp => false,
                 _ => self.pointer,
             };
-            self.state.take(self.now, *input);
+            self.state.handle_input(self.now, *input);
         }
-        self.state.end(self.now, self.pointer, true)
+        self.state.end_frame(self.now, self.pointer, true)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::app::review::{self, OperationTexts, Permit, Review, ReviewSheet, Revi
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
-use crate::worker::commit::Planned as _;
+use crate::worker::commit::PlannedWrite as _;
 use crate::worker::{self, Device, JobInterruption as _};
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
@@ -16,7 +16,7 @@ type Error<T> = <<T as HasSession>::Device as Device>::Error;
 type Change<T> = <<T as HasSession>::Device as Reviewable>::Change;
 type Op<T> = review::Op<<T as HasSession>::Device>;
 type Prepared<T> = <<T as HasSession>::Device as Reviewable>::Prepared;
-type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewable>::Written>;
+type Committed<T> = worker::CommitResult<<<T as HasSession>::Device as Reviewable>::Written>;
 
 /// A plan that the user has approved.
 pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewable>::Prepared>;

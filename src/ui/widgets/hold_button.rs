@@ -101,7 +101,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         keyboard: response.has_focus(),
         moving: around.moving && !state.is_held() || stop_debounce::has_recently_stopped(ui.ctx(), now),
     };
-    state.begin(scene, last + 1 == pass);
+    state.begin_frame(scene, last + 1 == pass);
     let place = response.interact_rect;
     let pressed_here = response.is_pointer_button_down_on();
     // All events count here in their order, even those that the window has hidden from the widgets.
@@ -113,14 +113,14 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
                 continue;
             }
             if let Some(what) = translate_event(event, place, pressed_here) {
-                state.take(now, what);
+                state.handle_input(now, what);
             }
         }
         modifiers = input.modifiers;
         let at = input.pointer.interact_pos();
         (input.pointer.any_down(), pressed_here && at.is_some_and(|at| place.contains(at)))
     });
-    let event = state.end(now, down, inside);
+    let event = state.end_frame(now, down, inside);
     if let Some(seconds) = state.repaint_delay() {
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }

@@ -1,7 +1,7 @@
 //! Tests of the steps of a write, and of the errors that prevent its first byte.
 
 use super::*;
-use crate::profile::Written;
+use crate::profile::WrittenChanges;
 
 /// A device that records its calls, and checks the files that exist at that moment.
 struct Spy {
@@ -59,10 +59,10 @@ impl Write for Spy {
     type Base = ();
     type Op = Op;
     type Error = Cancelled;
-    type Written = Written;
+    type Written = WrittenChanges;
     type EndState = &'static str;
 
-    fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
+    fn confirm_base(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
         self.steps.push("confirm");
         assert!(self.store.backups().list("spy", "1").unwrap().is_empty());
         if self.refuses { Err(()) } else { Ok(()) }
@@ -75,17 +75,17 @@ impl Write for Spy {
         Ok(())
     }
 
-    fn apply(&mut self, op: &Op, _: &Confirmed<'_, (), Op>, done: &mut Written) -> Result<(), Cancelled> {
+    fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, (), Op>, done: &mut WrittenChanges) -> Result<(), Cancelled> {
         self.steps.push("apply");
         if self.ends_early && done.ops == 1 {
             return Err(Cancelled);
         }
         done.write_cycles += op.0;
-        done.carried_out(1);
+        done.count_operation(1);
         Ok(())
     }
 
-    fn finish(&mut self, _: &Confirmed<'_, (), Op>, done: &mut Written) -> Result<(), Cancelled> {
+    fn finish(&mut self, _: &ConfirmedPlan<'_, (), Op>, done: &mut WrittenChanges) -> Result<(), Cancelled> {
         self.steps.push("finish");
         done.verified = done.written;
         Ok(())
@@ -93,9 +93,9 @@ impl Write for Spy {
 
     fn lead_back(
         &mut self,
-        _: &Confirmed<'_, (), Op>,
+        _: &ConfirmedPlan<'_, (), Op>,
         ended: Result<(), Cancelled>,
-        _: &mut Written,
+        _: &mut WrittenChanges,
     ) -> Result<(), Cancelled> {
         self.steps.push("lead back");
         ended
@@ -111,12 +111,12 @@ struct Prepared {
     plan: Plan<(), Op>,
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = ();
     type Op = Op;
     type Kind = char;
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         PlanHeader { plan: &self.plan, kind: 'k', cycles_seen: self.seen, wear_limit: 10 }
     }
 
@@ -152,7 +152,7 @@ fn confirm_plan(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPla
 fn write(
     spy: &mut Spy,
     agreed: &ApprovedPlan<Prepared>,
-) -> Result<Committed<Written>, WritePlanError<Prepared, Spy, ()>> {
+) -> Result<CommitResult<WrittenChanges>, WritePlanError<Prepared, Spy, ()>> {
     let (store, mut told) = (spy.store.clone(), Vec::new());
     let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.step.0)));
     let applied = spy.steps.iter().filter(|step| **step == "apply").count();
@@ -194,7 +194,7 @@ fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     let root = tempfile::tempdir().unwrap();
     let mut spy = Spy::new(&Store::at(root.path()), false, false);
     let done = write(&mut spy, &confirm_plan(Some(0), &[], false)).ok().unwrap();
-    assert_eq!((done.written, done.backup), (Written::default(), None));
+    assert_eq!((done.written, done.backup), (WrittenChanges::default(), None));
     let consent = confirm_plan(Some(0), &[2], false).consent;
     let ended = write(&mut spy, &ApprovedPlan { consent, ..confirm_plan(Some(0), &[1], false) });
     assert!(matches!(ended, Err(JobError::NotStarted(NotStarted::OtherPlan))) && spy.steps.is_empty());
@@ -209,12 +209,12 @@ fn an_unusable_logbook_prevents_a_write() {
         type Base = ();
         type Op = Op;
         type Error = Cancelled;
-        type Written = Written;
+        type Written = WrittenChanges;
         type EndState = ();
-        fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
+        fn confirm_base(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
             Ok(())
         }
-        fn apply(&mut self, _: &Op, _: &Confirmed<'_, (), Op>, _: &mut Written) -> Result<(), Cancelled> {
+        fn apply(&mut self, _: &Op, _: &ConfirmedPlan<'_, (), Op>, _: &mut WrittenChanges) -> Result<(), Cancelled> {
             self.0 += 1;
             Ok(())
         }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest, Phase};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionRequest, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
 
 use super::super::support::{Bench, Foreign};
@@ -48,16 +48,16 @@ impl Hub {
     }
 
     fn phase(&self) -> Phase {
-        self.host.motion.view().drives.iter().find(|own| own.number == third()).unwrap().phase
+        self.host.motion.snapshot().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
     /// Waits for the end of an act, and returns how it ended.
     #[track_caller]
-    fn until_over(&self, act: u64) -> Ended {
+    fn until_over(&self, act: u64) -> ActionEnd {
         let until = Instant::now() + Duration::from_secs(20);
         loop {
             self.host.motion.refresh();
-            let view = self.host.motion.view();
+            let view = self.host.motion.snapshot();
             match view.drives.iter().find(|own| own.number == third()).unwrap().ended {
                 Some((number, ended)) if number >= act => return ended,
                 _ => assert!(Instant::now() < until, "it never ends: {view:?}"),
@@ -69,7 +69,7 @@ impl Hub {
     /// Returns the record, once the drive is at standstill.
     fn record(&mut self) -> (Vec<Packet>, usize) {
         let until = Instant::now() + Duration::from_secs(20);
-        while self.host.motion.view().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
+        while self.host.motion.snapshot().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
             assert!(Instant::now() < until, "it never stands");
             sleep(Duration::from_millis(5));
         }
@@ -104,9 +104,12 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
 fn a_hub_drive_ignoring_its_limits_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["limits -65536 65536", "unlimited on"]) else { return };
-    let act = hub.host.motion.intend(third(), JOG);
+    let act = hub.host.motion.request_motion(third(), JOG);
     let ended = hub.until_over(act);
-    assert!(matches!(ended, Ended::Beyond { position } if position > TURN) || ended == Ended::RangeEnd, "{ended:?}");
+    assert!(
+        matches!(ended, ActionEnd::Beyond { position } if position > TURN) || ended == ActionEnd::RangeEnd,
+        "{ended:?}"
+    );
     let (packets, told) = hub.record();
     assert!(!moving(&packets[..told]).is_empty(), "it was moved");
     let after = moving(&packets[told..]);
@@ -119,9 +122,9 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
         let bench = Bench::new();
         let Some(mut hub) = Hub::with(&bench, &["reverse on"]) else { return };
-        let act = hub.host.motion.intend(third(), wish);
+        let act = hub.host.motion.request_motion(third(), wish);
         let ended = hub.until_over(act);
-        assert!(matches!(ended, Ended::WrongWay { position } if position < -DEGREE), "{wish:?}: {ended:?}");
+        assert!(matches!(ended, ActionEnd::WrongWay { position } if position < -DEGREE), "{wish:?}: {ended:?}");
         let (packets, _) = hub.record();
         let wrong: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position < -DEGREE).collect();
         assert!(wrong.len() <= UNDER_WAY + 1, "{wish:?}: {wrong:?}");
@@ -133,9 +136,9 @@ fn a_hub_drive_turning_the_wrong_way_is_stopped() {
 fn a_hub_drive_passing_its_target_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["overrun on"]) else { return };
-    let act = hub.host.motion.intend(third(), MotionRequest::Move { target: TURN, effort: FAST });
+    let act = hub.host.motion.request_motion(third(), MotionRequest::Move { target: TURN, effort: FAST });
     let ended = hub.until_over(act);
-    assert!(matches!(ended, Ended::WrongWay { position } if position > TURN), "{ended:?}");
+    assert!(matches!(ended, ActionEnd::WrongWay { position } if position > TURN), "{ended:?}");
     let (packets, _) = hub.record();
     // Its accuracy is ±2.5°: three whole degrees are allowed at its target.
     let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
@@ -147,16 +150,16 @@ fn a_hub_drive_passing_its_target_is_stopped() {
 fn a_hub_drive_ignoring_a_pause_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["pauseless on"]) else { return };
-    hub.host.motion.intend(third(), MotionRequest::Move { target: 20 * TURN, effort: FAST });
+    hub.host.motion.request_motion(third(), MotionRequest::Move { target: 20 * TURN, effort: FAST });
     let until = Instant::now() + Duration::from_secs(20);
     while !matches!(hub.phase(), Phase::Moving(_)) {
         assert!(Instant::now() < until, "it does not move: {:?}", hub.phase());
         hub.host.motion.refresh();
         sleep(Duration::from_millis(5));
     }
-    let act = hub.host.motion.intend(third(), MotionRequest::Pause);
+    let act = hub.host.motion.request_motion(third(), MotionRequest::Pause);
     let ended = hub.until_over(act - 1);
-    assert_eq!(ended, Ended::Left(State::Moving));
+    assert_eq!(ended, ActionEnd::Left(State::Moving));
     hub.host.holds(Duration::from_millis(500));
     let text = fs::read_to_string(&hub.record).unwrap();
     hub.foreign.kill();

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use encoder_studio::bits::MaskedBytes;
 use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkScheme, LinkUrl, RealClock};
-use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
+use encoder_studio::profile::{InterruptedWrite, RestoreOptions, WrittenChanges};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
@@ -58,7 +58,7 @@ pub(crate) enum Output {
     Surveyed(NovoProfile),
     Position(Sample),
     Prepared(Box<Prepared>),
-    Committed(Box<worker::Committed<Written>>),
+    Committed(Box<worker::CommitResult<WrittenChanges>>),
 }
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,7 +77,7 @@ pub(crate) enum Error {
     Link(#[from] LinkError),
 }
 
-pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted<Op, Error, Written, ()>, ()>;
+pub(crate) type JobError = worker::JobError<Error, Infallible, InterruptedWrite<Op, Error, WrittenChanges, ()>, ()>;
 
 /// Checks a link, as far as possible without opening it.
 pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {

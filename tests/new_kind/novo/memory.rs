@@ -5,7 +5,7 @@ use encoder_studio::app::session::{
     ApprovedPlanOf, HasDraft, HasMemory, HasProfile, KnownProfile, ProfileFile, unsaved_edits_remark,
 };
 use encoder_studio::app::{PendingEdits, Services, Text, explain};
-use encoder_studio::profile::{Body, ProfileDocument, ProfileError, Written};
+use encoder_studio::profile::{Body, ProfileDocument, ProfileError, WrittenChanges};
 use encoder_studio::store::DeviceKey;
 
 use super::jobs::{Change, Job, Novo, Prepared, device_key};
@@ -15,7 +15,7 @@ use super::state::{Encoder, TEXTS};
 impl Reviewable for Novo {
     type Change = Change;
     type Prepared = Prepared;
-    type Written = Written;
+    type Written = WrittenChanges;
 
     fn change(change: &Change) -> Text {
         match change.restored {
@@ -33,7 +33,7 @@ impl Reviewable for Novo {
     fn cost(prepared: &Prepared) -> Text {
         TEXTS.text("novo.cost").with("cycles", prepared.plan.write_cycles())
     }
-    fn written(written: &Written) -> Text {
+    fn written(written: &WrittenChanges) -> Text {
         TEXTS.text("novo.written").with("count", written.verified)
     }
 }

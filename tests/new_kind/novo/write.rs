@@ -1,9 +1,9 @@
 //! Writing a plan into a Novo encoder.
 
-use encoder_studio::profile::{Body, ChangedItem, Confirmed, DeviceError, Write, Written};
+use encoder_studio::profile::{Body, ChangedItem, ConfirmedPlan, DeviceError, Write, WrittenChanges};
 use encoder_studio::store::{DeviceKey, EntryKind};
 use encoder_studio::worker::SessionContext;
-use encoder_studio::worker::commit::{PlanHeader, Planned, backup_document};
+use encoder_studio::worker::commit::{PlanHeader, PlannedWrite, backup_document};
 
 use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
 use super::profile::{NovoPlan, NovoProfile, Op};
@@ -18,14 +18,19 @@ impl Write for NovoWrite<'_> {
     type Base = (u16, Values);
     type Op = Op;
     type Error = Error;
-    type Written = Written;
+    type Written = WrittenChanges;
     type EndState = ();
 
-    fn confirm(&mut self, plan: &NovoPlan) -> Result<(), Error> {
+    fn confirm_base(&mut self, plan: &NovoPlan) -> Result<(), Error> {
         let now = self.novo.survey(self.context)?;
         if plan.base == (now.serial, now.values) { Ok(()) } else { Err(Error::Changed) }
     }
-    fn apply(&mut self, op: &Op, _: &Confirmed<'_, (u16, Values), Op>, done: &mut Written) -> Result<(), Error> {
+    fn apply(
+        &mut self,
+        op: &Op,
+        _: &ConfirmedPlan<'_, (u16, Values), Op>,
+        done: &mut WrittenChanges,
+    ) -> Result<(), Error> {
         let address = address_of(op.item);
         done.write_cycles += 1;
         self.novo.ask(self.context, Request::Write(address, op.to))?;
@@ -33,7 +38,7 @@ impl Write for NovoWrite<'_> {
             return Err(Error::NotTaken(op.name()));
         }
         done.verified += 1;
-        done.carried_out(1);
+        done.count_operation(1);
         Ok(())
     }
     fn end_state(&mut self, _: &Error) {}
@@ -45,12 +50,12 @@ impl DeviceError for Error {
     }
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = (u16, Values);
     type Op = Op;
     type Kind = ();
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         PlanHeader { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: LIFE }
     }
 

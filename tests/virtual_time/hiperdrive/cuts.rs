@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, JobError};
 use encoder_studio::devices::hiperdrive::procedures::Error;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::procedures::write::Interrupted;
 use encoder_studio::link::CancelToken;
 
@@ -81,11 +81,11 @@ fn an_interrupted_write_ends_in_time_and_reports_progress() {
             cut(&mut stand.tap(), before + at);
             let ended = stand.commit(prepared);
             assert!(stand.elapsed() - begun < LIMIT, "{label} {at}: {:?}", stand.elapsed() - begun);
-            let locks = stand.session.motion().permitted(drive(1)).locks;
+            let locks = stand.session.motion().motion_permit(drive(1)).locks;
             // Whether the device still owes an answer depends on the cut.
-            let not_known = locks
-                .split_first()
-                .is_some_and(|(first, rest)| *first == Lock::Unread && rest.iter().all(|own| *own == Lock::NoAnswer));
+            let not_known = locks.split_first().is_some_and(|(first, rest)| {
+                *first == MotionLock::Unread && rest.iter().all(|own| *own == MotionLock::NoAnswer)
+            });
             assert!(not_known, "{label} {at}: what a drive may do is not known any more: {locks:?}");
             match ended {
                 Ok(done) => assert_eq!(done.written.verified, 3, "{label} {at}"),

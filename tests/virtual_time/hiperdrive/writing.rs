@@ -1,7 +1,7 @@
 //! Writing: exactly the planned values, each read back, then one save; and refusals with their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::MotionLock;
 use encoder_studio::devices::hiperdrive::procedures::{DisplayedLimits, Error, RequestedItem};
 use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
@@ -251,24 +251,24 @@ fn motion_limits_are_known_after_every_write() {
     let mut stand = Stand::new("requested=1");
     stand.survey();
     let motion = stand.session.motion();
-    let permit = motion.permitted(drive(1));
+    let permit = motion.motion_permit(drive(1));
     assert_eq!((permit.locks.as_slice(), permit.limits), (&[][..], Some((-33_488_896, 33_488_896))));
     stand.change(Change::Write(image(&[(186, 255)]))).unwrap();
-    assert_eq!(motion.permitted(drive(1)).locks, [Lock::NoTimeout]);
-    let before = motion.limits(drive(1)).seen().unwrap();
+    assert_eq!(motion.motion_permit(drive(1)).locks, [MotionLock::NoTimeout]);
+    let before = motion.limits(drive(1)).displayed_limits().unwrap();
     stand.change(Change::Write(image(&[(186, 20), (154, 100)]))).unwrap();
-    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
+    assert_eq!(motion.motion_permit(drive(1)).locks, [MotionLock::LimitsUnconfirmed]);
     stand.survey();
-    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "reading confirms nothing");
+    assert_eq!(motion.motion_permit(drive(1)).locks, [MotionLock::LimitsUnconfirmed], "reading confirms nothing");
     assert!(!motion.confirm_limits(drive(1), before), "they were shown under the scale of before");
-    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
+    assert_eq!(motion.motion_permit(drive(1)).locks, [MotionLock::LimitsUnconfirmed]);
     let shown = DisplayedLimits { scale: (100, 1), ..before };
     assert!(motion.confirm_limits(drive(1), shown));
-    assert!(motion.permitted(drive(1)).locks.is_empty());
+    assert!(motion.motion_permit(drive(1)).locks.is_empty());
     stand.change(Change::Do(Service::Recall)).unwrap();
-    assert!(motion.permitted(drive(1)).locks.is_empty(), "the scale is as it was saved");
+    assert!(motion.motion_permit(drive(1)).locks.is_empty(), "the scale is as it was saved");
     stand.change(Change::Do(Service::FactoryAll)).unwrap();
-    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "the scale is another one");
+    assert_eq!(motion.motion_permit(drive(1)).locks, [MotionLock::LimitsUnconfirmed], "the scale is another one");
     stand.change(Change::Write(image(&[(152, 0)]))).unwrap();
-    assert!(motion.permitted(drive(1)).locks.contains(&Lock::NotRequested));
+    assert!(motion.motion_permit(drive(1)).locks.contains(&MotionLock::NotRequested));
 }

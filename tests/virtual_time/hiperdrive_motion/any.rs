@@ -5,7 +5,7 @@
 //! model separate from the dead-man checks this ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Lock, MotionRequest, SpeedTorque, TargetState};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{MotionLock, MotionRequest, SpeedTorque, TargetState};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, RunEnd, State};
 use encoder_studio::devices::hiperdrive::sim::{DriveDefect, SpindleLoad};
 
@@ -17,7 +17,7 @@ const SESSIONS: u64 = 100;
 const STEPS: u64 = 5000;
 
 fn wish(dice: &mut fastrand::Rng) -> MotionRequest {
-    let effort = if dice.bool() { FULL } else { SpeedTorque::JOG };
+    let effort = if dice.bool() { FULL } else { SpeedTorque::DEFAULT_JOG };
     let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
     match dice.u8(..14) {
         0 => MotionRequest::Rest,
@@ -51,7 +51,7 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
             model.end();
         }
         10 => {
-            bench.permit.locks = vec![Lock::LimitsUnconfirmed];
+            bench.permit.locks = vec![MotionLock::LimitsUnconfirmed];
             model.end();
         }
         11 | 12 => bench.permit.locks.clear(),
@@ -67,7 +67,7 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         }
         17 | 18 => {
             let limits = (dice.i32(-4 * TURN..-TURN / 2), dice.i32(TURN / 2..4 * TURN));
-            bench.permit = Permit { locks: bench.permit.locks.clone(), ..Permit::within(limits.0, limits.1) };
+            bench.permit = Permit { locks: bench.permit.locks.clone(), ..Permit::for_range(limits.0, limits.1) };
             model.set_limits(limits);
         }
         _ => {}
@@ -83,10 +83,10 @@ fn any_session_ends_at_a_standstill() {
         let mut dice = fastrand::Rng::with_seed(seed);
         let mut bench = Bench::new();
         let limits = (-3 * TURN, 3 * TURN);
-        bench.permit = Permit::within(limits.0, limits.1);
+        bench.permit = Permit::for_range(limits.0, limits.1);
         let mut model = Model::new(limits);
         let mut unwanted = 0;
-        let mut word = bench.man.sent().control;
+        let mut word = bench.man.last_setpoint().control;
         for step in 0..STEPS {
             if dice.u8(..30) == 0 {
                 let wish = wish(&mut dice);
@@ -105,8 +105,8 @@ fn any_session_ends_at_a_standstill() {
             }
             let now = bench.now;
             let sent = bench.cycle();
-            model.look(now, sent, bench.man.actual(), bench.man.ended());
-            let wanted = bench.intent.request.moves() && !stale && bench.permit.locks.is_empty();
+            model.look(now, sent, bench.man.actual_values(), bench.man.last_end());
+            let wanted = bench.intent.request.needs_motion() && !stale && bench.permit.locks.is_empty();
             assert!(wanted || sent.control.is_at_rest(), "{seed}/{step}: {:?} after {word:?}", sent.control);
             word = sent.control;
             unwanted = if wanted { 0 } else { unwanted + 1 };

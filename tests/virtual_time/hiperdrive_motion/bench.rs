@@ -3,7 +3,9 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, MotionIntent, MotionRequest, Permit};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{
+    ActionEnd, DeadMan, MotionIntent, MotionRequest, Permit,
+};
 use encoder_studio::devices::hiperdrive::protocol::{
     ActualValues, ControlBit, ControlWord, DriveNumber, ErrorCode, OutputImage, ParameterNumber, Setpoint, State, Value,
 };
@@ -40,13 +42,13 @@ impl Bench {
     pub(super) fn new() -> Self {
         let mut station = Station::new(StationConfig::default());
         station.open(Moment::START, TIMEOUT);
-        let intent = MotionIntent::rest(DriveNumber::FIRST, 7, Moment::START);
+        let intent = MotionIntent::idle(DriveNumber::FIRST, 7, Moment::START);
         Bench {
             station,
             man: DeadMan::new(DriveNumber::FIRST, 7),
             now: Moment::START,
             intent,
-            permit: Permit::within(-20_000_000, 20_000_000),
+            permit: Permit::for_range(-20_000_000, 20_000_000),
             absent: false,
             cut_out: false,
             cut_back: false,
@@ -71,17 +73,17 @@ impl Bench {
             self.intent.refreshed = self.now;
         }
         let fresh = !self.intent.is_stale(self.now);
-        let spent = self.man.ended().map_or(7, |(number, _)| number);
+        let spent = self.man.last_end().map_or(7, |(number, _)| number);
         let report = self.station.image(self.now).drives[0];
         self.reports.push_back(report);
         let heard = (self.reports.len() > self.late).then(|| self.reports.pop_front()).flatten();
         let heard = heard.filter(|_| !self.cut_back);
         let setpoint = self.man.next(self.now, self.heard.or(heard), &self.intent, &self.permit);
         let word = setpoint.control;
-        assert!(!word.has(ControlBit::JogOne) && !word.has(ControlBit::JogTwo), "{word:?}");
+        assert!(!word.is_set(ControlBit::JogOne) && !word.is_set(ControlBit::JogTwo), "{word:?}");
         if let Some(begins) = word.motion_start(self.before, report.status) {
             let wish = self.intent.request;
-            let act = fresh && wish.moves() && self.intent.number > spent && self.permit.locks.is_empty();
+            let act = fresh && wish.needs_motion() && self.intent.number > spent && self.permit.locks.is_empty();
             assert!(act, "{begins:?} by {word:?} behind {:?}, {:?} is wanted", self.before, self.intent);
         }
         if !self.cut_out {
@@ -89,8 +91,8 @@ impl Bench {
             self.station.cyclic(self.now, &image, true);
             self.before = word;
         }
-        if self.words.last() != Some(&word.word()) {
-            self.words.push(word.word());
+        if self.words.last() != Some(&word.to_u16()) {
+            self.words.push(word.to_u16());
         }
         self.now = self.now + INTERVAL;
         setpoint
@@ -103,10 +105,10 @@ impl Bench {
     }
 
     /// Runs until the last act has ended; returns how.
-    pub(super) fn until_over(&mut self) -> Ended {
+    pub(super) fn until_over(&mut self) -> ActionEnd {
         for _ in 0..6000 {
             self.cycle();
-            if let Some((number, ended)) = self.man.ended()
+            if let Some((number, ended)) = self.man.last_end()
                 && number >= self.intent.number
             {
                 return ended;
@@ -121,7 +123,7 @@ impl Bench {
     }
 
     pub(super) fn status(&mut self) -> u16 {
-        self.actual().status.word()
+        self.actual().status.to_u16()
     }
 
     pub(super) fn position(&mut self) -> i32 {

@@ -1,7 +1,7 @@
 //! All ends of a motion: the stop word is sent with the same call, and escalates on the ladder while the drive moves.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Ended, Lock, MotionRequest, Phase, StopLevel, TargetState,
+    ActionEnd, MotionLock, MotionRequest, Phase, StopLevel, TargetState,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use proptest::prelude::*;
@@ -12,20 +12,20 @@ use super::{TURN, jog, to};
 /// An event during a motion.
 type Cause = fn(&mut Bench);
 
-const CAUSES: [(&str, Cause, Ended); 7] = [
+const CAUSES: [(&str, Cause, ActionEnd); 7] = [
     (
         "stop",
         |bench| {
             bench.act(MotionRequest::Stop);
         },
-        Ended::Stopped,
+        ActionEnd::Stopped,
     ),
     (
         "rest",
         |bench| {
             bench.act(MotionRequest::Rest);
         },
-        Ended::Stopped,
+        ActionEnd::Stopped,
     ),
     (
         "another drive",
@@ -33,18 +33,22 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
             bench.act(MotionRequest::Move { target: 0, effort: super::FULL });
             bench.intent.drive = DriveNumber::new(2).unwrap();
         },
-        Ended::Replaced,
+        ActionEnd::Replaced,
     ),
     (
         "led elsewhere",
         |bench| {
             bench.act(MotionRequest::Lead(TargetState::Off));
         },
-        Ended::Replaced,
+        ActionEnd::Replaced,
     ),
-    ("locked", |bench| bench.permit.locks.push(Lock::LimitsUnconfirmed), Ended::Locked(Lock::LimitsUnconfirmed)),
-    ("an older act", |bench| bench.intent.number -= 1, Ended::Stopped),
-    ("the same act with another wish", |bench| bench.intent.request = to(9), Ended::Replaced),
+    (
+        "locked",
+        |bench| bench.permit.locks.push(MotionLock::LimitsUnconfirmed),
+        ActionEnd::Locked(MotionLock::LimitsUnconfirmed),
+    ),
+    ("an older act", |bench| bench.intent.number -= 1, ActionEnd::Stopped),
+    ("the same act with another wish", |bench| bench.intent.request = to(9), ActionEnd::Replaced),
 ];
 
 #[test]
@@ -59,7 +63,7 @@ fn each_cause_stops_in_the_same_way() {
                 cause(&mut bench);
                 let sent = bench.cycle();
                 assert!(sent.control.is_at_rest(), "{label} after {after} ms: {:?}", sent.control);
-                let how = bench.man.ended().map(|ended| ended.1);
+                let how = bench.man.last_end().map(|ended| ended.1);
                 assert!(how == Some(ended) || after < 100, "{label} after {after} ms: {how:?}");
                 bench.run(300);
                 assert!(!bench.moves(), "{label} after {after} ms: {:?}", bench.actual());
@@ -80,7 +84,7 @@ fn a_stale_intent_stops_the_drive() {
         bench.run(240);
         assert!(!bench.cycle().control.is_at_rest());
         assert!(bench.cycle().control.is_at_rest());
-        assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Stale));
+        assert_eq!(bench.man.last_end().map(|ended| ended.1), Some(ActionEnd::Stale));
         bench.run(200);
         assert!(!bench.moves());
         bench.absent = false;
@@ -98,7 +102,7 @@ fn a_stale_intent_stops_the_drive() {
         bench.absent = false;
         bench.run(2000);
         assert_eq!(bench.position(), stood);
-        assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Stale));
+        assert_eq!(bench.man.last_end().map(|ended| ended.1), Some(ActionEnd::Stale));
     }
 }
 
@@ -140,8 +144,8 @@ fn a_drive_without_reports_is_stopped() {
     bench.run(1000);
     bench.cut_back = true;
     bench.run(360);
-    assert!(bench.man.sent().control.is_at_rest());
-    assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Deaf));
+    assert!(bench.man.last_setpoint().control.is_at_rest());
+    assert_eq!(bench.man.last_end().map(|ended| ended.1), Some(ActionEnd::Deaf));
     bench.run(600);
     assert!(bench.man.has_exhausted_stop_levels() && !bench.moves());
 }
@@ -174,12 +178,12 @@ fn a_new_connection_moves_nothing() {
     let stood = bench.position();
     bench.run(3000);
     assert_eq!((bench.position(), super::words(&mut bench).ends_with("0000")), (stood, true));
-    assert_eq!(bench.man.sent().target, stood);
+    assert_eq!(bench.man.last_setpoint().target, stood);
     // The master was lost: a fault, to be acknowledged.
     bench.act(MotionRequest::Acknowledge);
-    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!(bench.until_over(), ActionEnd::Done);
     bench.act(to(0));
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
 }
 
 proptest! {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionRequest};
 use encoder_studio::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
@@ -102,16 +102,16 @@ impl Model {
     }
 
     /// Checks a sent set-point against the record. `heard`: the report before it.
-    pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, Ended)>) {
+    pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: ActualValues, ended: Option<(u64, ActionEnd)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {
             now.since(live.said) <= FRESH
-                && !heard.status.has(StatusBit::Fault)
+                && !heard.status.is_set(StatusBit::Fault)
                 && ended.is_none_or(|(number, _)| number < live.number)
         });
-        let word = sent.control.word();
+        let word = sent.control.to_u16();
         let job = live.as_ref().is_some_and(|live| live.target.is_some());
-        let commands = commands(word, heard.status.has(StatusBit::SetpointAcknowledged), job);
+        let commands = commands(word, heard.status.is_set(StatusBit::SetpointAcknowledged), job);
         self.live = live;
         if commands == Commands::Nothing {
             return;

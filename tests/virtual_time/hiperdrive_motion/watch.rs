@@ -5,7 +5,7 @@
 //! 10 ms.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Ended, MotionRequest, Permit, Phase, Refusal, SpeedTorque,
+    ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
 use encoder_studio::devices::hiperdrive::sim::{DriveDefect, SpindleLoad};
@@ -31,7 +31,7 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
     bench.write(160, LIMITS.1.into());
-    bench.permit = Permit::within(LIMITS.0, LIMITS.1);
+    bench.permit = Permit::for_range(LIMITS.0, LIMITS.1);
     bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
@@ -40,11 +40,11 @@ fn bench(defect: Option<DriveDefect>) -> Bench {
 fn bench_outside(beyond: i32, defect: Option<DriveDefect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
-    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.until_over(), ActionEnd::Arrived);
     bench.run(100);
     // The values of the limits change, as with a limit that another master writes.
     let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
-    bench.permit = Permit::within(low, high);
+    bench.permit = Permit::for_range(low, high);
     bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
@@ -71,7 +71,7 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
 /// continues.
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
-    for effort in [SpeedTorque::JOG, FULL] {
+    for effort in [SpeedTorque::DEFAULT_JOG, FULL] {
         for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
             for wish in [jog(direction, effort, false), MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort }]
             {
@@ -81,10 +81,10 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
                 assert_eq!(intervals, 0, "{wish:?}");
                 let beyond = (position - limit).abs();
                 assert!(beyond <= INTERVAL_AT_FULL_SPEED, "{wish:?}: {beyond} steps beyond");
-                let (_, ended) = bench.man.ended().unwrap();
-                let expected = if beyond <= DEGREE { Ended::RangeEnd } else { Ended::Beyond { position } };
+                let (_, ended) = bench.man.last_end().unwrap();
+                let expected = if beyond <= DEGREE { ActionEnd::RangeEnd } else { ActionEnd::Beyond { position } };
                 assert_eq!(ended, expected, "{wish:?}");
-                assert!(bench.actual().status.has(StatusBit::PositionLimit));
+                assert!(bench.actual().status.is_set(StatusBit::PositionLimit));
                 bench.run(500);
                 assert!(!bench.moves(), "{wish:?}");
             }
@@ -96,10 +96,10 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
 #[test]
 fn bit_15_ends_a_run() {
     let mut bench = bench(Some(DriveDefect::RunsOn));
-    bench.permit = Permit::within(-9 * TURN, 9 * TURN);
+    bench.permit = Permit::for_range(-9 * TURN, 9 * TURN);
     bench.act(jog(Direction::Clockwise, FULL, false));
     let (intervals, position) = intervals_past(&mut bench, TURN);
-    assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::Beyond { position }));
+    assert_eq!((intervals, bench.man.last_end().unwrap().1), (0, ActionEnd::Beyond { position }));
 }
 
 /// Issue 21.4, case *endless run*: a run that ignores the limits is not checked against them.
@@ -109,7 +109,7 @@ fn an_endless_run_is_not_monitored() {
     bench.permit.endless = true;
     bench.act(run(Direction::Clockwise, RunEnd::Endless));
     bench.run(5000);
-    assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.ended());
+    assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.last_end());
 }
 
 /// Issue 21.4, case *unread limits*: a motion is stopped with the next packet.
@@ -120,7 +120,7 @@ fn a_run_ends_when_its_limits_become_unknown() {
     bench.run(1000);
     bench.permit = Permit::default();
     assert!(bench.cycle().control.is_at_rest());
-    assert!(matches!(bench.man.ended(), Some((_, Ended::Locked(_)))), "{:?}", bench.man.ended());
+    assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Locked(_)))), "{:?}", bench.man.last_end());
 }
 
 /// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is
@@ -136,7 +136,11 @@ fn from_outside_only_inward_motion_is_allowed() {
             let (low, high) = bench.permit.limits.unwrap();
             bench.act(wish);
             let position = bench.position();
-            assert_eq!(bench.until_over(), Ended::Refused(Refusal::Outward { position, low, high }), "{wish:?}");
+            assert_eq!(
+                bench.until_over(),
+                ActionEnd::Refused(MotionRefusal::Outward { position, low, high }),
+                "{wish:?}"
+            );
             bench.run(300);
             assert_eq!(bench.position(), position, "{wish:?}");
         }
@@ -144,14 +148,14 @@ fn from_outside_only_inward_motion_is_allowed() {
             let mut bench = bench_outside(beyond, None);
             bench.act(wish);
             bench.run(1500);
-            assert!(matches!(bench.man.phase(), Phase::Moving(_)), "{wish:?}: {:?}", bench.man.ended());
+            assert!(matches!(bench.man.phase(), Phase::Moving(_)), "{wish:?}: {:?}", bench.man.last_end());
             let (low, high) = bench.permit.limits.unwrap();
             assert!((low..=high).contains(&bench.position()), "{wish:?}: it is back in");
         }
         // A move to a target within the limits leads in as well.
         let mut bench = bench_outside(beyond, None);
         bench.act(to(0));
-        assert_eq!(bench.until_over(), Ended::Arrived);
+        assert_eq!(bench.until_over(), ActionEnd::Arrived);
     }
 }
 
@@ -167,7 +171,7 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
         let mut bench = bench(Some(DriveDefect::SaysOutside));
         bench.act(wish);
         let (low, high) = LIMITS;
-        let expected = Ended::Refused(Refusal::Unclear { position: 0, low, high });
+        let expected = ActionEnd::Refused(MotionRefusal::Unclear { position: 0, low, high });
         assert_eq!(bench.until_over(), expected, "{wish:?}");
         bench.run(300);
         assert_eq!((bench.position(), bench.moves()), (0, false), "{wish:?}");
@@ -177,18 +181,18 @@ fn outside_by_bit_15_alone_only_permitted_motion_starts() {
         bench.act(jog(way, FULL, true));
         bench.run(1500);
         assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
-        assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+        assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
         // If its position is beyond the limits, it is stopped like any other.
-        bench.permit = Permit::within(-bench.position().abs(), bench.position().abs());
+        bench.permit = Permit::for_range(-bench.position().abs(), bench.position().abs());
         bench.run(30);
-        assert!(matches!(bench.man.ended(), Some((_, Ended::Beyond { .. }))), "{:?}", bench.man.ended());
+        assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::Beyond { .. }))), "{:?}", bench.man.last_end());
     }
     // Within a degree of a limit it is clear.
     for (limits, free) in [((-TURN, 182), Direction::Counterclockwise), ((-182, TURN), Direction::Clockwise)] {
         for way in ways {
             let mut bench = bench(Some(DriveDefect::SaysOutside));
-            bench.permit = Permit::within(limits.0, limits.1);
-            bench.act(jog(way, SpeedTorque::JOG, false));
+            bench.permit = Permit::for_range(limits.0, limits.1);
+            bench.act(jog(way, SpeedTorque::DEFAULT_JOG, false));
             bench.run(1000);
             assert_eq!(matches!(bench.man.phase(), Phase::Moving(_)), way == free, "{limits:?} {way:?}");
         }
@@ -206,11 +210,11 @@ fn outward_motion_can_be_permitted_for_one_press() {
     bench.act(jog(Direction::Clockwise, FULL, true));
     bench.run(1500);
     assert!(bench.position() > stood + 1000 && matches!(bench.man.phase(), Phase::Moving(_)));
-    assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+    assert_eq!((bench.man.last_setpoint().speed.get(), bench.man.last_setpoint().torque.get()), (10, 25));
     bench.act(MotionRequest::Stop);
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
-    assert!(matches!(bench.until_over(), Ended::Refused(Refusal::Outward { .. })));
+    assert!(matches!(bench.until_over(), ActionEnd::Refused(MotionRefusal::Outward { .. })));
     // An unnecessary permission: from inside the limits apply.
     let mut bench = super::watch::bench(Some(DriveDefect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
@@ -223,12 +227,12 @@ fn inward_motion_that_leads_outward_is_stopped() {
     let mut bench = bench_outside(5000, Some(DriveDefect::Reversed));
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
-    bench.act(jog(Direction::Counterclockwise, SpeedTorque::JOG, false));
-    let Ended::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.ended()) };
+    bench.act(jog(Direction::Counterclockwise, SpeedTorque::DEFAULT_JOG, false));
+    let ActionEnd::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.last_end()) };
     assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
     // With permission, the other direction leads in.
     bench.run(500);
-    bench.act(jog(Direction::Clockwise, SpeedTorque::JOG, true));
+    bench.act(jog(Direction::Clockwise, SpeedTorque::DEFAULT_JOG, true));
     bench.run(1500);
     assert!(bench.position() < stood);
 }
@@ -246,7 +250,7 @@ fn an_overrun_while_braking_keeps_the_stop_reason() {
     assert!(bench.cycle().control.is_at_rest());
     bench.run(500);
     assert!(bench.position() > TURN, "{}", bench.position());
-    assert_eq!(bench.man.ended(), Some((act, Ended::Stopped)));
+    assert_eq!(bench.man.last_end(), Some((act, ActionEnd::Stopped)));
     assert!(!bench.moves());
 }
 
@@ -258,7 +262,7 @@ fn a_move_in_the_wrong_direction_is_stopped_immediately() {
         bench.act(to(target));
         let (intervals, _) = intervals_past(&mut bench, -target.signum() * DEGREE);
         assert_eq!(intervals, 0, "{target}");
-        assert!(matches!(bench.man.ended(), Some((_, Ended::WrongWay { .. }))), "{:?}", bench.man.ended());
+        assert!(matches!(bench.man.last_end(), Some((_, ActionEnd::WrongWay { .. }))), "{:?}", bench.man.last_end());
         assert!(bench.position().abs() <= DEGREE + 2 * INTERVAL_AT_FULL_SPEED, "{}", bench.position());
     }
 }
@@ -271,7 +275,7 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
             let mut bench = bench(Some(DriveDefect::Reversed));
             bench.act(wish);
             let (intervals, position) = intervals_past(&mut bench, -sign * DEGREE);
-            assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::WrongWay { position }), "{wish:?}");
+            assert_eq!((intervals, bench.man.last_end().unwrap().1), (0, ActionEnd::WrongWay { position }), "{wish:?}");
         }
     }
 }
@@ -287,9 +291,9 @@ fn a_move_that_passes_its_target_is_stopped() {
         let degrees = if target.abs() == TURN { 1 } else { 3 };
         let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
         assert_eq!(intervals, 0, "{target}: stopped at {position}");
-        let beyond = Ended::Beyond { position };
-        let wrong_way = Ended::WrongWay { position };
-        let how = bench.man.ended().unwrap().1;
+        let beyond = ActionEnd::Beyond { position };
+        let wrong_way = ActionEnd::WrongWay { position };
+        let how = bench.man.last_end().unwrap().1;
         assert!(how == beyond || how == wrong_way, "{target}: {how:?}");
         bench.run(500);
         assert!(!bench.moves());
@@ -305,7 +309,7 @@ fn a_healthy_drive_reaches_every_target() {
         bench.late = dice.usize(..4);
         let target = [LIMITS.0, LIMITS.1, 0, dice.i32(LIMITS.0..=LIMITS.1)][dice.usize(..4)];
         bench.act(to(target));
-        assert_eq!(bench.until_over(), Ended::Arrived, "{target}");
+        assert_eq!(bench.until_over(), ActionEnd::Arrived, "{target}");
         assert_eq!(bench.position(), target);
         if dice.bool() {
             let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
@@ -313,8 +317,8 @@ fn a_healthy_drive_reaches_every_target() {
             bench.run(dice.u64(..8000));
             bench.act(MotionRequest::Stop);
             bench.run(500);
-            let how = bench.man.ended().unwrap().1;
-            assert!(matches!(how, Ended::Stopped | Ended::RangeEnd), "{how:?}");
+            let how = bench.man.last_end().unwrap().1;
+            assert!(matches!(how, ActionEnd::Stopped | ActionEnd::RangeEnd), "{how:?}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::procedures::Master;
-use encoder_studio::devices::interbus::procedures::write::{EndState, Written};
+use encoder_studio::devices::interbus::procedures::write::{EndState, WrittenChanges};
 use encoder_studio::devices::interbus::procedures::{
     Error, Exception, ExpectedWord, RequestedItem, Station, WordReply, identify, read_programs, select,
 };
@@ -42,7 +42,7 @@ fn the_worked_example_is_sent_word_by_word() {
         .on(0x0800_0000, &[0xC600_0003, 0xC800_0000])
         .on(0x8000_0000, &[0xC800_0000, 0xC800_0000, POSITION]);
     let (ended, _, sent) = carry_out(reading_back(script), worked_example());
-    assert_eq!(ended.unwrap(), Written { ops: 1, written: 4, verified: 4, write_cycles: 1 });
+    assert_eq!(ended.unwrap(), WrittenChanges { ops: 1, written: 4, verified: 4, write_cycles: 1 });
     let own = &sent[..6];
     assert_eq!(own, [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN, 0], "{sent:08X?}");
     assert_eq!(sent.last(), Some(&0));

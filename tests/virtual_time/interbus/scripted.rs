@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{ChangeKind, Commit, Committed, JobError, Prepared};
-use encoder_studio::devices::interbus::procedures::write::{EncoderWriter, Interrupted, Written};
+use encoder_studio::devices::interbus::procedures::write::{EncoderWriter, Interrupted, WrittenChanges};
 use encoder_studio::devices::interbus::procedures::{
     Error, Exception, Handshake, Identity, Master, ProcessData, RequestedItem,
 };
@@ -153,7 +153,10 @@ pub(crate) fn identity() -> Identity {
 }
 
 /// Carries operations out with a script; returns the result, each step, and all written words.
-pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<Interrupted>>, Vec<Handshake>, Vec<u32>) {
+pub(crate) fn carry_out(
+    script: Script,
+    ops: Vec<Op>,
+) -> (Result<WrittenChanges, Box<Interrupted>>, Vec<Handshake>, Vec<u32>) {
     let plan = InterbusPlan { base: Base::default(), ops };
     let (folder, consent) = (tempfile::tempdir().unwrap(), Consent::to(plan.id()));
     let parameters =

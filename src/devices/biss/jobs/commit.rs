@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::write::EncoderWriter;
 use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, ChangedItem, Unknown};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
+use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -38,12 +38,12 @@ pub(super) fn commit(
     ended
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = Base;
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 

@@ -16,7 +16,7 @@ use crate::devices::biss::profile::{
 };
 use crate::devices::biss::protocol::{Area, DeviceMode, KIND, PositionFilter, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, EntryKind, StoreError};
-use crate::worker::commit::{ApprovedPlan, wear};
+use crate::worker::commit::{ApprovedPlan, total_cycles_to_report};
 
 /// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
 /// exceeded").
@@ -139,7 +139,7 @@ pub struct Prepared {
 impl Prepared {
     /// Returns the minimum number of flash write cycles used so far, or `None` if no warning is necessary.
     pub fn wear(&self) -> Option<u64> {
-        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
+        total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
@@ -172,7 +172,7 @@ impl Operator for OperatorPresence {
     }
 }
 
-pub type Committed = crate::worker::Committed<Written>;
+pub type Committed = crate::worker::CommitResult<Written>;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegisterValues {

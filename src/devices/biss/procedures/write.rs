@@ -9,7 +9,7 @@ use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceSta
 use crate::devices::biss::protocol::{
     Area, Description, DeviceMode, Firmware, PositionFilter, PresetValue, ProcedureKind, RegisterAddress, Role,
 };
-use crate::profile::{Confirmed, Write, WriteRecord};
+use crate::profile::{ConfirmedPlan, Write, WriteRecord};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
@@ -23,7 +23,7 @@ pub struct Written {
 }
 
 impl WriteRecord for Written {
-    fn ops(&self) -> usize {
+    fn operation_count(&self) -> usize {
         self.ops
     }
 
@@ -32,7 +32,7 @@ impl WriteRecord for Written {
     }
 }
 
-pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndState>;
+pub type Interrupted = crate::profile::InterruptedWrite<Op, Failure, Written, EndState>;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
@@ -91,7 +91,7 @@ impl Write for EncoderWriter<'_, '_> {
 
     /// Checks that the plan was made for the connected encoder. The memory is compared as well, because two new
     /// encoders have the same identity.
-    fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
+    fn confirm_base(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
         if !is_same(master, self.identity)? {
@@ -129,7 +129,7 @@ impl Write for EncoderWriter<'_, '_> {
 
     /// Performs an operation and then returns the encoder to operation, even after a failure. Cancellation is checked
     /// between exchanges, unless stopping would leave something incomplete.
-    fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
+    fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin(done.outcomes.len());
         let ended = guide.perform(op);

@@ -90,7 +90,7 @@ fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
         lines.push(format!("drive {number}: {}", actual_text(drive)));
         list.push(json!({
             "drive": number,
-            "status": format!("{:04X}", drive.status.word()),
+            "status": format!("{:04X}", drive.status.to_u16()),
             "state": drive.status.state().name(),
             "speed_rpm": f64::from(drive.speed) / 10.0,
             "position": drive.position,
@@ -115,7 +115,7 @@ fn actual_text(drive: &ActualValues) -> String {
     let rpm = f64::from(*speed) / 10.0;
     format!(
         "status word {:04X} ({}), speed {rpm} rpm, position {position}{}",
-        status.word(),
+        status.to_u16(),
         status_word_text(*status),
         turns_text(*position)
     )

@@ -98,7 +98,7 @@ pub(super) fn status(common: &CommonArgs, output: &Output, status: &StatusArgume
             json!({
                 "number": drive.number.get(),
                 "state": state_keyword(drive.status.state()),
-                "status_word": drive.status.word(),
+                "status_word": drive.status.to_u16(),
                 "requested": drive.requested,
                 "faults": drive.faults,
                 "words": drive.words,
@@ -147,7 +147,7 @@ impl DriveFact {
 /// communication error are warnings. See reference 4.
 fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
-    let is_fault = drive.status.has(StatusBit::Fault);
+    let is_fault = drive.status.is_set(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));
     let error = |(at, code): (usize, &ErrorCode)| {
         let weight = if at < since { FactSeverity::Error } else { FactSeverity::Earlier };
@@ -158,9 +158,9 @@ fn drive_fact_list(drive: &DriveStatus) -> Vec<DriveFact> {
         let text = "the drive has a fault but reports no error".to_owned();
         facts.push(DriveFact { drive: number, code: 0, text, severity: FactSeverity::Error });
     }
-    if drive.status.has(StatusBit::PositionLimit) {
+    if drive.status.is_set(StatusBit::PositionLimit) {
         let text = "the drive is outside its limits (158, 160)".to_owned();
-        facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
+        facts.push(DriveFact { drive: number, code: drive.status.to_u16(), text, severity: FactSeverity::Warning });
     }
     // Parameter 118: 0 means no error, FFFFh no drive.
     let [_, _, communication] = drive.words;
@@ -211,7 +211,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));
     for drive in &status.drives {
         let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
-        let (word, celsius) = (drive.status.word(), drive.temperature);
+        let (word, celsius) = (drive.status.to_u16(), drive.temperature);
         let state = words::state(drive.status.state()).terminal_text();
         lines.add(format!("drive {}", drive.number.get()), format!("{state} (0x{word:04X}), {celsius} °C{requested}"));
     }

@@ -65,51 +65,51 @@ pub(super) fn from_word(word: u16, known: &DecodeContext) -> Result<Vec<WordMean
 }
 
 fn control_meaning(control: ControlWord) -> WordMeaning {
-    let names: Vec<&str> = control.set().map(|(_, name)| name).collect();
+    let names: Vec<&str> = control.set_bits().map(|(_, name)| name).collect();
     let lines = vec![format!("control word, {}", control_word_text(control))];
     WordMeaning { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
 }
 
 fn status_meaning(status: StatusWord) -> WordMeaning {
-    let names: Vec<&str> = status.set().map(StatusBit::name).collect();
+    let names: Vec<&str> = status.set_bits().map(StatusBit::name).collect();
     let lines = vec![format!("status word, {}", status_word_text(status))];
     WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
 /// Formats a control word: its purpose, then its bits.
 pub(super) fn control_word_text(control: ControlWord) -> String {
-    let bits: Vec<String> = control.set().map(|(bit, name)| format!("{bit} {name}")).collect();
+    let bits: Vec<String> = control.set_bits().map(|(bit, name)| format!("{bit} {name}")).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
-    let then = if control.has(ControlBit::Acknowledge) { ", acknowledges a fault when bit 7 falls" } else { "" };
+    let then = if control.is_set(ControlBit::Acknowledge) { ", acknowledges a fault when bit 7 falls" } else { "" };
     format!("{}{then}: {bits}", control_word_purpose(control))
 }
 
 fn control_word_purpose(control: ControlWord) -> &'static str {
     use ControlBit::{Control, Enable, JogOne, JogTwo, NoPause, NoStop, On, SpeedMode, Start};
-    let speed = (control.has(NoStop), control.has(NoPause));
+    let speed = (control.is_set(NoStop), control.is_set(NoPause));
     match control {
-        _ if !control.has(Control) => "leaves the drive alone",
-        _ if !control.has(On) => "keeps it ready",
-        _ if !control.has(Enable) => "keeps it operational",
-        _ if control.has(SpeedMode) && !control.has(Start) => "speed mode, stands",
-        _ if control.has(SpeedMode) => match speed {
+        _ if !control.is_set(Control) => "leaves the drive alone",
+        _ if !control.is_set(On) => "keeps it ready",
+        _ if !control.is_set(Enable) => "keeps it operational",
+        _ if control.is_set(SpeedMode) && !control.is_set(Start) => "speed mode, stands",
+        _ if control.is_set(SpeedMode) => match speed {
             (true, false) => "speed mode, runs clockwise to the end of the range",
             (false, false) => "speed mode, runs counterclockwise to the end of the range",
             (true, true) => "speed mode, runs clockwise without end",
             (false, true) => "speed mode, runs counterclockwise without end",
         },
-        _ if control.has(JogOne) || control.has(JogTwo) => "a jog step, which no stop ends",
+        _ if control.is_set(JogOne) || control.is_set(JogTwo) => "a jog step, which no stop ends",
         _ if speed == (false, false) => "keeps it enabled",
-        _ if !control.has(NoStop) => "stops, the job is gone",
-        _ if !control.has(NoPause) => "pauses the job",
-        _ if control.has(Start) => "holds, and starts a job if status bit 12 is 0",
+        _ if !control.is_set(NoStop) => "stops, the job is gone",
+        _ if !control.is_set(NoPause) => "pauses the job",
+        _ if control.is_set(Start) => "holds, and starts a job if status bit 12 is 0",
         _ => "holds, and starts a job if status bit 12 is 1",
     }
 }
 
 /// Formats a status word: the state, then its bits.
 pub(super) fn status_word_text(status: StatusWord) -> String {
-    let bits: Vec<String> = status.set().map(|bit| format!("{} {}", bit.number(), bit.name())).collect();
+    let bits: Vec<String> = status.set_bits().map(|bit| format!("{} {}", bit.bit_number(), bit.name())).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
     let present = match (status.is_plausible(), status.is_present()) {
         (false, _) => ", but no drive sends that",

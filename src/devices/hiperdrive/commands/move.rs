@@ -22,7 +22,7 @@ use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    Ended, MotionRequest, Permit, Phase, Refusal, SpeedTorque, TargetState,
+    ActionEnd, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
@@ -37,7 +37,7 @@ const REFRESH: Duration = Duration::from_millis(20);
 const END: Duration = Duration::from_secs(3);
 
 enum MotionOutcome {
-    Ended(Ended),
+    Ended(ActionEnd),
     Interrupted,
     Late,
 }
@@ -57,7 +57,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
     // An impossible target is refused before the cyclic connection is opened.
     let target = within(&permit, target)?;
-    permit.check(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
+    permit.check_request(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
         output.remark(&range(drive, target, (low, high), scale));
     }
@@ -68,7 +68,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
     // Control is released even after a lost connection; that loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
-    let reached = matches!(came, MotionOutcome::Ended(Ended::Arrived));
+    let reached = matches!(came, MotionOutcome::Ended(ActionEnd::Arrived));
     let mut json = json!({"drive": drive.get(), "target": target, "position": position, "reached": reached});
     if reached {
         given?;
@@ -77,7 +77,7 @@ pub(crate) fn execute_move(common: &CommonArgs, output: &Output, wanted: &MoveAr
         return Ok(Done::Well);
     }
     let error = match came {
-        MotionOutcome::Ended(Ended::Fault) => newest_error(&mut runner, drive),
+        MotionOutcome::Ended(ActionEnd::Fault) => newest_error(&mut runner, drive),
         _ => None,
     };
     if let (Some(error), Some(object)) = (error, json.as_object_mut()) {
@@ -115,11 +115,13 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
             values.push((base, value));
         }
     }
-    let rules = MotionLimitParameters::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
+    let rules = MotionLimitParameters::from_parameters(|base| {
+        values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value)
+    });
     // The parameters have just been read.
     let now = Moment::START;
-    let limits = DriveLimits::of(rules, (identity.topology, variant), now);
-    Ok((limits.permit(now, false), limits.scale()))
+    let limits = DriveLimits::from_rules(rules, (identity.topology, variant), now);
+    Ok((limits.motion_permit(now, false), limits.scale()))
 }
 
 /// Checks that a target fits into 32 bits. Any other target is outside all limits.
@@ -136,7 +138,7 @@ fn place(steps: impl Into<i64>) -> Text {
     TEXTS.text("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
 }
 
-fn refused(refusal: Refusal) -> Failure {
+fn refused(refusal: MotionRefusal) -> Failure {
     failed(&words::refusal(refusal, place))
 }
 
@@ -144,7 +146,7 @@ fn refused(refusal: Refusal) -> Failure {
 fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
-    let act = motion.intend(drive, wish);
+    let act = motion.request_motion(drive, wish);
     loop {
         // The Ctrl-C handler has stopped the drive, so the motion is no longer refreshed.
         if runner.is_interrupted() {
@@ -163,12 +165,12 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
     }
 }
 
-fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
-    let view = runner.kept.view();
+fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<ActionEnd> {
+    let view = runner.kept.snapshot();
     let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);
     match ended {
         Some((number, ended)) if number >= act => Some(ended),
-        _ if !view.open => Some(Ended::Lost),
+        _ if !view.open => Some(ActionEnd::Lost),
         _ => None,
     }
 }
@@ -176,14 +178,14 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
 /// Stops the drive, switches it off, and returns its last known state.
 fn stop_and_switch_off(runner: &Runner, drive: DriveNumber) -> Option<DriveSnapshot> {
     let motion = &runner.kept;
-    let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
+    let find = || motion.snapshot().drives.into_iter().find(|own| own.number == drive);
     let until = Instant::now() + END;
     while motion.is_open() && Instant::now() < until && find().is_some_and(|own| own.phase != Phase::Idle) {
         motion.refresh();
         sleep(REFRESH);
     }
     let stood = find();
-    let act = motion.intend(drive, MotionRequest::Lead(TargetState::Off));
+    let act = motion.request_motion(drive, MotionRequest::Lead(TargetState::Off));
     while over(runner, drive, act).is_none() && Instant::now() < until {
         motion.refresh();
         sleep(REFRESH);

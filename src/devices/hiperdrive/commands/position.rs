@@ -72,7 +72,7 @@ impl TurnPosition {
 /// Returns whether the drive is present and its reference is set.
 fn is_valid(reading: &DriveReading) -> bool {
     let status = reading.actual.status;
-    status.is_present() && status.has(StatusBit::ReferenceSet)
+    status.is_present() && status.is_set(StatusBit::ReferenceSet)
 }
 
 fn show(output: &Output, reading: &DriveReading, place: Option<TurnPosition>) -> Result<()> {

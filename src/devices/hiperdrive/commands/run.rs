@@ -67,7 +67,7 @@ impl Runs for Hiperdrive {
                 sleep(LOOKS);
             }
             if again {
-                motion.leave();
+                motion.release_drives();
                 let until = Instant::now() + RELEASED;
                 while motion.is_connected() && Instant::now() < until {
                     sleep(LOOKS);

@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::procedures::write::DeviceWriter;
 use crate::devices::hiperdrive::profile::{Base, HiperdriveProfile, Op};
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
+use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -21,12 +21,12 @@ pub(super) fn commit(
     })
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = Base;
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         // The manual gives no limit (`U`). Saves are counted and reported, and refused only if counting fails.
         PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
     }

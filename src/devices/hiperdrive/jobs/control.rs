@@ -22,13 +22,13 @@ pub(super) struct CyclicControl {
     port: Option<Box<dyn DatagramPort>>,
     clock: Arc<dyn Clock>,
     motion: Motion,
-    open: Option<Open>,
+    open: Option<OpenConnection>,
     /// Device and drives as identified when the connection was last opened.
     identity: Option<Identity>,
     pub(super) rules_refresh: RulesRefresh,
 }
 
-struct Open {
+struct OpenConnection {
     cyclic: Cyclic,
     close: ForwardClose,
 }
@@ -51,8 +51,8 @@ impl CyclicControl {
 
     /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received any
     /// data.
-    pub(super) fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
-        let view = self.motion.view();
+    pub(super) fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
+        let view = self.motion.snapshot();
         let speaks = view.open && view.link.received > 0;
         view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
     }
@@ -76,7 +76,7 @@ impl CyclicControl {
     /// Stops the drives after explicit messaging was lost.
     pub(super) fn stop_after_session_loss(&self) {
         if let Some(open) = &self.open {
-            open.cyclic.lose(ConnectionLoss::Session);
+            open.cyclic.report_loss(ConnectionLoss::Session);
         }
     }
 
@@ -87,16 +87,21 @@ impl CyclicControl {
                 Value::Number(value) => Some(*value),
                 Value::Text(_) => None,
             };
-            self.limit(&survey.identity, drive.number, MotionLimitParameters::by(read), [began; GROUPS]);
+            self.publish_limits(
+                &survey.identity,
+                drive.number,
+                MotionLimitParameters::from_parameters(read),
+                [began; GROUPS],
+            );
         }
     }
 
-    pub(super) fn forget(&mut self, drive: DriveNumber) {
-        self.motion.with_limits(drive, DriveLimits::forget);
+    pub(super) fn forget_drive(&mut self, drive: DriveNumber) {
+        self.motion.with_limits(drive, DriveLimits::clear);
     }
 
     /// Publishes a drive's limits, derived from its parameters, with the times at which these were read.
-    pub(super) fn limit(
+    pub(super) fn publish_limits(
         &self,
         identity: &Identity,
         drive: DriveNumber,
@@ -104,13 +109,13 @@ impl CyclicControl {
         times: [Moment; GROUPS],
     ) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
-        self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
+        self.motion.with_limits(drive, |limits| limits.update(rules, (identity.topology, variant), times));
     }
 }
 
 impl Hiperdrive {
     /// Opens the cyclic connection, without moving any drive.
-    pub(super) fn take(
+    pub(super) fn take_control(
         &mut self,
         context: &mut SessionContext,
         progress: &mut dyn FnMut(u64, u64, ParameterNumber),
@@ -137,7 +142,7 @@ impl Hiperdrive {
         });
         match started {
             Ok(cyclic) => {
-                self.control.open = Some(Open { cyclic, close: opened.close });
+                self.control.open = Some(OpenConnection { cyclic, close: opened.close });
                 self.control.motion.set_connected(true);
                 self.control.identity = Some(identity);
                 Ok(())
@@ -153,7 +158,7 @@ impl Hiperdrive {
     }
 
     pub(super) fn release(&mut self, context: &mut SessionContext) -> Result<(), Error> {
-        let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
+        let Some(OpenConnection { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
         let closed = self.master(context).forward_close(&close);
         self.control.motion.set_connected(false);
@@ -161,7 +166,7 @@ impl Hiperdrive {
     }
 
     /// Ends the session: stops and releases drives under control, and unregisters from the device if it was controlled.
-    pub(super) fn end(&mut self, context: &mut SessionContext) {
+    pub(super) fn end_session(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
@@ -184,9 +189,9 @@ impl Hiperdrive {
             self.control.stop_after_session_loss();
         }
         if self.should_release_control() {
-            return self.end(context);
+            return self.end_session(context);
         }
-        if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {
+        if self.control.open.as_ref().is_none_or(|open| open.cyclic.connection_loss().is_none()) {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
@@ -198,7 +203,7 @@ impl Hiperdrive {
     }
 
     /// Carries out a plan and reads the limits of the drives again. No drive may move until its limits are known.
-    pub(super) fn commit(
+    pub(super) fn commit_plan(
         &mut self,
         context: &mut SessionContext,
         commit: &Commit,
@@ -207,11 +212,12 @@ impl Hiperdrive {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
             // These values are from before the plan. A changed scale is detected by comparison with them.
-            let rules = MotionLimitParameters::by(|base| commit.prepared.image.for_drive(drive.number, base));
+            let rules =
+                MotionLimitParameters::from_parameters(|base| commit.prepared.image.for_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {
-                limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);
-                limits.forget();
+                limits.update(rules, (identity.topology, drive.variant), [now; GROUPS]);
+                limits.clear();
             });
         }
         let ended = carry_through(self, context, commit, tell);

@@ -48,10 +48,10 @@ pub struct CyclicRunner {
 
 /// Maximum time to wait for the thread to end. Covers the stop sequence, three packets with the drives off, and a
 /// margin for the operating system.
-const PATIENCE: Duration = Duration::from_millis(1500);
+const END_TIMEOUT: Duration = Duration::from_millis(1500);
 /// Maximum number of received packets handled once the next send is due. The limit keeps a flooded port from delaying
 /// the send.
-const AT_ONCE: usize = 64;
+const MAX_PACKETS_AT_ONCE: usize = 64;
 
 impl Cyclic {
     /// Starts the thread for an open connection; `port` must be directed at the target.
@@ -72,13 +72,13 @@ impl Cyclic {
         let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
             let _alive: crossbeam_channel::Sender<Never> = alive;
             failed.set_realtime_priority(request_realtime_priority());
-            let turned = catch_unwind(AssertUnwindSafe(|| while pump.turn() {}));
+            let turned = catch_unwind(AssertUnwindSafe(|| while pump.run_once() {}));
             if turned.is_err() {
-                failed.fail();
+                failed.mark_failed();
             }
         });
         if let Err(error) = thread {
-            motion.fail();
+            motion.mark_failed();
             return Err(error);
         }
         Ok(Cyclic { motion: motion.clone(), commands, ended })
@@ -86,12 +86,12 @@ impl Cyclic {
 
     /// Returns the reason for the loss if the connection was lost. The owner must then close it through the session's
     /// own connection.
-    pub fn lost(&self) -> Option<ConnectionLoss> {
-        self.motion.lost()
+    pub fn connection_loss(&self) -> Option<ConnectionLoss> {
+        self.motion.connection_loss()
     }
 
     /// Reports a loss detected by the session and stops the drives.
-    pub fn lose(&self, why: ConnectionLoss) {
+    pub fn report_loss(&self, why: ConnectionLoss) {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
@@ -100,8 +100,8 @@ impl Cyclic {
     pub fn close(self) -> Option<ConnectionLoss> {
         self.commands.end.store(true, Ordering::SeqCst);
         // The channel disconnects when the thread ends; a thread that takes longer is not awaited.
-        let _ = self.ended.recv_timeout(PATIENCE);
-        self.lost()
+        let _ = self.ended.recv_timeout(END_TIMEOUT);
+        self.connection_loss()
     }
 }
 
@@ -126,16 +126,16 @@ impl CyclicRunner {
         CyclicRunner { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
-    /// Requests that the drives stop and the connection end; [`turn`](Self::turn) carries this out.
-    pub fn end(&self) {
+    /// Requests that the drives stop and the connection end; [`run_once`](Self::run_once) carries this out.
+    pub fn request_end(&self) {
         self.commands.end.store(true, Ordering::SeqCst);
     }
 
     /// Receives until the next packet is due, then sends that packet. Returns `false` once the connection has ended.
-    pub fn turn(&mut self) -> bool {
+    pub fn run_once(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;
-        while late < AT_ONCE {
+        while late < MAX_PACKETS_AT_ONCE {
             match self.port.receive(due, &mut self.packet) {
                 Ok(true) => {
                     let now = self.clock.now();

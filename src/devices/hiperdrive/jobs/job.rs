@@ -3,14 +3,14 @@
 use std::fmt;
 
 use crate::devices::hiperdrive::procedures::check::{CheckStep, HiperdriveStepResult};
-use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
+use crate::devices::hiperdrive::procedures::write::{Interrupted, WrittenChanges};
 use crate::devices::hiperdrive::procedures::{DriveReading, Error, Identity, Network, Status, Survey};
 use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, PlanError, RestoreOptions, Service, TypeMismatch,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::wear;
+use crate::worker::commit::total_cycles_to_report;
 
 /// Save count above which the user is warned of memory wear. The value is an assumption, since the manual gives no
 /// limit (`U`).
@@ -120,14 +120,14 @@ pub struct Prepared {
 impl Prepared {
     /// Returns the number of saves after this plan if a wear warning is needed, or `None` otherwise.
     pub fn wear(&self) -> Option<u64> {
-        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
+        total_cycles_to_report(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
 /// A plan that the user has approved.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-pub type Committed = crate::worker::Committed<Written>;
+pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {

@@ -120,7 +120,7 @@ impl Device for Hiperdrive {
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
             HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)),
-            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(context, &commit, tell)?)),
+            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit_plan(context, &commit, tell)?)),
             HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Survey => {
@@ -139,7 +139,7 @@ impl Device for Hiperdrive {
             HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(context))?)),
             HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Take => {
-                self.take(context, &mut parameter)?;
+                self.take_control(context, &mut parameter)?;
                 Out::Taken
             }
             HiperdriveJob::Give => {
@@ -157,7 +157,7 @@ impl Device for Hiperdrive {
     fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         self.release_lost_control(context);
         let drive = self.watched;
-        if let Some(actual) = self.control.actual(drive) {
+        if let Some(actual) = self.control.actual_values(drive) {
             return Ok(Sample::Position(DriveReading { at: context.clock.now(), drive, actual }));
         }
         Ok(Sample::Position(position(&mut self.master(context), drive)?))
@@ -193,7 +193,7 @@ impl Device for Hiperdrive {
 
     /// Stops the drives that are under control and releases them.
     fn leave(&mut self, context: &mut SessionContext) {
-        self.end(context);
+        self.end_session(context);
     }
 
     fn is_urgent(&self) -> bool {

@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::procedures::cyclic::{
     ConnectionLoss, Drives, LinkStatistics, ParameterReading, ParameterReadings,
 };
 use crate::devices::hiperdrive::procedures::dead_man::{
-    DeadMan, Ended, Lock, MotionIntent, MotionRequest, Permit, Phase,
+    ActionEnd, DeadMan, MotionIntent, MotionLock, MotionRequest, Permit, Phase,
 };
 use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
 use crate::devices::hiperdrive::protocol::{ActualValues, DriveNumber, ParameterNumber, Setpoint};
@@ -76,15 +76,15 @@ pub struct DriveSnapshot {
     /// Number of the running action, or of the last one if none is running. It is 0 before the first action.
     pub act: u64,
     /// Number of the last action that ended, and how it ended.
-    pub ended: Option<(u64, Ended)>,
+    pub ended: Option<(u64, ActionEnd)>,
 }
 
 /// Time for which a parameter is read after the latest request. A reading counts as recent for the same time.
-const WATCHED: Duration = Duration::from_secs(5);
+const WATCH_DURATION: Duration = Duration::from_secs(5);
 
 impl Motion {
     pub fn new(clock: Arc<dyn Clock>) -> Self {
-        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, clock.now());
+        let intent = MotionIntent::idle(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
             intent,
             limits: BTreeMap::new(),
@@ -101,7 +101,7 @@ impl Motion {
 
     /// Requests a motion of a drive and returns the number of this action. The new action replaces the previous one and
     /// stops its motion. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
-    pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
+    pub fn request_motion(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
@@ -121,14 +121,14 @@ impl Motion {
 
     pub fn stop(&self) {
         let drive = self.lock().intent.drive;
-        self.intend(drive, MotionRequest::Stop);
+        self.request_motion(drive, MotionRequest::Stop);
     }
 
     pub fn is_latest_action(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
 
-    pub fn view(&self) -> MotionSnapshot {
+    pub fn snapshot(&self) -> MotionSnapshot {
         self.lock().view.clone()
     }
 
@@ -160,7 +160,7 @@ impl Motion {
     /// Requires the limits of a drive to be read before its next motion, because another master may have changed them.
     pub fn invalidate_limits(&self, drive: DriveNumber) {
         let now = self.0.clock.now();
-        self.with_limits(drive, |limits| limits.doubt(now));
+        self.with_limits(drive, |limits| limits.invalidate(now));
     }
 
     pub(super) fn requested_drive(&self) -> DriveNumber {
@@ -175,7 +175,7 @@ impl Motion {
     /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have
     /// changed since.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
-        self.with_limits(drive, |limits| limits.confirm(seen))
+        self.with_limits(drive, |limits| limits.confirm_displayed(seen))
     }
 
     /// Allows or forbids an endless run of a drive, which requires factory limits and scaling.
@@ -195,19 +195,19 @@ impl Motion {
         let mut cell = self.lock();
         cell.watched.insert(number, now);
         let readings = cell.view.parameters.as_ref().filter(|_| cell.view.open)?;
-        readings.get(&number).filter(|reading| now.since(reading.at) < WATCHED).copied()
+        readings.get(&number).filter(|reading| now.since(reading.at) < WATCH_DURATION).copied()
     }
 
     pub(super) fn watched_parameters(&self) -> Vec<ParameterNumber> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
-        cell.watched.retain(|_, requested| now.since(*requested) < WATCHED);
+        cell.watched.retain(|_, requested| now.since(*requested) < WATCH_DURATION);
         cell.watched.keys().copied().collect()
     }
 
-    pub fn permitted(&self, drive: DriveNumber) -> Permit {
+    pub fn motion_permit(&self, drive: DriveNumber) -> Permit {
         let now = self.0.clock.now();
-        self.lock().permitted(drive, now)
+        self.lock().motion_permit(drive, now)
     }
 
     /// Marks the start of a connection and returns the number of the latest action. Actions up to this number cannot
@@ -216,7 +216,7 @@ impl Motion {
         let now = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
-        cell.intent = MotionIntent::rest(cell.intent.drive, number, now);
+        cell.intent = MotionIntent::idle(cell.intent.drive, number, now);
         cell.view = MotionSnapshot { open: true, ..MotionSnapshot::default() };
         number
     }
@@ -228,7 +228,7 @@ impl Motion {
     ) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
-        make(&cell.intent, &|drive| cell.permitted(drive, now))
+        make(&cell.intent, &|drive| cell.motion_permit(drive, now))
     }
 
     /// Records a request or a reply of the explicit messages.
@@ -245,22 +245,22 @@ impl Motion {
     pub(super) fn publish_drive_states(&self, drives: &Drives) {
         let of = |man: &DeadMan| DriveSnapshot {
             number: man.drive(),
-            actual: man.actual(),
+            actual: man.actual_values(),
             received_at: man.received_at(),
-            sent: man.sent(),
+            sent: man.last_setpoint(),
             phase: man.phase(),
-            act: man.act(),
-            ended: man.ended(),
+            act: man.action_number(),
+            ended: man.last_end(),
         };
         let mut views: Vec<DriveSnapshot> = drives.dead_man_switches().map(of).collect();
         views.sort_by_key(|view| view.number);
         let view = MotionSnapshot {
             open: !drives.is_ending(),
             drives: views,
-            link: drives.figures().clone(),
+            link: drives.statistics().clone(),
             parameters: drives.parameters().cloned(),
             punctual: false,
-            lost: drives.lost().cloned(),
+            lost: drives.connection_loss().cloned(),
         };
         let mut cell = self.lock();
         cell.view = MotionSnapshot { punctual: cell.punctual, ..view };
@@ -271,18 +271,18 @@ impl Motion {
     }
 
     /// Records that the connection thread has failed or could not start.
-    pub(super) fn fail(&self) {
+    pub(super) fn mark_failed(&self) {
         let mut cell = self.lock();
         (cell.view.open, cell.view.lost) = (false, Some(ConnectionLoss::Failed));
     }
 
-    pub(super) fn lost(&self) -> Option<ConnectionLoss> {
+    pub(super) fn connection_loss(&self) -> Option<ConnectionLoss> {
         self.lock().view.lost.clone()
     }
 
     /// Ends motion when the program exits: stops and switches off all drives and closes their connection. Nothing moves
     /// afterwards.
-    pub fn leave(&self) {
+    pub fn release_drives(&self) {
         self.lock().is_shutting_down = true;
     }
 
@@ -318,18 +318,18 @@ impl Motion {
 }
 
 impl Cell {
-    fn permitted(&self, drive: DriveNumber, now: Moment) -> Permit {
+    fn motion_permit(&self, drive: DriveNumber, now: Moment) -> Permit {
         let limits = self.limits.get(&drive);
-        let permit = limits.map(|limits| limits.permit(now, self.experts.contains(&drive)));
+        let permit = limits.map(|limits| limits.motion_permit(now, self.experts.contains(&drive)));
         let mut permit = permit.unwrap_or_default();
-        permit.locks.extend(self.session.is_silent(now).then_some(Lock::NoAnswer));
+        permit.locks.extend(self.session.is_silent(now).then_some(MotionLock::NoAnswer));
         permit
     }
 }
 
 impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Motion").field(&self.view()).finish()
+        f.debug_tuple("Motion").field(&self.snapshot()).finish()
     }
 }
 
@@ -346,16 +346,16 @@ mod tests {
         let motion = Motion::new(clock.clone());
         let is_stale = || motion.with_motion_intent(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
-        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
+        motion.request_motion(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::DEFAULT_MOVE });
         for _ in 0..3 {
-            later(MotionIntent::FRESH);
+            later(MotionIntent::REFRESH_VALIDITY);
             motion.refresh();
         }
         assert!(!is_stale(), "said in time, again and again");
-        later(MotionIntent::FRESH + Duration::from_millis(1));
+        later(MotionIntent::REFRESH_VALIDITY + Duration::from_millis(1));
         motion.refresh();
         assert!(is_stale(), "too late");
-        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::MOVE });
+        motion.request_motion(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: SpeedTorque::DEFAULT_MOVE });
         assert!(!is_stale(), "another act");
     }
 }

@@ -17,7 +17,7 @@ const TURN: Duration = Duration::from_millis(250);
 /// motion.
 const TURN_IN_MOTION: Duration = REQUEST;
 /// Pause after a failed reading.
-const REST: Duration = Duration::from_millis(500);
+const RETRY_PAUSE: Duration = Duration::from_millis(500);
 
 #[derive(Debug, Default)]
 pub(super) struct RulesRefresh {
@@ -25,15 +25,15 @@ pub(super) struct RulesRefresh {
 }
 
 /// Returns the groups whose slot has begun since their last reading, the one read longest ago first.
-fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
-    let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
+fn due_groups(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
+    let is_due = |(group, at): &(usize, Moment)| turns_begun(*group, now, turn) > turns_begun(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
     groups.sort_by_key(|(_, at)| *at);
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
 /// Returns how many turns of a group have begun by the given time.
-fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
+fn turns_begun(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
     (begun + groups - group as u128) / groups
@@ -52,7 +52,7 @@ impl Hiperdrive {
             if identity.drive(drive).is_none() {
                 continue;
             }
-            match self.look_at(context, &identity, drive) {
+            match self.read_group(context, &identity, drive) {
                 Ok(()) => {}
                 // A job takes precedence, or a newer request has arrived.
                 Err(error) if error.is_cancelled() => return,
@@ -64,27 +64,32 @@ impl Hiperdrive {
         }
     }
 
-    fn look_at(&mut self, context: &mut SessionContext, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
-        if self.control.actual(drive).is_some_and(|actual| !actual.status.is_present()) {
-            self.control.forget(drive);
+    fn read_group(
+        &mut self,
+        context: &mut SessionContext,
+        identity: &Identity,
+        drive: DriveNumber,
+    ) -> Result<(), Error> {
+        if self.control.actual_values(drive).is_some_and(|actual| !actual.status.is_present()) {
+            self.control.forget_drive(drive);
             return Ok(());
         }
         let known = self.control.motion().limits(drive);
-        let Some(mut times) = known.times() else {
+        let Some(mut times) = known.read_times() else {
             let began = context.clock.now();
             let rules = read_rules(&mut self.master(context), drive)?;
-            self.control.limit(identity, drive, rules, [began; GROUPS]);
+            self.control.publish_limits(identity, drive, rules, [began; GROUPS]);
             return Ok(());
         };
         let mut rules = known.rules();
         let turn = if self.control.motion().is_motion_active() { TURN_IN_MOTION } else { TURN };
-        for group in due(times, context.clock.now(), turn) {
+        for group in due_groups(times, context.clock.now(), turn) {
             let now = context.clock.now();
             rules = read_rule_group(&mut self.master(context), drive, rules, group)?;
             if let Some(at) = times.get_mut(group) {
                 *at = now;
             }
-            self.control.limit(identity, drive, rules, times);
+            self.control.publish_limits(identity, drive, rules, times);
         }
         Ok(())
     }
@@ -97,7 +102,7 @@ impl Hiperdrive {
             // The device can no longer be queried, which counts as a loss.
             return self.control.stop_after_session_loss();
         }
-        if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
+        if self.control.rules_refresh.rests.replace(context.clock.now() + RETRY_PAUSE).is_none() {
             self.control.motion().stop();
             self.remark.get_or_insert(DeviceMessage::RulesUnread(Box::new(error)));
         }
@@ -117,7 +122,7 @@ impl Hiperdrive {
         for drive in &identity.drives {
             let began = context.clock.now();
             let rules = self.master(context).run_uncancellable(|master| read_rules(master, drive.number))?;
-            self.control.limit(identity, drive.number, rules, [began; GROUPS]);
+            self.control.publish_limits(identity, drive.number, rules, [began; GROUPS]);
         }
         Ok(())
     }
@@ -137,7 +142,7 @@ mod tests {
         let mut read = [at(0); GROUPS];
         let mut last = 0;
         for now in (0..4000).step_by(20) {
-            for group in due(read, at(now), TURN_IN_MOTION) {
+            for group in due_groups(read, at(now), TURN_IN_MOTION) {
                 read[group] = at(now);
                 last = now;
             }
@@ -157,7 +162,7 @@ mod tests {
                 now += step;
                 let age = at(now).since(read.into_iter().min().unwrap());
                 assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
-                let groups = due(read, at(now), TURN);
+                let groups = due_groups(read, at(now), TURN);
                 assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");
                 for group in groups {
                     read[group] = at(now);

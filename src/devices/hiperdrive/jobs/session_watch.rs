@@ -4,11 +4,11 @@
 //! | case | time |
 //! |---|---|
 //! | minimum rate of requests while a drive moves ([`REQUEST`]) | 60 ms |
-//! | maximum time without a reply ([`PATIENCE`]), or twice the recent response time | 130 ms |
+//! | maximum time without a reply ([`REPLY_TIMEOUT`]), or twice the recent response time | 130 ms |
 //! | total | 190 ms |
 //!
 //! Only time during which the thread has listened counts: a thread that was prevented from listening by a busy computer
-//! cannot conclude that there was no reply. After a further [`UNHEARD`], the reply counts as missing.
+//! cannot conclude that there was no reply. After a further [`UNCHECKED_TIMEOUT`], the reply counts as missing.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,13 +21,13 @@ use crate::units::{CharacterFormat, Moment};
 /// Maximum interval between requests while a drive moves.
 pub(super) const REQUEST: Duration = Duration::from_millis(60);
 /// Maximum time for which a device may leave a request unanswered while a drive moves.
-const PATIENCE: Duration = Duration::from_millis(130);
+const REPLY_TIMEOUT: Duration = Duration::from_millis(130);
 /// Additional time after which a request counts as unanswered even if the line was not checked.
-const UNHEARD: Duration = Duration::from_millis(250);
+const UNCHECKED_TIMEOUT: Duration = Duration::from_millis(250);
 /// Interval between checks of the line while a reply is awaited.
-const LOOK: Duration = Duration::from_millis(10);
+const CHECK_INTERVAL: Duration = Duration::from_millis(10);
 /// Maximum time allowed to a device for a reply, however slow it was before.
-const MOST_PATIENCE: Duration = Duration::from_secs(1);
+const MAX_REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ReplyMonitor {
@@ -42,22 +42,24 @@ pub(super) struct ReplyMonitor {
 }
 
 impl ReplyMonitor {
-    pub(super) const fn ask(&mut self, now: Moment) {
+    pub(super) const fn record_request(&mut self, now: Moment) {
         if self.requested.is_none() {
             self.requested = Some(now);
         }
     }
 
-    pub(super) fn answer(&mut self, now: Moment) {
+    pub(super) fn record_reply(&mut self, now: Moment) {
         self.broken = false;
         // A reply that takes seconds is an exception and does not raise the time allowed for other replies.
-        if let Some(took) = self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
+        if let Some(took) =
+            self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MAX_REPLY_TIMEOUT)
+        {
             self.slowest = took.max(self.slowest * 7 / 8);
         }
     }
 
     /// Records that nothing has arrived by the given time.
-    pub(super) const fn look(&mut self, now: Moment) {
+    pub(super) const fn record_silence(&mut self, now: Moment) {
         self.looked = now;
     }
 
@@ -67,8 +69,8 @@ impl ReplyMonitor {
 
     /// Returns whether the device has been silent for too long to allow motion, or has sent bytes that are not a frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
-        let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
-        let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;
+        let patience = (self.slowest * 2).clamp(REPLY_TIMEOUT, MAX_REPLY_TIMEOUT);
+        let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNCHECKED_TIMEOUT;
         self.broken || self.requested.is_some_and(is_late)
     }
 }
@@ -89,7 +91,7 @@ impl MonitoredLink {
 impl ByteLink for MonitoredLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let now = self.clock.now();
-        self.motion.update_session_watch(|session| session.ask(now));
+        self.motion.update_session_watch(|session| session.record_request(now));
         self.wire.send(bytes)
     }
 
@@ -98,12 +100,12 @@ impl ByteLink for MonitoredLink {
         let mut now = self.clock.now();
         loop {
             let began = now;
-            self.wire.receive((began + LOOK).min(until), into)?;
+            self.wire.receive((began + CHECK_INTERVAL).min(until), into)?;
             now = self.clock.now();
             if into.len() > before {
                 break;
             }
-            self.motion.update_session_watch(|session| session.look(now));
+            self.motion.update_session_watch(|session| session.record_silence(now));
             // If the clock does not advance, no more bytes will arrive.
             if now >= until || now <= began {
                 return Ok(());
@@ -112,7 +114,7 @@ impl ByteLink for MonitoredLink {
         self.frames.push(into.get(before..).unwrap_or_default());
         loop {
             match self.frames.next_frame() {
-                Ok(Some(_)) => self.motion.update_session_watch(|session| session.answer(now)),
+                Ok(Some(_)) => self.motion.update_session_watch(|session| session.record_reply(now)),
                 Ok(None) => return Ok(()),
                 Err(_) => {
                     self.frames = Receiver::default();
@@ -138,7 +140,7 @@ impl ByteLink for MonitoredLink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::hiperdrive::procedures::dead_man::Lock;
+    use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
     use crate::devices::hiperdrive::protocol::DriveNumber;
     use crate::link::VirtualClock;
 
@@ -151,17 +153,17 @@ mod tests {
     fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = ReplyMonitor::default();
         assert!(!watch.is_silent(at(10_000)), "nothing was asked");
-        watch.ask(at(100));
-        watch.ask(at(180));
-        watch.look(at(230));
+        watch.record_request(at(100));
+        watch.record_request(at(180));
+        watch.record_silence(at(230));
         assert!(!watch.is_silent(at(260)), "listened for 130 ms");
-        watch.look(at(231));
+        watch.record_silence(at(231));
         assert!(watch.is_silent(at(231)));
-        watch.answer(at(250));
+        watch.record_reply(at(250));
         assert!(!watch.is_silent(at(1000)), "it was answered");
         watch.abort_session();
         assert!(watch.is_silent(at(1000)), "with bytes that are no frame");
-        watch.answer(at(1001));
+        watch.record_reply(at(1001));
         assert!(!watch.is_silent(at(1001)));
     }
 
@@ -199,8 +201,12 @@ mod tests {
         let motion = Motion::new(clock.clone());
         let locked = || {
             let locks = motion.with_motion_intent(|_, permit| permit(DriveNumber::FIRST).locks);
-            assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
-            locks.contains(&Lock::NoAnswer)
+            assert_eq!(
+                motion.motion_permit(DriveNumber::FIRST).locks,
+                locks,
+                "the window shows what the dead-man asks"
+            );
+            locks.contains(&MotionLock::NoAnswer)
         };
         let later = |ms| clock.sleep_until(clock.now() + Duration::from_millis(ms));
         let receive = |bytes: &[u8]| {
@@ -229,26 +235,26 @@ mod tests {
     #[test]
     fn a_slow_device_gets_a_longer_timeout() {
         let mut watch = ReplyMonitor::default();
-        watch.ask(at(0));
-        watch.answer(at(300));
-        watch.ask(at(1000));
+        watch.record_request(at(0));
+        watch.record_reply(at(300));
+        watch.record_request(at(1000));
         // The line is not read for another 250 ms.
         assert!(!watch.is_silent(at(1850)) && watch.is_silent(at(1851)));
-        watch.answer(at(1900));
-        watch.ask(at(7000));
+        watch.record_reply(at(1900));
+        watch.record_request(at(7000));
         assert!(!watch.is_silent(at(8250)) && watch.is_silent(at(8251)), "never more than a second");
         for step in 0..40 {
-            watch.answer(at(8100 + step * 100));
-            watch.ask(at(8190 + step * 100));
+            watch.record_reply(at(8100 + step * 100));
+            watch.record_request(at(8190 + step * 100));
         }
-        watch.look(at(12_090 + 131));
+        watch.record_silence(at(12_090 + 131));
         assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
         // A presence test takes eight seconds on a hub, and does not count for later requests.
         let mut watch = ReplyMonitor::default();
-        watch.ask(at(0));
-        watch.answer(at(8000));
-        watch.ask(at(9000));
-        watch.look(at(9131));
+        watch.record_request(at(0));
+        watch.record_reply(at(8000));
+        watch.record_request(at(9000));
+        watch.record_silence(at(9131));
         assert!(watch.is_silent(at(9131)));
     }
 }

@@ -292,10 +292,10 @@ fn error_findings(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     let mut findings = Vec::new();
     if word.is_plausible() {
         let state = word.state();
-        let is_bad = matches!(state, State::Fault | State::Locked) || word.has(StatusBit::Fault);
+        let is_bad = matches!(state, State::Fault | State::Locked) || word.is_set(StatusBit::Fault);
         findings.push((if is_bad { Verdict::Bad } else { Verdict::Good }, CheckFinding::State(state)));
     } else {
-        findings.push((Verdict::Attention, CheckFinding::StrayStatus(word.word())));
+        findings.push((Verdict::Attention, CheckFinding::StrayStatus(word.to_u16())));
     }
     findings.extend((*drive != 0).then_some((Verdict::Attention, CheckFinding::DriveWord(*drive))));
     findings.extend((*motion != 0).then_some((Verdict::Attention, CheckFinding::MotionWord(*motion))));

@@ -26,13 +26,14 @@ mod watch;
 use std::time::Duration;
 
 pub use act::{
-    Ended, Lock, MotionIntent, MotionKind, MotionRequest, Permit, Phase, Refusal, SpeedTorque, StopLevel, TargetState,
+    ActionEnd, MotionIntent, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit, Phase, SpeedTorque,
+    StopLevel, TargetState,
 };
-pub use watch::{Outside, Side};
+pub use watch::{LimitSide, OutsideLimits};
 
 use lead::StateSequencer;
-use stage::{Mark, Stage};
-use watch::Watch;
+use stage::{ReportMark, Stage};
+use watch::ActionMonitor;
 
 use crate::devices::hiperdrive::protocol::{
     ActualValues, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit,
@@ -49,7 +50,7 @@ pub struct DeadMan {
     sent: Setpoint,
     stage: Stage,
     level: TargetState,
-    act: Option<Act>,
+    act: Option<UserAction>,
     /// Number of the last action that is no longer allowed to start.
     spent: u64,
     /// Speed and torque of the last motion.
@@ -58,16 +59,16 @@ pub struct DeadMan {
     after_run: bool,
     /// Whether reports are currently missing. No motion may start then.
     is_out_of_contact: bool,
-    ended: Option<(u64, Ended)>,
+    ended: Option<(u64, ActionEnd)>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Act {
+struct UserAction {
     number: u64,
     /// Latest request of the action. Pausing a job also counts as a request.
     request: MotionRequest,
     motion: Option<Motion>,
-    watch: Option<Watch>,
+    watch: Option<ActionMonitor>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -85,12 +86,12 @@ const START: Duration = Duration::from_secs(1);
 /// Time without a report after which nothing may move, more than three times the longest interval.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// Maximum delay of a report between a hub and its drives (`U`).
-pub const SETTLE: Duration = Duration::from_millis(100);
+pub const MAX_REPORT_DELAY: Duration = Duration::from_millis(100);
 /// Time for which positions must have arrived before they count as those of the drive. A hub first queries all its
 /// drives (`U`).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 /// Time at standstill after which a drive counts as not having reached its target.
-const SHORT: Duration = Duration::from_millis(500);
+const NOT_REACHED_TIME: Duration = Duration::from_millis(500);
 
 impl DeadMan {
     /// Creates the state for a newly opened connection. Actions numbered up to `spent` do not start.
@@ -127,9 +128,9 @@ impl DeadMan {
         self.sent = match self.received {
             Some((_, actual)) => {
                 self.check_end_conditions(now, actual, intent, permit);
-                self.advance(now, actual);
-                self.take(now, actual, intent, permit);
-                self.run_guarded(self.setpoint(actual), actual)
+                self.advance_stage(now, actual);
+                self.accept_intent(now, actual, intent, permit);
+                self.run_guarded(self.next_setpoint(actual), actual)
             }
             None => {
                 self.discard_void_request(now, intent);
@@ -144,7 +145,7 @@ impl DeadMan {
     }
 
     /// Returns the data received last, or zeros before the first reception.
-    pub fn actual(&self) -> ActualValues {
+    pub fn actual_values(&self) -> ActualValues {
         self.received.map(|(_, actual)| actual).unwrap_or_default()
     }
 
@@ -153,17 +154,17 @@ impl DeadMan {
         self.received.map(|(at, _)| at)
     }
 
-    pub const fn sent(&self) -> Setpoint {
+    pub const fn last_setpoint(&self) -> Setpoint {
         self.sent
     }
 
     /// Returns the number of the running action, or of the last one that ended. Returns 0 before the first action.
-    pub fn act(&self) -> u64 {
+    pub fn action_number(&self) -> u64 {
         self.act.map_or(self.ended.map_or(0, |(number, _)| number), |act| act.number)
     }
 
     /// Returns the number of the last action that ended, and how it ended.
-    pub const fn ended(&self) -> Option<(u64, Ended)> {
+    pub const fn last_end(&self) -> Option<(u64, ActionEnd)> {
         self.ended
     }
 
@@ -193,10 +194,10 @@ impl DeadMan {
     /// Handles the end or loss of the connection by ending the running action and stopping the motion.
     pub fn connection_lost(&mut self, now: Moment) {
         if self.stage.has_motion() {
-            self.stop(now, Ended::Lost);
+            self.stop(now, ActionEnd::Lost);
         } else if matches!(self.stage, Stage::Lead(_)) {
-            self.end(Ended::Lost);
-            self.hold_state(self.actual().status.state());
+            self.end_action(ActionEnd::Lost);
+            self.hold_state(self.actual_values().status.state());
         }
     }
 
@@ -204,7 +205,7 @@ impl DeadMan {
     pub fn handle_contact_loss(&mut self, now: Moment) {
         self.is_out_of_contact = true;
         if self.stage.has_motion() {
-            self.stop(now, Ended::Deaf);
+            self.stop(now, ActionEnd::Deaf);
         }
     }
 
@@ -214,7 +215,7 @@ impl DeadMan {
         self.received = Some((now, actual));
         self.first = self.first.or(Some(now));
         let below = TargetState::from_word(self.sent.control) < TargetState::Operational;
-        let forgotten = |bit| !actual.status.has(bit);
+        let forgotten = |bit| !actual.status.is_set(bit);
         if below && forgotten(StatusBit::Operational) && forgotten(StatusBit::SetpointAcknowledged) {
             self.after_run = false;
         }
@@ -230,11 +231,11 @@ impl DeadMan {
         }
         self.spent = intent.number;
         if intent.drive == self.drive && !rests && self.act.is_none_or(|act| act.number < intent.number) {
-            self.ended = Some((intent.number, Ended::Stale));
+            self.ended = Some((intent.number, ActionEnd::Stale));
         }
     }
 
-    fn end(&mut self, how: Ended) {
+    fn end_action(&mut self, how: ActionEnd) {
         if let Some(act) = self.act.take() {
             self.spent = self.spent.max(act.number);
             self.ended = Some((act.number, how));
@@ -242,7 +243,7 @@ impl DeadMan {
     }
 
     /// Starts a new action if one is requested and the last action has ended.
-    fn take(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
+    fn accept_intent(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) {
         self.discard_void_request(now, intent);
         // A step counts from the present position.
         let has_arrived = self.first.is_some_and(|first| now.since(first) >= ARRIVAL_TIME);
@@ -251,65 +252,65 @@ impl DeadMan {
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }
-        self.act = Some(Act { number: intent.number, request: intent.request, motion: None, watch: None });
-        if self.is_out_of_contact && intent.request.moves() {
-            self.end(Ended::Deaf);
-        } else if let Err(refusal) = self.begin(now, actual, intent.request, permit) {
-            self.end(Ended::Refused(refusal));
+        self.act = Some(UserAction { number: intent.number, request: intent.request, motion: None, watch: None });
+        if self.is_out_of_contact && intent.request.needs_motion() {
+            self.end_action(ActionEnd::Deaf);
+        } else if let Err(refusal) = self.begin_action(now, actual, intent.request, permit) {
+            self.end_action(ActionEnd::Refused(refusal));
         }
     }
 
-    fn begin(
+    fn begin_action(
         &mut self,
         now: Moment,
         actual: ActualValues,
         request: MotionRequest,
         permit: &Permit,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), MotionRefusal> {
         let status = actual.status;
         if !status.is_present() {
-            return Err(Refusal::Absent);
+            return Err(MotionRefusal::Absent);
         }
         let kind = match request {
             MotionRequest::Rest | MotionRequest::Stop => return Ok(()),
-            MotionRequest::Lead(goal) => return self.lead(now, actual, goal),
+            MotionRequest::Lead(goal) => return self.lead_to(now, actual, goal),
             MotionRequest::Acknowledge => return self.acknowledge(now, actual),
-            MotionRequest::Pause => return Err(Refusal::NothingToPause),
-            MotionRequest::Resume => return Err(Refusal::NothingToResume),
+            MotionRequest::Pause => return Err(MotionRefusal::NothingToPause),
+            MotionRequest::Resume => return Err(MotionRefusal::NothingToResume),
             MotionRequest::Move { target, .. } => MotionKind::Job { target },
             MotionRequest::Step { by, .. } => MotionKind::Job { target: actual.position.saturating_add(by) },
             MotionRequest::Jog { direction, .. } => MotionKind::Run { direction, end: RunEnd::RangeEnd },
             MotionRequest::Run { direction, end, .. } => MotionKind::Run { direction, end },
         };
-        permit.check(request, kind.target())?;
+        permit.check_request(request, kind.target())?;
         if permit.doubted {
-            return Err(Refusal::Locked(Lock::Outdated));
+            return Err(MotionRefusal::Locked(MotionLock::Outdated));
         }
         permit.check_position_limits(request, actual)?;
-        if status.has(StatusBit::Fault) {
-            return Err(Refusal::Fault);
+        if status.is_set(StatusBit::Fault) {
+            return Err(MotionRefusal::Fault);
         }
-        if status.has(StatusBit::SwitchOnLock) {
-            return Err(Refusal::SwitchOnLock);
+        if status.is_set(StatusBit::SwitchOnLock) {
+            return Err(MotionRefusal::SwitchOnLock);
         }
         if let Some(act) = &mut self.act {
             act.motion = Some(Motion { request, kind });
         }
-        self.effort = request.effort().unwrap_or(self.effort);
-        self.stage = Stage::Lead(StateSequencer::to(TargetState::Enabled));
-        self.advance(now, actual);
+        self.effort = request.speed_torque().unwrap_or(self.effort);
+        self.stage = Stage::Lead(StateSequencer::new(TargetState::Enabled));
+        self.advance_stage(now, actual);
         Ok(())
     }
 
     /// Replaces a control word that could start a motion while no action with a motion is running. This is the last
     /// safeguard.
     fn run_guarded(&self, setpoint: Setpoint, actual: ActualValues) -> Setpoint {
-        let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
+        let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.is_moving();
         if is_commanded || setpoint.control.is_at_rest() { setpoint } else { Setpoint::standing(actual) }
     }
 
-    const fn mark(&self, now: Moment) -> Mark {
-        Mark { at: now, report: self.reports }
+    const fn mark_now(&self, now: Moment) -> ReportMark {
+        ReportMark { at: now, report: self.reports }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use super::dead_man::{Lock, Permit};
+use super::dead_man::{MotionLock, Permit};
 use super::rules::{GROUPS, MotionLimitParameters};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
@@ -37,7 +37,7 @@ pub struct DisplayedLimits {
 }
 
 /// Time for which a reading of the limits is valid, longer than a slow device may take to reply to all requests.
-const VALID: Duration = Duration::from_secs(4);
+const VALIDITY: Duration = Duration::from_secs(4);
 
 /// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual
 /// does not define do not qualify.
@@ -48,15 +48,15 @@ pub(super) fn stops_on_timeout(timeout: i64) -> bool {
 
 impl DriveLimits {
     /// Creates the limits of a drive whose parameters were all read at the given time.
-    pub fn of(rules: MotionLimitParameters, (topology, variant): (Topology, Variant), at: Moment) -> Self {
+    pub fn from_rules(rules: MotionLimitParameters, (topology, variant): (Topology, Variant), at: Moment) -> Self {
         let mut limits = DriveLimits::default();
-        limits.take(rules, (topology, variant), [at; GROUPS]);
+        limits.update(rules, (topology, variant), [at; GROUPS]);
         limits
     }
 
     /// Adopts parameter readings. `times` contains the time at which the reading of each group began. If the scale has
     /// changed, the limits denote other positions and must be confirmed. Readings older than a doubt do not clear it.
-    pub fn take(
+    pub fn update(
         &mut self,
         rules: MotionLimitParameters,
         (topology, variant): (Topology, Variant),
@@ -74,19 +74,19 @@ impl DriveLimits {
     }
 
     /// Returns the time at which each group of parameters was read, or `None` if all must be read immediately.
-    pub fn times(&self) -> Option<[Moment; GROUPS]> {
+    pub fn read_times(&self) -> Option<[Moment; GROUPS]> {
         self.read.filter(|_| self.doubted.is_none())
     }
 
     /// Requires the parameters to be read again before the next motion begins, because another master may have changed
     /// them. A running motion continues while the last reading is valid.
-    pub fn doubt(&mut self, now: Moment) {
+    pub fn invalidate(&mut self, now: Moment) {
         // Each thread reads the clock before it stores the doubt, so the later time may be stored first.
         self.doubted = self.doubted.max(Some(now));
     }
 
     /// Discards the parameter readings. Unconfirmed limits remain unconfirmed.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         // The scale is kept, so that a change can be detected.
         let rules = MotionLimitParameters { scale: self.rules.scale, ..MotionLimitParameters::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
@@ -101,14 +101,14 @@ impl DriveLimits {
     }
 
     /// Confirms the limits as shown to the user. Returns `false` and has no effect if the limits have changed since.
-    pub fn confirm(&mut self, seen: DisplayedLimits) -> bool {
-        let counts = self.seen() == Some(seen);
+    pub fn confirm_displayed(&mut self, seen: DisplayedLimits) -> bool {
+        let counts = self.displayed_limits() == Some(seen);
         self.unconfirmed &= !counts;
         counts
     }
 
     /// Returns the limits to show for a confirmation, or `None` if they have not been read.
-    pub fn seen(&self) -> Option<DisplayedLimits> {
+    pub fn displayed_limits(&self) -> Option<DisplayedLimits> {
         Some(DisplayedLimits { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
@@ -132,7 +132,7 @@ impl DriveLimits {
     }
 
     fn is_fresh(&self, now: Moment) -> bool {
-        self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALID))
+        self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALIDITY))
     }
 
     /// Returns whether scale and limits have factory values, so that an endless run is possible.
@@ -141,15 +141,15 @@ impl DriveLimits {
     }
 
     /// Returns the reasons why motion is locked, the most important first.
-    pub fn locks(&self) -> Vec<Lock> {
+    pub fn motion_locks(&self) -> Vec<MotionLock> {
         let MotionLimitParameters { requested, timeout, .. } = self.rules;
         // An invalid scale or range counts as not read.
         let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
-            (Lock::Unread, unread),
-            (Lock::NotRequested, requested.is_some_and(|value| value != 1)),
-            (Lock::NoTimeout, timeout.is_some_and(|value| !stops_on_timeout(value))),
-            (Lock::LimitsUnconfirmed, self.unconfirmed),
+            (MotionLock::Unread, unread),
+            (MotionLock::NotRequested, requested.is_some_and(|value| value != 1)),
+            (MotionLock::NoTimeout, timeout.is_some_and(|value| !stops_on_timeout(value))),
+            (MotionLock::LimitsUnconfirmed, self.unconfirmed),
         ]
         .into_iter()
         .filter_map(|(lock, holds)| holds.then_some(lock))
@@ -157,9 +157,9 @@ impl DriveLimits {
     }
 
     /// Returns the permit of the drive at the given time. `expert` tells whether the user has allowed an endless run.
-    pub fn permit(&self, now: Moment, expert: bool) -> Permit {
-        let mut locks = self.locks();
-        locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
+    pub fn motion_permit(&self, now: Moment, expert: bool) -> Permit {
+        let mut locks = self.motion_locks();
+        locks.extend((!locks.contains(&MotionLock::Unread) && !self.is_fresh(now)).then_some(MotionLock::Outdated));
         let endless = self.is_factory && expert;
         Permit {
             limits: self.limits(),
@@ -207,7 +207,7 @@ mod tests {
     }
 
     fn rules(changed: &[(u16, Option<i64>)]) -> MotionLimitParameters {
-        MotionLimitParameters::by(|number| {
+        MotionLimitParameters::from_parameters(|number| {
             let own = changed.iter().find(|(own, _)| *own == number);
             own.map_or_else(|| factory(number), |(_, value)| *value)
         })
@@ -221,7 +221,7 @@ mod tests {
     fn parameters_lock_or_permit_motion() {
         let whole = Some((-33_488_896, 33_488_896));
         // A degree of 65536 steps per turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
-        let permit = |limits, locks: &[Lock], endless, degree| Permit {
+        let permit = |limits, locks: &[MotionLock], endless, degree| Permit {
             limits,
             locks: locks.to_vec(),
             endless,
@@ -231,20 +231,20 @@ mod tests {
         type Case<'c> = (&'c str, &'c [(u16, Option<i64>)], Permit);
         let cases: [Case<'_>; 8] = [
             ("factory", &[], permit(whole, &[], true, 183)),
-            ("given up", &[(152, Some(0))], permit(whole, &[Lock::NotRequested], true, 183)),
-            ("no time-out", &[(186, Some(255))], permit(whole, &[Lock::NoTimeout], true, 183)),
+            ("given up", &[(152, Some(0))], permit(whole, &[MotionLock::NotRequested], true, 183)),
+            ("no time-out", &[(186, Some(255))], permit(whole, &[MotionLock::NoTimeout], true, 183)),
             ("scaled", &[(156, Some(400))], permit(whole, &[], false, 1)),
             ("limited", &[(160, Some(65536))], permit(Some((-33_488_896, 65536)), &[], false, 183)),
-            ("unread", &[(186, None)], permit(whole, &[Lock::Unread], true, 183)),
-            ("no limit", &[(158, None)], permit(None, &[Lock::Unread], false, 183)),
-            ("no scale", &[(154, None)], permit(whole, &[Lock::Unread], false, 1)),
+            ("unread", &[(186, None)], permit(whole, &[MotionLock::Unread], true, 183)),
+            ("no limit", &[(158, None)], permit(None, &[MotionLock::Unread], false, 183)),
+            ("no scale", &[(154, None)], permit(whole, &[MotionLock::Unread], false, 1)),
         ];
         for (label, changed, expected) in cases {
-            let limits = DriveLimits::of(rules(changed), HDA30A, at(0));
-            assert_eq!(limits.permit(at(0), true), expected, "{label}");
-            assert!(!limits.permit(at(0), false).endless, "{label}: only for an expert");
+            let limits = DriveLimits::from_rules(rules(changed), HDA30A, at(0));
+            assert_eq!(limits.motion_permit(at(0), true), expected, "{label}");
+            assert!(!limits.motion_permit(at(0), false).endless, "{label}: only for an expert");
         }
-        let other = DriveLimits::of(rules(&[]), (Topology::Adapter, Variant::OTHER), at(0));
+        let other = DriveLimits::from_rules(rules(&[]), (Topology::Adapter, Variant::OTHER), at(0));
         assert!(!other.is_endless_run_allowed(), "its factory values are not known");
     }
 
@@ -252,57 +252,65 @@ mod tests {
     /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, or 255 for never (reference 4).
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
-        type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
+        type Case<'c> = (&'c [(u16, Option<i64>)], MotionLock);
         let cases: [Case<'_>; 8] = [
-            (&[(154, Some(0))], Lock::Unread),
-            (&[(156, Some(0))], Lock::Unread),
-            (&[(154, Some(65_536))], Lock::Unread),
-            (&[(158, Some(1000)), (160, Some(1000))], Lock::Unread),
-            (&[(158, Some(1000)), (160, Some(-1000))], Lock::Unread),
-            (&[(152, Some(2))], Lock::NotRequested),
-            (&[(186, Some(0))], Lock::NoTimeout),
-            (&[(186, Some(101))], Lock::NoTimeout),
+            (&[(154, Some(0))], MotionLock::Unread),
+            (&[(156, Some(0))], MotionLock::Unread),
+            (&[(154, Some(65_536))], MotionLock::Unread),
+            (&[(158, Some(1000)), (160, Some(1000))], MotionLock::Unread),
+            (&[(158, Some(1000)), (160, Some(-1000))], MotionLock::Unread),
+            (&[(152, Some(2))], MotionLock::NotRequested),
+            (&[(186, Some(0))], MotionLock::NoTimeout),
+            (&[(186, Some(101))], MotionLock::NoTimeout),
         ];
         for (changed, lock) in cases {
-            let limits = DriveLimits::of(rules(changed), HDA30A, at(0));
-            assert_eq!(limits.permit(at(0), true).locks, [lock], "{changed:?}");
+            let limits = DriveLimits::from_rules(rules(changed), HDA30A, at(0));
+            assert_eq!(limits.motion_permit(at(0), true).locks, [lock], "{changed:?}");
         }
         for tenths in [1, 100] {
-            assert_eq!(DriveLimits::of(rules(&[(186, Some(tenths))]), HDA30A, at(0)).locks(), [], "{tenths}");
+            assert_eq!(
+                DriveLimits::from_rules(rules(&[(186, Some(tenths))]), HDA30A, at(0)).motion_locks(),
+                [],
+                "{tenths}"
+            );
         }
     }
 
     /// Issue 21.3: the later of two doubts counts, regardless of the order in which they arrive.
     #[test]
     fn an_earlier_doubt_does_not_replace_a_later_one() {
-        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
-        limits.doubt(at(100));
-        limits.doubt(at(50));
-        limits.take(rules(&[]), HDA30A, [at(70); GROUPS]);
+        let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
+        limits.invalidate(at(100));
+        limits.invalidate(at(50));
+        limits.update(rules(&[]), HDA30A, [at(70); GROUPS]);
         assert!(!limits.is_valid(at(100)), "read before the later one");
-        limits.take(rules(&[]), HDA30A, [at(100); GROUPS]);
+        limits.update(rules(&[]), HDA30A, [at(100); GROUPS]);
         assert!(limits.is_valid(at(100)));
     }
 
     /// Issue 21.3: a reading carries its time, which the dead-man checks.
     #[test]
     fn a_reading_is_valid_for_four_seconds() {
-        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
-        limits.take(rules(&[]), HDA30A, [at(1000), at(500), at(1000), at(1000)]);
-        for (ms, locks) in [(4500, vec![]), (4501, vec![Lock::Outdated])] {
-            assert_eq!(limits.permit(at(ms), false).locks, locks, "{ms}");
+        let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
+        limits.update(rules(&[]), HDA30A, [at(1000), at(500), at(1000), at(1000)]);
+        for (ms, locks) in [(4500, vec![]), (4501, vec![MotionLock::Outdated])] {
+            assert_eq!(limits.motion_permit(at(ms), false).locks, locks, "{ms}");
             assert_eq!(limits.is_valid(at(ms)), locks.is_empty(), "{ms}");
         }
-        limits.doubt(at(1000));
-        assert!(!limits.is_valid(at(1000)) && limits.permit(at(1000), false).doubted, "nothing begins");
-        assert_eq!((limits.permit(at(1000), false).locks, limits.times()), (vec![], None), "what moves goes on");
+        limits.invalidate(at(1000));
+        assert!(!limits.is_valid(at(1000)) && limits.motion_permit(at(1000), false).doubted, "nothing begins");
+        assert_eq!(
+            (limits.motion_permit(at(1000), false).locks, limits.read_times()),
+            (vec![], None),
+            "what moves goes on"
+        );
         // A group that was being read when the doubt arose.
-        limits.take(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
-        assert_eq!((limits.times(), limits.is_valid(at(1100))), (None, false));
-        limits.take(rules(&[]), HDA30A, [at(1200); GROUPS]);
-        assert_eq!((limits.times(), limits.is_valid(at(1200))), (Some([at(1200); GROUPS]), true));
-        limits.forget();
-        assert_eq!(limits.permit(at(1000), false).locks, [Lock::Unread]);
+        limits.update(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
+        assert_eq!((limits.read_times(), limits.is_valid(at(1100))), (None, false));
+        limits.update(rules(&[]), HDA30A, [at(1200); GROUPS]);
+        assert_eq!((limits.read_times(), limits.is_valid(at(1200))), (Some([at(1200); GROUPS]), true));
+        limits.clear();
+        assert_eq!(limits.motion_permit(at(1000), false).locks, [MotionLock::Unread]);
         assert_eq!(limits.limits(), None);
     }
 
@@ -311,21 +319,21 @@ mod tests {
     #[test]
     fn limits_are_confirmed_as_they_were_shown() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);
-        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
+        let mut limits = DriveLimits::from_rules(rules(&[]), HDA30A, at(0));
         assert!(!limits.is_unconfirmed(), "as it was found");
-        let before = limits.seen().unwrap();
-        limits.forget();
-        limits.take(scaled, HDA30A, [at(1); GROUPS]);
-        assert_eq!(limits.locks(), [Lock::LimitsUnconfirmed]);
-        assert!(!limits.confirm(before), "shown under the scale of before");
-        let seen = limits.seen().unwrap();
+        let before = limits.displayed_limits().unwrap();
+        limits.clear();
+        limits.update(scaled, HDA30A, [at(1); GROUPS]);
+        assert_eq!(limits.motion_locks(), [MotionLock::LimitsUnconfirmed]);
+        assert!(!limits.confirm_displayed(before), "shown under the scale of before");
+        let seen = limits.displayed_limits().unwrap();
         for other in [DisplayedLimits { limits: (-1000, 1001), ..seen }, DisplayedLimits { scale: (400, 255), ..seen }]
         {
-            assert!(!limits.confirm(other) && limits.is_unconfirmed(), "{other:?}");
+            assert!(!limits.confirm_displayed(other) && limits.is_unconfirmed(), "{other:?}");
         }
-        limits.forget();
-        assert!(limits.is_unconfirmed() && !limits.confirm(seen), "nothing is known that could be confirmed");
-        limits.take(scaled, HDA30A, [at(2); GROUPS]);
-        assert!(limits.confirm(seen) && limits.locks().is_empty());
+        limits.clear();
+        assert!(limits.is_unconfirmed() && !limits.confirm_displayed(seen), "nothing is known that could be confirmed");
+        limits.update(scaled, HDA30A, [at(2); GROUPS]);
+        assert!(limits.confirm_displayed(seen) && limits.motion_locks().is_empty());
     }
 }

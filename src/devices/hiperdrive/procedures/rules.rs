@@ -24,7 +24,7 @@ pub struct MotionLimitParameters {
 
 impl MotionLimitParameters {
     /// Creates the rules from parameters. `read` is called with the parameter numbers of drive 1.
-    pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
+    pub fn from_parameters(read: impl Fn(u16) -> Option<i64>) -> Self {
         MotionLimitParameters {
             requested: read(REQUESTED),
             scale: read(NUMERATOR).zip(read(DENOMINATOR)),
@@ -48,7 +48,9 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<MotionL
             Err(error) => return Err(error),
         }
     }
-    Ok(MotionLimitParameters::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
+    Ok(MotionLimitParameters::from_parameters(|wanted| {
+        values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)
+    }))
 }
 
 /// Number of groups in which a drive's limit parameters are read again. Related parameters are read together.

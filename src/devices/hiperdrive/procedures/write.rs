@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-pub use crate::profile::Written;
+pub use crate::profile::WrittenChanges;
 
 use super::error::RequestedItem;
 use super::identify::{drive_status, drive_text, of, own, topology};
@@ -17,10 +17,10 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };
-use crate::profile::{Confirmed, Write};
+use crate::profile::{ConfirmedPlan, Write};
 
 /// A write that ended early. Values written before that may be lost at power-off unless they are saved.
-pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
+pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, ()>;
 
 impl Interrupted {
     /// Returns the change made by the unfinished operation if it may have been carried out in part. Returns `None` if
@@ -44,11 +44,11 @@ impl Write for DeviceWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;
-    type Written = Written;
+    type Written = WrittenChanges;
     type EndState = ();
 
     /// Checks that the drives are unchanged and none of them is moving.
-    fn confirm(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
+    fn confirm_base(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let changed = |item: String| Err(Error::Changed { item });
         if master.read_number(own(17)?)?.to_string() != identity.serial_number {
@@ -79,12 +79,17 @@ impl Write for DeviceWriter<'_, '_> {
         Ok(())
     }
 
-    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
+    fn apply(
+        &mut self,
+        op: &Op,
+        confirmed: &ConfirmedPlan<'_, Base, Op>,
+        done: &mut WrittenChanges,
+    ) -> Result<(), Error> {
         if !are_scale_or_limits_incomplete(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
         }
         self.master.run_uncancellable(|master| perform(master, op, done))?;
-        done.carried_out(op.weight());
+        done.count_operation(op.weight());
         Ok(())
     }
 
@@ -119,7 +124,7 @@ fn are_scale_or_limits_incomplete(ops: &[Op], at: usize) -> bool {
     left.iter().filter_map(place).any(|drive| begun.iter().filter_map(place).any(|own| own == drive))
 }
 
-fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
+fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
     match op {
         Op::Write { number, new, .. } => {
             write(master, *number, *new)?;
@@ -161,7 +166,7 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     }
 }
 
-fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written) -> Result<(), Error> {
+fn perform_service(master: &mut Master<'_>, service: Service, done: &mut WrittenChanges) -> Result<(), Error> {
     match service {
         Service::Acknowledge(drive) => return acknowledge(master, drive),
         Service::Save | Service::FactoryAll => done.write_cycles += 1,
@@ -217,7 +222,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<FaultReset,
     // Older errors are already acknowledged.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
     let word = status.status;
-    let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
+    let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.is_set(StatusBit::Warning);
     Ok(match status.faults {
         0 if !has_failed => FaultReset::Nothing,
         _ if recent.any(|code| *code != ErrorCode::RS485) => FaultReset::Reset,

@@ -68,7 +68,7 @@ pub enum MotionStart {
 /// A control word with reserved bits set, which must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("control word {word:04X} has reserved bits set ({}), which must be 0", bits(*word & RESERVED))]
-pub struct Refused {
+pub struct ReservedBitsError {
     /// The rejected word.
     pub word: u16,
 }
@@ -98,7 +98,7 @@ impl ControlBit {
     ];
 
     /// Returns the number of the bit in the control word.
-    pub const fn number(self) -> u8 {
+    pub const fn bit_number(self) -> u8 {
         self as u8
     }
 
@@ -131,106 +131,111 @@ impl ControlWord {
     pub const OFF: ControlWord = ControlWord(0);
     /// Control word 0400h (ready). Speed mode is left through this word. Below the operational state, the drive
     /// discards the job that clearing bit 12 would start.
-    pub const READY: ControlWord = ControlWord::OFF.with(ControlBit::Control);
+    pub const READY: ControlWord = ControlWord::OFF.with_bit(ControlBit::Control);
     /// Control word 0401h (operational).
-    pub const OPERATIONAL: ControlWord = ControlWord::READY.with(ControlBit::On);
+    pub const OPERATIONAL: ControlWord = ControlWord::READY.with_bit(ControlBit::On);
     /// Control word 0409h (enabled).
-    pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Enable);
+    pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with_bit(ControlBit::Enable);
     /// Control word 0481h, the first of two words that acknowledge a fault. [`OPERATIONAL`](Self::OPERATIONAL) must
     /// follow. Bit 0 stays set, so its falling edge remains available for the switch-on lock.
-    pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Acknowledge);
+    pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with_bit(ControlBit::Acknowledge);
 
     /// Parses a received control word.
     ///
     /// # Errors
-    /// Returns [`Refused`] if a reserved bit is set.
-    pub const fn parse(word: u16) -> Result<Self, Refused> {
-        if word & RESERVED == 0 { Ok(ControlWord(word)) } else { Err(Refused { word }) }
+    /// Returns [`ReservedBitsError`] if a reserved bit is set.
+    pub const fn parse(word: u16) -> Result<Self, ReservedBitsError> {
+        if word & RESERVED == 0 { Ok(ControlWord(word)) } else { Err(ReservedBitsError { word }) }
     }
 
     /// Returns the raw word.
-    pub const fn word(self) -> u16 {
+    pub const fn to_u16(self) -> u16 {
         self.0
     }
 
     /// Returns the control word that prepares a job without starting one: 0439h or 0479h. Bit 6 has the level that the
     /// drive has acknowledged.
     pub const fn without_job_start(status: StatusWord) -> Self {
-        ControlWord::position_mode(status.has(StatusBit::SetpointAcknowledged))
+        ControlWord::position_mode(status.is_set(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
     pub const fn with_job_start(status: StatusWord) -> Self {
-        ControlWord::position_mode(!status.has(StatusBit::SetpointAcknowledged))
+        ControlWord::position_mode(!status.is_set(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the speed mode word for standstill: 1409h or 1419h, or 1429h or 1439h for an endless run.
     pub const fn speed_mode(direction: Direction, end: RunEnd) -> Self {
-        let word = ControlWord::ENABLED.with(ControlBit::SpeedMode);
+        let word = ControlWord::ENABLED.with_bit(ControlBit::SpeedMode);
         let word = match direction {
-            Direction::Clockwise => word.with(ControlBit::NoStop),
+            Direction::Clockwise => word.with_bit(ControlBit::NoStop),
             Direction::Counterclockwise => word,
         };
         match end {
             RunEnd::RangeEnd => word,
-            RunEnd::Endless => word.with(ControlBit::NoPause),
+            RunEnd::Endless => word.with_bit(ControlBit::NoPause),
         }
     }
 
     /// Returns the speed mode word that runs the drive: 1449h or 1459h, or 1469h or 1479h for an endless run. The drive
     /// must have received [`speed_mode`](Self::speed_mode) before.
-    pub const fn running(direction: Direction, end: RunEnd) -> Self {
-        ControlWord::speed_mode(direction, end).with(ControlBit::Start)
+    pub const fn speed_mode_running(direction: Direction, end: RunEnd) -> Self {
+        ControlWord::speed_mode(direction, end).with_bit(ControlBit::Start)
     }
 
     /// Returns this control word with a stop for its mode. Speed mode clears bit 6. Positioning clears bit 4 and
     /// discards the job. Torque stays on, and jog bits are cleared in both modes.
     pub const fn with_stop(self) -> Self {
-        let word = self.without(ControlBit::JogOne).without(ControlBit::JogTwo);
-        if self.has(ControlBit::SpeedMode) { word.without(ControlBit::Start) } else { word.without(ControlBit::NoStop) }
+        let word = self.without_bit(ControlBit::JogOne).without_bit(ControlBit::JogTwo);
+        if self.is_set(ControlBit::SpeedMode) {
+            word.without_bit(ControlBit::Start)
+        } else {
+            word.without_bit(ControlBit::NoStop)
+        }
     }
 
     /// Returns this control word with the job paused; [`without_pause`](Self::without_pause) continues it. In speed
     /// mode, bit 5 has another meaning, so the word is returned unchanged.
     pub const fn with_pause(self) -> Self {
-        if self.has(ControlBit::SpeedMode) { self } else { self.without(ControlBit::NoPause) }
+        if self.is_set(ControlBit::SpeedMode) { self } else { self.without_bit(ControlBit::NoPause) }
     }
 
     /// Returns this control word with a paused job resumed. In speed mode, the word is returned unchanged.
     pub const fn without_pause(self) -> Self {
-        if self.has(ControlBit::SpeedMode) { self } else { self.with(ControlBit::NoPause) }
+        if self.is_set(ControlBit::SpeedMode) { self } else { self.with_bit(ControlBit::NoPause) }
     }
 
     /// Returns whether a bit is set.
-    pub const fn has(self, bit: ControlBit) -> bool {
+    pub const fn is_set(self, bit: ControlBit) -> bool {
         self.0 & bit.mask() != 0
     }
 
     /// Returns the numbers and meanings of the set bits, lowest first.
-    pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
-        let speed_mode = self.has(ControlBit::SpeedMode);
-        let set = ControlBit::ALL.into_iter().filter(move |bit| self.has(*bit));
-        set.map(move |bit| (bit.number(), bit.name(speed_mode)))
+    pub fn set_bits(self) -> impl Iterator<Item = (u8, &'static str)> {
+        let speed_mode = self.is_set(ControlBit::SpeedMode);
+        let set = ControlBit::ALL.into_iter().filter(move |bit| self.is_set(*bit));
+        set.map(move |bit| (bit.bit_number(), bit.name(speed_mode)))
     }
 
     /// Returns the motion that starts when this control word follows `before`. The drive must be operational and report
     /// `status`. A job starts on a difference of levels, not on an edge (reference 8.10). Clearing bit 12 after a run
     /// therefore starts a job to a stale target.
     pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
-        let rises = |bit: ControlBit| self.has(bit) && !before.has(bit);
-        let acknowledged = status.has(StatusBit::SetpointAcknowledged);
-        let enabled = self.has(ControlBit::On) && self.has(ControlBit::Enable) && self.has(ControlBit::Control);
-        if !enabled || !status.has(StatusBit::OperationEnabled) || status.has(StatusBit::Fault) {
+        let rises = |bit: ControlBit| self.is_set(bit) && !before.is_set(bit);
+        let acknowledged = status.is_set(StatusBit::SetpointAcknowledged);
+        let enabled =
+            self.is_set(ControlBit::On) && self.is_set(ControlBit::Enable) && self.is_set(ControlBit::Control);
+        if !enabled || !status.is_set(StatusBit::OperationEnabled) || status.is_set(StatusBit::Fault) {
             None
-        } else if self.has(ControlBit::SpeedMode) {
+        } else if self.is_set(ControlBit::SpeedMode) {
             if rises(ControlBit::Start) { Some(MotionStart::Run) } else { None }
         } else if rises(ControlBit::JogOne) {
             Some(MotionStart::JogOne)
         } else if rises(ControlBit::JogTwo) {
             Some(MotionStart::JogTwo)
-        } else if self.has(ControlBit::NoStop)
-            && self.has(ControlBit::NoPause)
-            && self.has(ControlBit::Start) != acknowledged
+        } else if self.is_set(ControlBit::NoStop)
+            && self.is_set(ControlBit::NoPause)
+            && self.is_set(ControlBit::Start) != acknowledged
         {
             Some(MotionStart::Job)
         } else {
@@ -241,25 +246,25 @@ impl ControlWord {
     /// Returns whether this control word starts no motion and brings a moving drive to a standstill. This holds for any
     /// status that the drive reports, even late.
     pub const fn is_at_rest(self) -> bool {
-        let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
-        let moves = if self.has(ControlBit::SpeedMode) {
-            self.has(ControlBit::Start)
+        let jogs = self.is_set(ControlBit::JogOne) || self.is_set(ControlBit::JogTwo);
+        let moves = if self.is_set(ControlBit::SpeedMode) {
+            self.is_set(ControlBit::Start)
         } else {
-            self.has(ControlBit::NoStop) && self.has(ControlBit::NoPause)
+            self.is_set(ControlBit::NoStop) && self.is_set(ControlBit::NoPause)
         };
-        !self.has(ControlBit::Enable) || !(jogs || moves)
+        !self.is_set(ControlBit::Enable) || !(jogs || moves)
     }
 
     const fn position_mode(start: bool) -> Self {
-        let word = ControlWord::ENABLED.with(ControlBit::NoStop).with(ControlBit::NoPause);
-        if start { word.with(ControlBit::Start) } else { word }
+        let word = ControlWord::ENABLED.with_bit(ControlBit::NoStop).with_bit(ControlBit::NoPause);
+        if start { word.with_bit(ControlBit::Start) } else { word }
     }
 
-    const fn with(self, bit: ControlBit) -> Self {
+    const fn with_bit(self, bit: ControlBit) -> Self {
         ControlWord(self.0 | bit.mask())
     }
 
-    const fn without(self, bit: ControlBit) -> Self {
+    const fn without_bit(self, bit: ControlBit) -> Self {
         ControlWord(self.0 & !bit.mask())
     }
 }

@@ -33,7 +33,7 @@ pub const VENDOR: u16 = 1010;
 /// Assemblies of the cyclic connection: configuration, output to the drives, and input from the drives.
 pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
-pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, Refused, RunEnd};
+pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, ReservedBitsError, RunEnd};
 pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
 pub use leds::{
     BUS_LEDS, DriveLedState, LedRow, LedSubject, NetworkLed, NetworkLedRow, NetworkLedState, PORT_LEDS, PortLedRow,

@@ -1,6 +1,6 @@
 //! Process data: the cyclic output to the drives and the input from them (reference 2).
 
-use super::control_word::{ControlWord, Refused};
+use super::control_word::{ControlWord, ReservedBitsError};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Words;
@@ -236,7 +236,7 @@ impl Setpoint {
 impl From<Setpoint> for OutputData {
     fn from(setpoint: Setpoint) -> Self {
         let Setpoint { control, speed, torque, target } = setpoint;
-        OutputData { control: control.word(), speed: speed.0, torque: torque.0, target }
+        OutputData { control: control.to_u16(), speed: speed.0, torque: torque.0, target }
     }
 }
 
@@ -244,8 +244,8 @@ impl OutputData {
     /// Returns the control word.
     ///
     /// # Errors
-    /// Returns [`Refused`] if a reserved bit is set.
-    pub const fn control_word(&self) -> Result<ControlWord, Refused> {
+    /// Returns [`ReservedBitsError`] if a reserved bit is set.
+    pub const fn control_word(&self) -> Result<ControlWord, ReservedBitsError> {
         ControlWord::parse(self.control)
     }
 
@@ -272,7 +272,7 @@ impl ActualValues {
     }
 
     fn emit(&self, order: ByteOrder) -> [u8; PLACE] {
-        let [z0, z1] = order.encode_u16(self.status.word());
+        let [z0, z1] = order.encode_u16(self.status.to_u16());
         let [s0, s1] = order.encode_u16(self.speed.cast_unsigned());
         let [a, b, c, d] = order.encode_u32(self.position.cast_unsigned());
         [z0, z1, s0, s1, a, b, c, d]

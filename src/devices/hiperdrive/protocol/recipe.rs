@@ -40,6 +40,6 @@ pub const UNLOCK: [Step; 2] = [step(ControlWord::OPERATIONAL, &[]), READY];
 impl Step {
     /// Returns whether the drive has reached the state of this step.
     pub fn is_done(&self, status: StatusWord) -> bool {
-        self.until.iter().all(|(bit, set)| status.has(*bit) == *set)
+        self.until.iter().all(|(bit, set)| status.is_set(*bit) == *set)
     }
 }

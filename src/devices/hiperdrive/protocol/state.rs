@@ -109,13 +109,13 @@ impl State {
 
     /// Returns the state after the control word changes from `before` to `now`. At most one transition takes place.
     /// Motion does not follow from the control word alone.
-    pub fn after(self, before: ControlWord, now: ControlWord) -> State {
+    pub fn after_control_word(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
-            Set(bit) => now.has(bit),
-            Clear(bit) => !now.has(bit),
+            Set(bit) => now.is_set(bit),
+            Clear(bit) => !now.is_set(bit),
             Falls(bit, beside) => {
-                let fits = beside.is_none_or(|(bit, set)| now.has(bit) == set);
-                before.has(bit) && !now.has(bit) && fits
+                let fits = beside.is_none_or(|(bit, set)| now.is_set(bit) == set);
+                before.is_set(bit) && !now.is_set(bit) && fits
             }
             Starts | Ends | Fails => false,
         };
@@ -123,7 +123,7 @@ impl State {
     }
 
     /// Returns the state after an event other than a control word.
-    pub fn by(self, trigger: Trigger) -> State {
+    pub fn after_event(self, trigger: Trigger) -> State {
         self.transitions().find(|row| row.trigger == trigger).map_or(self, |row| row.to)
     }
 

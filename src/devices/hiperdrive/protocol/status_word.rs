@@ -67,7 +67,7 @@ impl StatusBit {
     ];
 
     /// Returns the number of the bit in the status word.
-    pub const fn number(self) -> u8 {
+    pub const fn bit_number(self) -> u8 {
         self as u8
     }
 
@@ -104,29 +104,29 @@ impl StatusWord {
     }
 
     /// Returns the raw word.
-    pub const fn word(self) -> u16 {
+    pub const fn to_u16(self) -> u16 {
         self.0
     }
 
     /// Returns whether a bit is set.
-    pub const fn has(self, bit: StatusBit) -> bool {
+    pub const fn is_set(self, bit: StatusBit) -> bool {
         self.0 >> bit as u8 & 1 == 1
     }
 
     /// Returns this status word with a bit set or cleared.
-    pub const fn with(self, bit: StatusBit, set: bool) -> Self {
+    pub const fn with_bit(self, bit: StatusBit, set: bool) -> Self {
         let mask = 1 << bit as u8;
         StatusWord(if set { self.0 | mask } else { self.0 & !mask })
     }
 
     /// Returns the set bits, lowest first.
-    pub fn set(self) -> impl Iterator<Item = StatusBit> {
-        StatusBit::ALL.into_iter().filter(move |bit| self.has(*bit))
+    pub fn set_bits(self) -> impl Iterator<Item = StatusBit> {
+        StatusBit::ALL.into_iter().filter(move |bit| self.is_set(*bit))
     }
 
     /// Returns whether the drive is present, that is, detected or requested.
     pub const fn is_present(self) -> bool {
-        self.has(StatusBit::NoOff2)
+        self.is_set(StatusBit::NoOff2)
     }
 
     /// Returns whether a drive can send this status word. Bits 4, 5, 9 and 11 are always set and cleared together.
@@ -139,15 +139,15 @@ impl StatusWord {
     /// (`D`). Bits 0 to 2 during a fault are not documented (`U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};
-        if self.has(Fault) {
+        if self.is_set(Fault) {
             State::Fault
-        } else if self.has(SwitchOnLock) {
+        } else if self.is_set(SwitchOnLock) {
             State::Locked
-        } else if self.has(OperationEnabled) {
-            if self.has(StandingStill) { State::Enabled } else { State::Moving }
-        } else if self.has(Operational) {
+        } else if self.is_set(OperationEnabled) {
+            if self.is_set(StandingStill) { State::Enabled } else { State::Moving }
+        } else if self.is_set(Operational) {
             State::Operational
-        } else if self.has(Ready) {
+        } else if self.is_set(Ready) {
             State::Ready
         } else {
             State::NotReady

@@ -44,17 +44,17 @@ fn published_control_words_match() {
         (0x0479, ControlWord::without_job_start(status(0x3E37))),
         (0x0439, ControlWord::with_job_start(status(0x3E37))),
         (0x1419, ControlWord::speed_mode(Clockwise, RangeEnd)),
-        (0x1459, ControlWord::running(Clockwise, RangeEnd)),
+        (0x1459, ControlWord::speed_mode_running(Clockwise, RangeEnd)),
         (0x1409, ControlWord::speed_mode(Counterclockwise, RangeEnd)),
-        (0x1449, ControlWord::running(Counterclockwise, RangeEnd)),
+        (0x1449, ControlWord::speed_mode_running(Counterclockwise, RangeEnd)),
         (0x1439, ControlWord::speed_mode(Clockwise, Endless)),
-        (0x1479, ControlWord::running(Clockwise, Endless)),
+        (0x1479, ControlWord::speed_mode_running(Clockwise, Endless)),
     ];
     for (expected, control) in cases {
-        assert_eq!(format!("{:04X}", control.word()), format!("{expected:04X}"));
+        assert_eq!(format!("{:04X}", control.to_u16()), format!("{expected:04X}"));
         assert_eq!(ControlWord::parse(expected), Ok(control));
     }
-    let names = |of: u16| word(of).set().map(|(bit, name)| format!("{bit} {name}")).collect::<Vec<_>>().join(", ");
+    let names = |of: u16| word(of).set_bits().map(|(bit, name)| format!("{bit} {name}")).collect::<Vec<_>>().join(", ");
     assert_eq!(names(0x0479), "0 on, 3 enable operation, 4 no stop, 5 no pause, 6 job toggle, 10 control by PLC");
     assert_eq!(names(0x1459), "0 on, 3 enable operation, 4 clockwise, 6 run, 10 control by PLC, 12 speed mode");
     assert_eq!(names(0x0509), "0 on, 3 enable operation, 8 jog 1, 10 control by PLC");
@@ -65,7 +65,7 @@ fn published_control_words_match() {
 fn reserved_bits_are_refused() {
     for bit in [1, 2, 11, 13, 14, 15] {
         let wrong = 0x0409 | 1 << bit;
-        assert_eq!(ControlWord::parse(wrong), Err(Refused { word: wrong }), "bit {bit}");
+        assert_eq!(ControlWord::parse(wrong), Err(ReservedBitsError { word: wrong }), "bit {bit}");
     }
     let refused = ControlWord::parse(0x047F).unwrap_err();
     assert_eq!(refused.to_string(), "control word 047F has reserved bits set (1, 2), which must be 0");
@@ -85,11 +85,11 @@ fn the_stop_word_depends_on_the_mode() {
         (0x0509, 0x0409),
         (0x0400, 0x0400),
     ] {
-        assert_eq!(word(before).with_stop().word(), stopped, "{before:04X}");
+        assert_eq!(word(before).with_stop().to_u16(), stopped, "{before:04X}");
     }
-    assert_eq!(word(0x0479).with_pause().word(), 0x0459);
-    assert_eq!(word(0x0459).without_pause().word(), 0x0479);
-    assert_eq!((word(0x1459).with_pause().word(), word(0x1419).without_pause().word()), (0x1459, 0x1419));
+    assert_eq!(word(0x0479).with_pause().to_u16(), 0x0459);
+    assert_eq!(word(0x0459).without_pause().to_u16(), 0x0479);
+    assert_eq!((word(0x1459).with_pause().to_u16(), word(0x1419).without_pause().to_u16()), (0x1459, 0x1419));
 }
 
 /// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
@@ -141,15 +141,15 @@ fn published_status_words_match() {
         assert_eq!(status(word).state(), state, "{word:04X}");
     }
     // Bits 4, 5, 9, 11 of a drive that was detected; 13 at standstill.
-    let standing = StatusWord::FOUND.with(S::StandingStill, true);
-    assert_eq!((standing.word(), standing.is_present()), (0x2A30, true));
-    let set: Vec<u8> = standing.set().map(StatusBit::number).collect();
+    let standing = StatusWord::FOUND.with_bit(S::StandingStill, true);
+    assert_eq!((standing.to_u16(), standing.is_present()), (0x2A30, true));
+    let set: Vec<u8> = standing.set_bits().map(StatusBit::bit_number).collect();
     assert_eq!(set, [4, 5, 9, 11, 13]);
     assert!(!status(0).is_present() && status(0).is_plausible() && standing.is_plausible());
     // Bit 11 is missing, as in every control word.
     assert!(!status(0x0439).is_plausible() && !status(0x047F).is_plausible());
-    assert_eq!(status(0x3E37).with(S::TargetReached, false).word(), 0x3A37);
-    let [moving, done] = [0x1A37, 0x3E37].map(|word| status(word).has(S::SetpointAcknowledged));
+    assert_eq!(status(0x3E37).with_bit(S::TargetReached, false).to_u16(), 0x3A37);
+    let [moving, done] = [0x1A37, 0x3E37].map(|word| status(word).is_set(S::SetpointAcknowledged));
     assert!(moving && done);
 }
 
@@ -184,7 +184,7 @@ fn the_state_machine_matches_the_reference() {
         (Locked, 0x0400, 0x0400, Locked),
     ];
     for (from, before, now, to) in cases {
-        assert_eq!(from.after(word(before), word(now)), to, "{from}: {before:04X} {now:04X}");
+        assert_eq!(from.after_control_word(word(before), word(now)), to, "{from}: {before:04X} {now:04X}");
     }
     for (from, trigger, to) in [
         (Enabled, Trigger::Starts, Moving),
@@ -195,7 +195,7 @@ fn the_state_machine_matches_the_reference() {
         (Ready, Trigger::Fails, Ready),
         (Operational, Trigger::Starts, Operational),
     ] {
-        assert_eq!(from.by(trigger), to, "{from}");
+        assert_eq!(from.after_event(trigger), to, "{from}");
     }
     let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.can_be_moved_with_keys()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
@@ -205,7 +205,7 @@ fn the_state_machine_matches_the_reference() {
     {
         for row in state.transitions() {
             let Some(control) = row.word else { continue };
-            assert_eq!(state.after(word(kept), control), row.to, "{state} by {:04X}", control.word());
+            assert_eq!(state.after_control_word(word(kept), control), row.to, "{state} by {:04X}", control.to_u16());
         }
     }
 }
@@ -233,12 +233,12 @@ fn recipes_reach_their_target_state() {
             assert!(
                 step.until.is_empty() || !step.is_done(status_word_for(state)),
                 "{state} before {:04X}",
-                step.word.word()
+                step.word.to_u16()
             );
-            state = state.after(before, step.word);
-            assert!(step.is_done(status_word_for(state)), "{state} after {:04X}", step.word.word());
+            state = state.after_control_word(before, step.word);
+            assert!(step.is_done(status_word_for(state)), "{state} after {:04X}", step.word.to_u16());
             before = step.word;
-            words.push(step.word.word());
+            words.push(step.word.to_u16());
         }
         (words, state)
     };
@@ -290,7 +290,7 @@ fn published_process_data_to_a_drive_match() {
     assert_eq!(hex(&image.emit(big)), "04 79 64 64 00 02 80 00");
     assert_eq!(OutputImage::parse(&bytes("04 79 64 64 00 02 80 00"), big), Ok(image));
     let odd = OutputImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), BARE).unwrap().drives[0];
-    assert_eq!((odd.control_word(), odd.torque), (Err(Refused { word: 0x047F }), 255));
+    assert_eq!((odd.control_word(), odd.torque), (Err(ReservedBitsError { word: 0x047F }), 255));
     assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
 }
 
@@ -355,11 +355,11 @@ proptest! {
             ControlWord::without_job_start(says),
             ControlWord::with_job_start(says),
             ControlWord::speed_mode(direction, end),
-            ControlWord::running(direction, end),
+            ControlWord::speed_mode_running(direction, end),
             before.with_stop(),
         ] {
-            prop_assert_eq!(ControlWord::parse(control.word()), Ok(control));
-            prop_assert!(!control.has(C::JogOne) && !control.has(C::JogTwo));
+            prop_assert_eq!(ControlWord::parse(control.to_u16()), Ok(control));
+            prop_assert!(!control.is_set(C::JogOne) && !control.is_set(C::JogTwo));
         }
         prop_assert_eq!(before.with_stop().motion_start(before, says), None);
         prop_assert_eq!(ControlWord::without_job_start(says).motion_start(before, says), None);

@@ -239,7 +239,7 @@ mod tests {
             Some(Value::Number(code)) => Some(ErrorCode::new(u16::try_from(code).unwrap())),
             Some(Value::Text(text)) => panic!("{text}"),
         };
-        (status.with(StatusBit::SetpointAcknowledged, false).word(), error)
+        (status.with_bit(StatusBit::SetpointAcknowledged, false).to_u16(), error)
     }
 
     /// Reference 3 and 9: the status word is 3E37 when done, compared without bit 12, and 2AB8 for a fault.

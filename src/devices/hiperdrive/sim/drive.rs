@@ -188,7 +188,7 @@ impl Drive {
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
         .into_iter()
-        .fold(StatusWord::FOUND, |status, (bit, set)| status.with(bit, set))
+        .fold(StatusWord::FOUND, |status, (bit, set)| status.with_bit(bit, set))
     }
 
     /// Returns whether nothing is moving or is going to move.
@@ -222,7 +222,7 @@ impl Drive {
     /// Handles the loss of the master, which is a fault for an operational drive.
     pub(super) fn abandon(&mut self, now: Moment) {
         self.advance(now);
-        if self.state.by(Trigger::Fails) == State::Fault && self.state != State::Fault {
+        if self.state.after_event(Trigger::Fails) == State::Fault && self.state != State::Fault {
             self.enter_fault(ErrorCode::CONNECTION_TIMEOUT);
         }
     }
@@ -237,7 +237,7 @@ impl Drive {
         self.errors.truncate(ERRORS);
         self.faults = self.faults.saturating_add(1);
         self.over_current |= code == ErrorCode::OVER_CURRENT;
-        self.enter(self.state.by(Trigger::Fails));
+        self.enter(self.state.after_event(Trigger::Fails));
     }
 
     fn word(&self, number: u16) -> u16 {
@@ -268,7 +268,7 @@ impl Drive {
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,
-            state => state.after(before, self.control),
+            state => state.after_control_word(before, self.control),
         }
     }
 
@@ -346,7 +346,7 @@ impl Drive {
 
     /// Applies the control word to a running motion, without affecting a jog step.
     fn apply_command(&mut self) {
-        let has = |bit| self.control.has(bit);
+        let has = |bit| self.control.is_set(bit);
         let speed_mode = has(ControlBit::SpeedMode);
         self.motion = match self.motion {
             Motion::Run { .. } if !speed_mode || !has(ControlBit::Start) => Motion::Rest,
@@ -368,10 +368,10 @@ impl Drive {
         };
         let (target, jog) = match begins {
             MotionStart::Run => {
-                let clockwise = self.control.has(ControlBit::NoStop);
+                let clockwise = self.control.is_set(ControlBit::NoStop);
                 // A drive beyond the end of its range runs neither further nor back.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
-                let to = (!self.control.has(ControlBit::NoPause)).then(|| self.location_of(end));
+                let to = (!self.control.is_set(ControlBit::NoPause)).then(|| self.location_of(end));
                 return self.moves(Motion::Run { to, clockwise });
             }
             MotionStart::Job => (self.out.target, None),
@@ -393,7 +393,7 @@ impl Drive {
             return;
         }
         self.target_reached = false;
-        self.acknowledged = self.control.has(ControlBit::Start);
+        self.acknowledged = self.control.is_set(ControlBit::Start);
         self.stuck_ms = 0;
     }
 }

@@ -51,7 +51,7 @@ impl Drive {
             SPEED_SHARE => self.out.speed.into(),
             TORQUE_SHARE => self.out.torque.into(),
             TARGET => self.out.target.into(),
-            STATUS => actual.status.word().into(),
+            STATUS => actual.status.to_u16().into(),
             SPEED => actual.speed.into(),
             POSITION => actual.position.into(),
             NEWEST_ERROR..=OLDEST_ERROR => {

@@ -85,7 +85,7 @@ impl Unit {
     fn apply_motor_action(&mut self, motor: Motor, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
-            Motor::JogHold => return self.moves.hold(),
+            Motor::JogHold => return self.moves.refresh_held(),
             Motor::JogRelease => return self.moves.release(),
             Motor::Stop => return self.moves.stop(),
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
@@ -99,18 +99,18 @@ impl Unit {
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
                 let outward = self.moves.is_outward_jog_enabled(drive, direction);
-                MotionRequest::Jog { direction, effort: self.moves.jog_effort(drive), outward }
+                MotionRequest::Jog { direction, effort: self.moves.jog_speed_torque(drive), outward }
             }
             Motor::SlowJogPress { direction, .. } => {
                 let outward = self.moves.is_outward_jog_enabled(drive, direction);
-                MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward }
+                MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward }
             }
             Motor::Lead(goal) => MotionRequest::Lead(goal),
             Motor::Acknowledge => MotionRequest::Acknowledge,
-            Motor::Step { by } => MotionRequest::Step { by, effort: self.moves.move_effort(drive) },
-            Motor::Move { target } => MotionRequest::Move { target, effort: self.moves.move_effort(drive) },
+            Motor::Step { by } => MotionRequest::Step { by, effort: self.moves.move_speed_torque(drive) },
+            Motor::Move { target } => MotionRequest::Move { target, effort: self.moves.move_speed_torque(drive) },
             Motor::Run { direction, end } => {
-                MotionRequest::Run { direction, end, effort: self.moves.move_effort(drive) }
+                MotionRequest::Run { direction, end, effort: self.moves.move_speed_torque(drive) }
             }
             Motor::Pause => MotionRequest::Pause,
             Motor::Resume => MotionRequest::Resume,
@@ -123,7 +123,7 @@ impl Unit {
             services.log.settle(ended, Some(&self.session.name()));
         }
         match request {
-            MotionRequest::Jog { .. } => self.moves.press(drive, request),
+            MotionRequest::Jog { .. } => self.moves.press_jog(drive, request),
             _ => {
                 self.moves.request_motion(drive, request);
             }

@@ -4,8 +4,8 @@ use crate::app::DriveStopHandle;
 use crate::devices::hiperdrive::jobs::Motion;
 
 impl DriveStopHandle for Motion {
-    fn leave(&self) {
-        Motion::leave(self);
+    fn release_drives(&self) {
+        Motion::release_drives(self);
     }
 
     fn is_connected(&self) -> bool {

@@ -14,7 +14,7 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
 };
-use crate::devices::hiperdrive::procedures::dead_man::Ended;
+use crate::devices::hiperdrive::procedures::dead_man::ActionEnd;
 use crate::devices::hiperdrive::procedures::{DriveReading, Sample};
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
@@ -116,19 +116,20 @@ impl Unit {
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
         services.log.settle(RULES, Some(&self.session.name()));
-        let text = words::lost(self.moves.view().lost.as_ref());
+        let text = words::lost(self.moves.snapshot().lost.as_ref());
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
     /// Ends the fault notice once no drive has a fault. All drives share one notice.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
-        let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
+        let fails =
+            |drive: &DriveNumber| self.moves.actual_values(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
             services.log.settle("hd_end.fault", Some(&self.session.name()));
         }
     }
 
-    fn report_motion_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
+    fn report_motion_end(&self, drive: DriveNumber, ended: ActionEnd, services: &mut Services) {
         let weight = words::weight(ended);
         if weight == Severity::Note {
             return;
@@ -142,7 +143,7 @@ impl Unit {
         self.take_reading(reading);
         let drive = reading.drive;
         if drive == self.drive() {
-            let target = self.moves.sent(drive).map(|sent| sent.target);
+            let target = self.moves.last_setpoint(drive).map(|sent| sent.target);
             self.record.add(reading, self.ruler(drive), self.speed_scale(drive), target);
         }
     }
@@ -294,6 +295,6 @@ impl SessionEvents for Unit {
 
     /// Ends every motion before the release.
     fn prepare_release(&mut self) {
-        self.moves.end();
+        self.moves.end_session();
     }
 }

@@ -24,7 +24,7 @@ impl DeviceModel for Unit {
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));
         self.began = Some(opened.began.clone());
-        self.moves.begin(opened.aside.motion.clone());
+        self.moves.begin_session(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
         // Values read over an earlier link are void.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
@@ -112,7 +112,7 @@ impl MotionControl for Unit {
     }
 
     fn let_go(&mut self) {
-        self.moves.let_go();
+        self.moves.release_held();
     }
 
     fn is_moving(&self) -> bool {

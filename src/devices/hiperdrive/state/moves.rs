@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::devices::hiperdrive::jobs::{DriveSnapshot, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    ARRIVAL_TIME, Ended, Lock, MotionKind, MotionRequest, Permit, Phase, SpeedTorque,
+    ARRIVAL_TIME, ActionEnd, MotionKind, MotionLock, MotionRequest, Permit, Phase, SpeedTorque,
 };
 use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, RunEnd, Setpoint, State};
@@ -20,7 +20,7 @@ pub struct DriveMotion {
     /// Motion handle, present while the session is open.
     motion: Option<Motion>,
     view: MotionSnapshot,
-    act: Option<Act>,
+    act: Option<ActiveAction>,
     /// Speed and torque of jogs, for drives on which they differ from the default.
     jogs: BTreeMap<DriveNumber, SpeedTorque>,
     jobs: BTreeMap<DriveNumber, SpeedTorque>,
@@ -41,7 +41,7 @@ pub struct DriveMotion {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Act {
+struct ActiveAction {
     drive: DriveNumber,
     number: u64,
     kind: Kind,
@@ -81,8 +81,8 @@ impl Default for DriveMotion {
 
 impl DriveMotion {
     /// Begins a session. Unconfirmed limits remain unconfirmed. Endless runs are not allowed yet, and jogs are slow
-    /// ([`SpeedTorque::JOG`]).
-    pub(super) fn begin(&mut self, motion: Motion) {
+    /// ([`SpeedTorque::DEFAULT_JOG`]).
+    pub(super) fn begin_session(&mut self, motion: Motion) {
         for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
         }
@@ -96,14 +96,14 @@ impl DriveMotion {
         self.motion = Some(motion);
     }
 
-    pub(super) fn end(&mut self) {
+    pub(super) fn end_session(&mut self) {
         self.stop();
-        self.look();
+        self.update();
         self.motion = None;
         (self.view, self.act) = (MotionSnapshot::default(), None);
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.stop();
         self.limits.clear();
         self.limits_changed.clear();
@@ -123,16 +123,16 @@ impl DriveMotion {
         {
             motion.refresh();
         }
-        self.look();
+        self.update();
     }
 
-    pub(super) fn look(&mut self) {
+    pub(super) fn update(&mut self) {
         let Some(motion) = &self.motion else { return };
         let DrivesSnapshot { at, view, limits } = motion.take_snapshot();
         self.taken |= view.open && !self.view.open;
         for (drive, own) in &limits {
-            let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));
-            if before.is_some_and(|before| before != (own.rules(), own.locks())) {
+            let before = self.limits.get(drive).map(|before| (before.rules(), before.motion_locks()));
+            if before.is_some_and(|before| before != (own.rules(), own.motion_locks())) {
                 self.limits_changed.insert(*drive);
             }
         }
@@ -156,13 +156,13 @@ impl DriveMotion {
         std::mem::take(&mut self.taken)
     }
 
-    pub(super) fn take_motion_end(&mut self) -> Option<(DriveNumber, Ended)> {
+    pub(super) fn take_motion_end(&mut self) -> Option<(DriveNumber, ActionEnd)> {
         let act = self.act.filter(|act| !act.is_reported)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
         if number < act.number {
             return None;
         }
-        self.act = Some(Act { is_reported: true, ..act });
+        self.act = Some(ActiveAction { is_reported: true, ..act });
         Some((act.drive, ended))
     }
 
@@ -170,19 +170,19 @@ impl DriveMotion {
         self.drive(drive).and_then(|own| own.ended).is_some_and(|(own, _)| own >= number)
     }
 
-    fn intend(&mut self, drive: DriveNumber, request: MotionRequest, kind: Kind) -> Option<u64> {
+    fn submit_request(&mut self, drive: DriveNumber, request: MotionRequest, kind: Kind) -> Option<u64> {
         // The permission is for one press. The next request needs it again.
         self.freed = None;
-        let number = self.motion.as_ref()?.intend(drive, request);
-        let moves = request.moves() || request == MotionRequest::Pause;
-        self.act = Some(Act { drive, number, kind, moves, is_reported: false });
+        let number = self.motion.as_ref()?.request_motion(drive, request);
+        let moves = request.needs_motion() || request == MotionRequest::Pause;
+        self.act = Some(ActiveAction { drive, number, kind, moves, is_reported: false });
         Some(number)
     }
 
     /// Starts a jog, unless another one is held.
-    pub(super) fn press(&mut self, drive: DriveNumber, jog: MotionRequest) {
+    pub(super) fn press_jog(&mut self, drive: DriveNumber, jog: MotionRequest) {
         if !self.is_held() {
-            self.intend(drive, jog, Kind::Held);
+            self.submit_request(drive, jog, Kind::Held);
             self.used = match jog {
                 MotionRequest::Jog { direction, outward: true, .. } => Some((drive, direction)),
                 _ => None,
@@ -195,7 +195,7 @@ impl DriveMotion {
         self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
     }
 
-    pub(super) fn hold(&self) {
+    pub(super) fn refresh_held(&self) {
         if let (Some(motion), Some(act)) = (&self.motion, self.act)
             && act.kind == Kind::Held
             && motion.is_latest_action(act.number)
@@ -211,7 +211,7 @@ impl DriveMotion {
     }
 
     /// Ends an action that lasts until it is stopped: a jog or a run.
-    pub(crate) fn let_go(&mut self) {
+    pub(crate) fn release_held(&mut self) {
         self.freed = None;
         self.stop_motion_of_kind(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
@@ -219,13 +219,13 @@ impl DriveMotion {
     fn stop_motion_of_kind(&mut self, which: impl FnOnce(Kind) -> bool) {
         let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest_action(act.number)) {
-            motion.intend(act.drive, MotionRequest::Stop);
+            motion.request_motion(act.drive, MotionRequest::Stop);
         }
         // The end of the action is still to be reported, but the action is no longer refreshed.
-        self.act = Some(Act { kind: Kind::Other, ..act });
+        self.act = Some(ActiveAction { kind: Kind::Other, ..act });
     }
 
-    pub(super) fn free(&mut self, drive: DriveNumber, direction: Direction) {
+    pub(super) fn start_endless_run(&mut self, drive: DriveNumber, direction: Direction) {
         self.freed = Some((drive, direction));
     }
 
@@ -239,7 +239,7 @@ impl DriveMotion {
     /// while the session is not open.
     pub(super) fn request_motion(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
-        let number = self.intend(drive, request, kind)?;
+        let number = self.submit_request(drive, request, kind)?;
         if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) {
             self.endless_run = Some((drive, number));
         }
@@ -266,7 +266,7 @@ impl DriveMotion {
     /// Confirms the limits as shown to the user. Returns whether the confirmation took effect.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: DisplayedLimits) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
-        self.look();
+        self.update();
         counts
     }
 
@@ -301,7 +301,7 @@ impl DriveMotion {
         self.view.open
     }
 
-    pub fn view(&self) -> &MotionSnapshot {
+    pub fn snapshot(&self) -> &MotionSnapshot {
         &self.view
     }
 
@@ -310,11 +310,11 @@ impl DriveMotion {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
 
-    pub fn actual(&self, drive: DriveNumber) -> Option<ActualValues> {
+    pub fn actual_values(&self, drive: DriveNumber) -> Option<ActualValues> {
         self.drive(drive).map(|own| own.actual)
     }
 
-    pub fn sent(&self, drive: DriveNumber) -> Option<Setpoint> {
+    pub fn last_setpoint(&self, drive: DriveNumber) -> Option<Setpoint> {
         self.drive(drive).map(|own| own.sent)
     }
 
@@ -332,8 +332,8 @@ impl DriveMotion {
     }
 
     /// Returns the motion permit of a drive, or `None` while the session is not open.
-    pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
-        self.motion.as_ref().map(|motion| motion.permitted(drive))
+    pub fn motion_permit(&self, drive: DriveNumber) -> Option<Permit> {
+        self.motion.as_ref().map(|motion| motion.motion_permit(drive))
     }
 
     /// Returns the limits of a drive at the last update, if known.
@@ -348,16 +348,16 @@ impl DriveMotion {
 
     /// Requires the limits of a drive to be read before it moves.
     pub(super) fn invalidate_limits(&mut self, drive: DriveNumber) {
-        self.limits.entry(drive).or_default().doubt(self.looked);
+        self.limits.entry(drive).or_default().invalidate(self.looked);
         if let Some(motion) = &self.motion {
             motion.invalidate_limits(drive);
         }
     }
 
-    pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
-        let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
+    pub fn motion_locks(&self, drive: DriveNumber) -> Vec<MotionLock> {
+        let mut locks = self.motion_permit(drive).map(|permit| permit.locks).unwrap_or_default();
         // Without control nothing moves. The limits are read when control is taken, and a slow reply ends no motion.
-        locks.retain(|lock| !matches!(lock, Lock::Outdated | Lock::NoAnswer) || self.view.open);
+        locks.retain(|lock| !matches!(lock, MotionLock::Outdated | MotionLock::NoAnswer) || self.view.open);
         locks
     }
 
@@ -384,12 +384,12 @@ impl DriveMotion {
     }
 
     pub fn is_moving(&self) -> bool {
-        self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_motion_active()
+        self.view.open && self.view.drives.iter().any(is_moving) || self.is_held() || self.is_motion_active()
     }
 
     /// Returns whether an action that must be refreshed is running.
     pub fn is_motion_active(&self) -> bool {
-        let own = |act: &Act| {
+        let own = |act: &ActiveAction| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest_action(act.number));
             self.view.open && is_latest && !self.has_ended(act.number, act.drive)
         };
@@ -398,7 +398,7 @@ impl DriveMotion {
 
     /// Returns whether a drive is moving or changing to another state.
     pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
-        self.drive(drive).is_some_and(moves) || self.moving_drive() == Some(drive)
+        self.drive(drive).is_some_and(is_moving) || self.moving_drive() == Some(drive)
     }
 
     /// Returns the drive that this window is moving or whose job is paused. Any other request ends that motion.
@@ -410,29 +410,29 @@ impl DriveMotion {
         asked.or_else(|| busy.map(|own| own.number))
     }
 
-    pub fn jog_effort(&self, drive: DriveNumber) -> SpeedTorque {
-        self.jogs.get(&drive).copied().unwrap_or(SpeedTorque::JOG)
+    pub fn jog_speed_torque(&self, drive: DriveNumber) -> SpeedTorque {
+        self.jogs.get(&drive).copied().unwrap_or(SpeedTorque::DEFAULT_JOG)
     }
 
-    pub fn move_effort(&self, drive: DriveNumber) -> SpeedTorque {
-        self.jobs.get(&drive).copied().unwrap_or(SpeedTorque::MOVE)
+    pub fn move_speed_torque(&self, drive: DriveNumber) -> SpeedTorque {
+        self.jobs.get(&drive).copied().unwrap_or(SpeedTorque::DEFAULT_MOVE)
     }
 
     /// Returns the speed and torque of a running jog, if any.
-    pub fn running_jog_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_effort(drive).filter(|_| self.is_jog(drive))
+    pub fn running_jog_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+        self.active_speed_torque(drive).filter(|_| self.is_jog(drive))
     }
 
     /// Returns the speed and torque of a running move, step or run, if any.
-    pub fn running_move_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
-        self.active_effort(drive).filter(|_| !self.is_jog(drive))
+    pub fn running_move_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+        self.active_speed_torque(drive).filter(|_| !self.is_jog(drive))
     }
 
     fn is_jog(&self, drive: DriveNumber) -> bool {
         self.act.is_some_and(|act| act.drive == drive && act.kind == Kind::Held)
     }
 
-    fn active_effort(&self, drive: DriveNumber) -> Option<SpeedTorque> {
+    fn active_speed_torque(&self, drive: DriveNumber) -> Option<SpeedTorque> {
         let own = self.drive(drive).filter(|own| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_)))?;
         Some(SpeedTorque { speed: own.sent.speed, torque: own.sent.torque })
     }
@@ -442,7 +442,7 @@ impl DriveMotion {
     }
 }
 
-fn moves(own: &DriveSnapshot) -> bool {
+fn is_moving(own: &DriveSnapshot) -> bool {
     own.actual.status.state() == State::Moving
         || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
 }

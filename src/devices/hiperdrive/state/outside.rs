@@ -5,13 +5,13 @@ use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
-use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, Outside, Permit, SpeedTorque};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionRequest, OutsideLimits, Permit, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutOfRangePosition {
-    pub outside: Outside,
+    pub outside: OutsideLimits,
     /// Position in scaled steps.
     pub position: i32,
     /// Lower and upper limit in scaled steps, parameters 158 and 160.
@@ -24,22 +24,22 @@ pub struct OutOfRangePosition {
 impl Unit {
     /// Returns how a drive is outside its limits according to its position or status bit 15. Returns `None` if the
     /// drive is inside, or if position or limits are unknown.
-    pub fn outside(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
+    pub fn out_of_range_position(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.steps_per_degree());
         let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
-        let outside = permit.outside(actual)?;
+        let outside = permit.outside_limits(actual)?;
         let is_far = match outside {
-            Outside::At(side) => side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
-            Outside::Unclear => true,
+            OutsideLimits::At(side) => side.steps_beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
+            OutsideLimits::Unclear => true,
         };
         Some(OutOfRangePosition { outside, position: actual.position, limits, is_far })
     }
 
     /// Returns the message for a drive outside its limits, or `None` if it is inside or at the end of its range.
     pub fn outside_limits_text(&self, drive: DriveNumber) -> Option<Text> {
-        let own = self.outside(drive).filter(|own| own.is_far)?;
-        let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
+        let own = self.out_of_range_position(drive).filter(|own| own.is_far)?;
+        let id = if own.outside == OutsideLimits::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
         let text = TEXTS.text(id).with_text("position", self.place(drive, own.position));
         Some(text.with_text("range", self.places(drive, own.limits)))
     }
@@ -50,12 +50,12 @@ impl Unit {
     /// Returns the reason if the drive may not be jogged.
     pub fn check_can_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_outward_jog_enabled(drive, direction);
-        self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::JOG, outward })
+        self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: SpeedTorque::DEFAULT_JOG, outward })
     }
 
     /// Returns whether this direction may lead further outside the limits and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
-        let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
+        let is_outward = self.out_of_range_position(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_outward_jog_enabled(drive, direction)
     }
 
@@ -66,7 +66,7 @@ impl Unit {
 
     pub(super) fn enable_outward_jog(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_enable_outward_jog(drive, direction) {
-            return self.moves.free(drive, direction);
+            return self.moves.start_endless_run(drive, direction);
         }
         let why = self.may_move_until_stopped(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
         self.report_drive_message(drive, Severity::Warning, vec![why], services);

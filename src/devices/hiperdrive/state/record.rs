@@ -45,7 +45,7 @@ impl Record {
             at,
             position: status.is_present().then_some(i64::from(actual.position)),
             is_bad: !status.is_present(),
-            is_warned: status.has(crate::devices::hiperdrive::protocol::StatusBit::Warning),
+            is_warned: status.is_set(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
         self.track.add(&[sighting], &meaning(ruler));
         // Without control, a target recorded earlier stays among the watched values.

@@ -92,7 +92,7 @@ impl Unit {
 
     fn remembered_values(&self) -> ExchangedValues {
         let unconfirmed = self.moves.unconfirmed_drives();
-        let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.seen()?.scale));
+        let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.displayed_limits()?.scale));
         ExchangedValues {
             kept: RememberedDrives::default(),
             pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),

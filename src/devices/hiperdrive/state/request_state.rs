@@ -8,7 +8,7 @@ use crate::app::services::Services;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::DriveLimits;
-use crate::devices::hiperdrive::procedures::dead_man::{Lock, MotionRequest, Phase as Doing, TargetState};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionLock, MotionRequest, Phase as Doing, TargetState};
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEED;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -31,7 +31,7 @@ impl Unit {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
-            None if self.survey.is_none() => Err(words::lock(Lock::Unread)),
+            None if self.survey.is_none() => Err(words::lock(MotionLock::Unread)),
             None => Ok(()),
         }
     }
@@ -62,7 +62,7 @@ impl Unit {
         if let Some(why) = self.unread_reason(drive) {
             return Err(why);
         }
-        if let Some(lock) = self.moves.locks(drive).first() {
+        if let Some(lock) = self.moves.motion_locks(drive).first() {
             return Err(words::lock(*lock));
         }
         match self.state(drive) {
@@ -76,7 +76,7 @@ impl Unit {
     pub(super) fn set_remote(&mut self, is_remote: bool) {
         self.is_remote = is_remote;
         if is_remote {
-            self.moves.let_go();
+            self.moves.release_held();
         }
     }
 
@@ -95,7 +95,7 @@ impl Unit {
     /// Returns the reason if the drive may not do so.
     pub fn check_can_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move_until_stopped(drive)?;
-        let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
+        let permitted = self.moves.motion_permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
@@ -127,13 +127,14 @@ impl Unit {
         match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.check_can_run_endlessly(drive)?,
             MotionRequest::Run { .. } | MotionRequest::Jog { .. } => self.may_move_until_stopped(drive)?,
-            _ if request.moves() => self.may_move(drive)?,
+            _ if request.needs_motion() => self.may_move(drive)?,
             _ => self.check_controllable()?,
         }
-        let Some(permit) = self.moves.permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
+        let Some(permit) = self.moves.motion_permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
-        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));
-        permit.check(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
+        let here =
+            self.moves.actual_values(drive).map_or(Ok(()), |actual| permit.check_position_limits(request, actual));
+        permit.check_request(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
     /// Checks that a request may end the present motion. A stop and a jog of the same drive may. Other requests must
@@ -228,7 +229,7 @@ impl Unit {
     pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
-        Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
+        Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.to_u16())))
     }
 
     /// Returns the request that leads a drive to one of the [`reachable_states`](Self::reachable_states), or `None` if
@@ -259,7 +260,7 @@ impl Unit {
     /// Explains why control was lost, until control is taken again. Returns `None` if control was never taken or was
     /// released.
     pub fn loss_reason(&self) -> Option<Text> {
-        let view = self.moves.view();
+        let view = self.moves.snapshot();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
     }
 
@@ -280,7 +281,7 @@ impl Unit {
     pub fn move_estimate(&self, target: i32) -> Option<Text> {
         let drive = self.drive();
         let distance = target.saturating_sub(self.actual(drive)?.position);
-        let rpm = self.speed_rpm(self.moves.move_effort(drive).speed).filter(|rpm| *rpm > 0.0)?;
+        let rpm = self.speed_rpm(self.moves.move_speed_torque(drive).speed).filter(|rpm| *rpm > 0.0)?;
         let turns = self.ruler(drive).of(i64::from(distance).abs(), PositionUnit::Turns)?;
         if self.moves.phase(drive).is_some_and(|phase| phase != Doing::Idle) {
             return None;

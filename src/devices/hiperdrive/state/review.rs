@@ -9,7 +9,7 @@ use crate::app::number::decimals_of;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
-use crate::devices::hiperdrive::procedures::write::Written;
+use crate::devices::hiperdrive::procedures::write::WrittenChanges;
 use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, warnings};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Length, ParameterNumber};
@@ -23,7 +23,7 @@ pub type ReviewState = review::ReviewState<Hiperdrive>;
 impl Reviewable for Hiperdrive {
     type Change = Change;
     type Prepared = Prepared;
-    type Written = Written;
+    type Written = WrittenChanges;
 
     fn change(change: &Change) -> Text {
         explained::change(change)
@@ -90,7 +90,7 @@ impl Reviewable for Hiperdrive {
         }
     }
 
-    fn written(written: &Written) -> Text {
+    fn written(written: &WrittenChanges) -> Text {
         explained::written(written)
     }
 }

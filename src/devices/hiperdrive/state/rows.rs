@@ -109,11 +109,11 @@ impl Unit {
     fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
-            CONTROL => self.moves.sent(drive)?.control.word().into(),
-            SPEED_SHARE => self.moves.sent(drive)?.speed.get().into(),
-            TORQUE_SHARE => self.moves.sent(drive)?.torque.get().into(),
-            TARGET => self.moves.sent(drive)?.target.into(),
-            STATUS => self.actual(drive)?.status.word().into(),
+            CONTROL => self.moves.last_setpoint(drive)?.control.to_u16().into(),
+            SPEED_SHARE => self.moves.last_setpoint(drive)?.speed.get().into(),
+            TORQUE_SHARE => self.moves.last_setpoint(drive)?.torque.get().into(),
+            TARGET => self.moves.last_setpoint(drive)?.target.into(),
+            STATUS => self.actual(drive)?.status.to_u16().into(),
             SPEED => self.actual(drive)?.speed.into(),
             POSITION => self.actual(drive)?.position.into(),
             base @ NEWEST_ERROR..=OLDEST_ERROR => {

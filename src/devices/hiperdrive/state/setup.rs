@@ -77,7 +77,7 @@ impl Unit {
             pitch: self.pitch(drive),
             limits: self.limits(drive),
             family,
-            locks: self.moves.locks(drive),
+            locks: self.moves.motion_locks(drive),
             ended: view.and_then(|own| own.ended),
             error: errors.and_then(|own| own.buffer.first().copied()),
         }
@@ -206,7 +206,7 @@ impl Unit {
             DriveRequest::Take => self.act(super::HiperdriveAction::Take, services),
             DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
             DriveRequest::Move(target) => {
-                let request = MotionRequest::Move { target: *target, effort: SpeedTorque::JOG };
+                let request = MotionRequest::Move { target: *target, effort: SpeedTorque::DEFAULT_JOG };
                 if let Err(why) = self.check_motion_allowed(drive, request) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }

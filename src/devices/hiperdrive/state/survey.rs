@@ -6,7 +6,7 @@ use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::session::{HasDraft, HasMemory, HasProfile};
 use crate::app::{SettingsReadState, Severity, Text};
-use crate::devices::hiperdrive::procedures::dead_man::Lock;
+use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
 use crate::devices::hiperdrive::procedures::{DisplayedLimits, DriveLimits, DriveReading, Identity, Survey};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR, REFERENCE};
@@ -79,7 +79,7 @@ impl Unit {
     /// Returns whether limits, scale or reference of the drive differ from the displayed parameters.
     fn has_different_limits(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
-        held.and_then(DriveLimits::seen).is_some_and(|own| {
+        held.and_then(DriveLimits::displayed_limits).is_some_and(|own| {
             let shown = self.staged.base();
             let scale =
                 shown.and_then(|image| image.for_drive(drive, NUMERATOR).zip(image.for_drive(drive, DENOMINATOR)));
@@ -93,11 +93,11 @@ impl Unit {
     /// Returns why the known parameters of a drive are not sufficient to move it, or `None` if they are.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
-            Some(words::lock(Lock::Unread))
+            Some(words::lock(MotionLock::Unread))
         } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
             Some(TEXTS.text("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
-            Some(words::lock(Lock::Outdated))
+            Some(words::lock(MotionLock::Outdated))
         } else {
             None
         }
@@ -115,19 +115,19 @@ impl Unit {
     /// Returns the displayed limits of a drive, as they would be confirmed.
     fn displayed_limits_to_confirm(&self, drive: DriveNumber) -> Result<DisplayedLimits, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
-        let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
-        seen.ok_or_else(|| words::lock(Lock::Unread))
+        let seen = self.drive_limits(drive).and_then(DriveLimits::displayed_limits);
+        seen.ok_or_else(|| words::lock(MotionLock::Unread))
     }
 
     /// Confirms the displayed limits. Returns whether this took effect. Otherwise a message is reported.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // The limits are taken as shown, before another update. The user has not seen later changes.
         let shown = self.displayed_limits_to_confirm(drive);
-        self.moves.look();
+        self.moves.update();
         self.handle_limit_change();
         let counts = self.displayed_limits_to_confirm(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
-            counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
+            counts.then_some(()).ok_or_else(|| words::lock(MotionLock::Unread))
         });
         if let Err(why) = &counts {
             self.report_drive_message(drive, Severity::Warning, vec![why.clone()], services);

@@ -150,7 +150,7 @@ impl Unit {
 
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
-            self.moves.let_go();
+            self.moves.release_held();
             // Only the selected drive and the one moved last are read repeatedly.
             self.moves.invalidate_limits(drive);
             let before = std::mem::replace(&mut self.drive, drive);
@@ -194,7 +194,7 @@ impl Unit {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are void once the connection is lost.
         let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
-        self.moves.actual(drive).or_else(read).or_else(surveyed)
+        self.moves.actual_values(drive).or_else(read).or_else(surveyed)
     }
 
     /// Returns the time of the last report of a drive on the session's clock, or `None` if the report was only part of
@@ -228,7 +228,7 @@ impl Unit {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
         let read = self.readings.get(&drive).filter(|_| is_polled).map(|reading| reading.actual);
-        self.moves.actual(drive).or(read).map(|own| own.status.state())
+        self.moves.actual_values(drive).or(read).map(|own| own.status.state())
     }
 
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {

@@ -62,13 +62,13 @@ impl HasMemory for Unit {
     }
 
     fn prepare_review(&mut self) {
-        self.moves.let_go();
+        self.moves.release_held();
     }
 
     fn discard_device_data(&mut self) {
         (self.survey, self.status, self.check, self.refusal) = (None, None, None, None);
         self.staged.clear();
-        self.moves.forget();
+        self.moves.clear();
         self.record.forget();
         self.records.values_mut().for_each(Record::forget);
         self.records.retain(|_, record| !record.track.recorder.is_empty());

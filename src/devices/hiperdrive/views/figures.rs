@@ -18,13 +18,13 @@ pub(super) fn control_status_words_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, d
             return;
         };
         let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
-        let set = actual.status.set().map(|bit: StatusBit| theme.words(&explain::status_bit(bit))).collect();
-        row(ui, theme, &say(theme, "hd_words.status"), bits(set, actual.status.word()));
-        if let Some(sent) = unit.moves.sent(drive) {
-            let speed_mode = sent.control.has(ControlBit::SpeedMode);
-            let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
+        let set = actual.status.set_bits().map(|bit: StatusBit| theme.words(&explain::status_bit(bit))).collect();
+        row(ui, theme, &say(theme, "hd_words.status"), bits(set, actual.status.to_u16()));
+        if let Some(sent) = unit.moves.last_setpoint(drive) {
+            let speed_mode = sent.control.is_set(ControlBit::SpeedMode);
+            let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.is_set(*bit));
             let set = set.map(|bit| theme.words(&explain::control_bit(bit, speed_mode))).collect();
-            row(ui, theme, &say(theme, "hd_words.control"), bits(set, sent.control.word()));
+            row(ui, theme, &say(theme, "hd_words.control"), bits(set, sent.control.to_u16()));
         }
     });
 }
@@ -35,7 +35,7 @@ const WORDS: f32 = 16.0;
 /// Draws the statistics of the cyclic connection: number of packets, errors, and deviation of the intervals.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
-        let view = unit.moves.view();
+        let view = unit.moves.snapshot();
         let link = &view.link;
         if link.sent == 0 {
             empty_placeholder(ui, theme, &say(theme, "hd_link.nothing"), None);

@@ -5,7 +5,7 @@ use egui::{FontId, RichText, Ui, Vec2, vec2};
 use super::motion::{MotionUiState, effort_ui, move_effort_text, position_entry_ui};
 use super::travel::travel_ui;
 use crate::app::{Action, HoldEvent, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::Outside;
+use crate::devices::hiperdrive::procedures::dead_man::OutsideLimits;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
@@ -24,7 +24,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         ui.add_space(theme.space.inside);
         let drafts = &mut view.jog_effort;
         let drive = unit.drive();
-        let own = (unit.moves.jog_effort(drive), unit.moves.running_jog_effort(drive), drafts);
+        let own = (unit.moves.jog_speed_torque(drive), unit.moves.running_jog_speed_torque(drive), drafts);
         let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
         let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move_until_stopped(drive));
@@ -63,14 +63,14 @@ pub(super) fn step_card_ui(
 /// Draws what the buttons do or why they are disabled. The height is constant, so nothing below moves.
 fn jog_buttons_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     let drive = unit.drive();
-    let outside = unit.outside(drive).filter(|own| {
+    let outside = unit.out_of_range_position(drive).filter(|own| {
         let ways = [Direction::Counterclockwise, Direction::Clockwise];
         own.is_far && ways.into_iter().any(|way| unit.is_blocked(drive, way))
     });
     let (id, colour) = match outside.map(|own| own.outside) {
         None => ("hd_jog.words", theme.palette.muted),
-        Some(Outside::At(_)) => ("hd_jog.outside", theme.palette.bad),
-        Some(Outside::Unclear) => ("hd_jog.unclear", theme.palette.bad),
+        Some(OutsideLimits::At(_)) => ("hd_jog.outside", theme.palette.bad),
+        Some(OutsideLimits::Unclear) => ("hd_jog.unclear", theme.palette.bad),
     };
     let width = ui.available_width();
     let font = FontId::proportional(theme.sizes.body);
@@ -96,8 +96,8 @@ pub(super) fn jog_buttons_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: b
             let blocked = unit.is_blocked(unit.drive(), direction);
             let caption = say(
                 theme,
-                match unit.outside(unit.drive()).map(|own| own.outside) {
-                    Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
+                match unit.out_of_range_position(unit.drive()).map(|own| own.outside) {
+                    Some(OutsideLimits::Unclear) if blocked => "hd_outside.pad_unclear",
                     _ if blocked => "hd_outside.pad",
                     _ => "hd_jog.hold",
                 },

@@ -61,7 +61,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     row(ui, theme, &say(theme, "hd_live.state"), RichText::new(word).color(colour));
     row(ui, theme, &say(theme, "hd_effort.speed"), theme.monospace(speed));
     // The row is drawn even without a target, so the buttons below stay in place when control is taken.
-    let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
+    let target = unit.moves.last_setpoint(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     let target = target.map(|target| format!("{target} {}", say(theme, unit.measure.unit())));
     let target = theme.monospace(target.unwrap_or_else(|| "–".to_owned()));
     row(ui, theme, &say(theme, "hd_live.target"), target);

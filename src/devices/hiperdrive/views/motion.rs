@@ -5,7 +5,7 @@ use egui::{Id, RichText, Ui, UiBuilder, vec2};
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Lock, MotionKind, Phase, SpeedTorque};
+use crate::devices::hiperdrive::procedures::dead_man::{MotionKind, MotionLock, Phase, SpeedTorque};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
@@ -89,14 +89,14 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
 
 fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
-    for lock in unit.moves.locks(drive) {
+    for lock in unit.moves.motion_locks(drive) {
         theme.sunken_frame().show(ui, |ui| {
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
                 paragraph(ui, theme.words(&explain::lock(lock)));
             });
-            if lock == Lock::LimitsUnconfirmed
+            if lock == MotionLock::LimitsUnconfirmed
                 && let Some((low, high)) = unit.limits_to_confirm(drive)
             {
                 let [low, high] = [low, high].map(|steps| {
@@ -198,7 +198,7 @@ fn move_to_position_ui(
         ui,
         theme,
         unit,
-        (unit.moves.move_effort(drive), unit.moves.running_move_effort(drive), drafts),
+        (unit.moves.move_speed_torque(drive), unit.moves.running_move_speed_torque(drive), drafts),
         &[],
         Motor::MoveEffort,
         actions,
@@ -390,7 +390,7 @@ fn percent_note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: O
 }
 
 pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
-    let SpeedTorque { speed, torque } = unit.moves.move_effort(unit.drive());
+    let SpeedTorque { speed, torque } = unit.moves.move_speed_torque(unit.drive());
     theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use super::motion::position_entry_ui;
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
+use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
@@ -30,7 +30,7 @@ pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
 /// the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
-    let (Some(words), Some(outside)) = (unit.outside_limits_text(drive), unit.outside(drive)) else {
+    let (Some(words), Some(outside)) = (unit.outside_limits_text(drive), unit.out_of_range_position(drive)) else {
         *draft = Draft::default();
         return;
     };
@@ -48,9 +48,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         let words = match (freed, outside.outside) {
             (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
             (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
-            (None, Outside::Unclear) => "hd_outside.blocked_both",
-            (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
-            (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
+            (None, OutsideLimits::Unclear) => "hd_outside.blocked_both",
+            (None, OutsideLimits::At(LimitSide::Above)) => "hd_outside.blocked_up",
+            (None, OutsideLimits::At(LimitSide::Below)) => "hd_outside.blocked_down",
         };
         paragraph(ui, theme.caption(say(theme, words)));
         // The buttons stay after a press, so the widgets below them do not move under the pointer.

@@ -12,7 +12,7 @@ use egui::{
 };
 
 use crate::app::Text;
-use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
+use crate::devices::hiperdrive::procedures::dead_man::{LimitSide, OutsideLimits};
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::{TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
@@ -66,7 +66,7 @@ struct Shown {
     position: Option<i32>,
     target: Option<i32>,
     /// How the drive is outside its limits. `None` if it is inside or at the end of its range.
-    outside: Option<Outside>,
+    outside: Option<OutsideLimits>,
     is_moving: bool,
 }
 
@@ -78,7 +78,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
         limits: unit.limits(drive),
         position: unit.actual(drive).map(|actual| actual.position),
         target: unit.moves.target(drive).or_else(typed),
-        outside: unit.outside(drive).filter(|own| own.is_far).map(|own| own.outside),
+        outside: unit.out_of_range_position(drive).filter(|own| own.is_far).map(|own| own.outside),
         is_moving: unit.state(drive) == Some(State::Moving),
     };
     let size = vec2(ui.available_width().max(120.0), LINE + GAP + BAR + LIMITS);
@@ -119,11 +119,11 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
 }
 
 /// Describes how to return a drive that is outside its limits.
-fn return_instructions(outside: Outside) -> Text {
+fn return_instructions(outside: OutsideLimits) -> Text {
     TEXTS.text(match outside {
-        Outside::At(Side::Above) => "hd_travel.back_down",
-        Outside::At(Side::Below) => "hd_travel.back_up",
-        Outside::Unclear => "hd_travel.unclear",
+        OutsideLimits::At(LimitSide::Above) => "hd_travel.back_down",
+        OutsideLimits::At(LimitSide::Below) => "hd_travel.back_up",
+        OutsideLimits::Unclear => "hd_travel.unclear",
     })
 }
 
@@ -172,8 +172,8 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
         for limit in [range.left(), range.right()] {
             painter.vline(limit, bar.y_range(), Stroke::new(2.0, palette.accent));
         }
-        if let (Some(position), Some(Outside::At(side))) = (shown.position, shown.outside) {
-            let limit = if side == Side::Above { range.right() } else { range.left() };
+        if let (Some(position), Some(OutsideLimits::At(side))) = (shown.position, shown.outside) {
+            let limit = if side == LimitSide::Above { range.right() } else { range.left() };
             paint_arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
         }
         if let Some(target) = shown.target {

@@ -7,7 +7,7 @@ use crate::devices::hiperface::profile::{Base, Op, Recorded, SingleValue, create
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
+use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -26,12 +26,12 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, &device_type, &identity.serial.serial_number, is_virtual)
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = Base;
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
 use crate::devices::hiperface::procedures::find::{Attempt, EncoderSearchResult, FindOptions, FoundEncoder};
-use crate::devices::hiperface::procedures::write::{Interrupted, Written};
+use crate::devices::hiperface::procedures::write::{Interrupted, WrittenChanges};
 use crate::devices::hiperface::procedures::{
     Error, Identity, LineQuality, PositionReading, RestPosition, SaveOptions, Survey,
 };
@@ -182,7 +182,7 @@ impl Prepared {
 /// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-pub type Committed = crate::worker::Committed<Written>;
+pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {

@@ -1,7 +1,7 @@
 //! Execution of a plan: reads the values on which it is based again, carries out each operation, and reads all changes
 //! back.
 
-pub use crate::profile::Written;
+pub use crate::profile::WrittenChanges;
 
 use super::{
     Error, Identity, Master, ReadBackValue, ensure_standstill, read_all_fields, read_counter, read_field,
@@ -20,10 +20,10 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::profile::Write;
 
-type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
+type Confirmed<'p> = crate::profile::ConfirmedPlan<'p, Base, Op>;
 
 /// Write that ended early.
-pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
+pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
@@ -48,12 +48,12 @@ impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;
-    type Written = Written;
+    type Written = WrittenChanges;
     type EndState = EndState;
 
     /// Checks that this is the encoder for which the plan was made. It also compares the memory, because two new
     /// encoders can have the same identity.
-    fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
+    fn confirm_base(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
         if label.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
@@ -70,7 +70,7 @@ impl Write for EncoderWriter<'_, '_> {
         plan.base.scalars.iter().try_for_each(|scalar| ensure_scalar_unchanged(master, *scalar, identity.geometry))
     }
 
-    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
         let sent = perform(&mut self.master, op, confirmed, position_range(self.identity.geometry));
         // A change that was refused or not sent has no effect. Any other change may have been carried out.
         done.write_cycles += match &sent {
@@ -78,11 +78,11 @@ impl Write for EncoderWriter<'_, '_> {
             Err(cause) => u64::from(may_have_been_executed(cause)),
         };
         sent?;
-        done.carried_out(op.weight());
+        done.count_operation(op.weight());
         Ok(())
     }
 
-    fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+    fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut WrittenChanges) -> Result<(), Error> {
         let range = position_range(self.identity.geometry);
         done.verified = self.master.run_uncancellable(|master| verify(master, confirmed.plan(), range))?;
         Ok(())
@@ -93,7 +93,7 @@ impl Write for EncoderWriter<'_, '_> {
         &mut self,
         confirmed: &Confirmed<'_>,
         ended: Result<(), Error>,
-        done: &mut Written,
+        done: &mut WrittenChanges,
     ) -> Result<(), Error> {
         let Err(cause) = &ended else { return Ok(()) };
         let ops = &confirmed.plan().ops;
@@ -145,7 +145,7 @@ fn restore_write_protection(
     lock: &Op,
     confirmed: &Confirmed<'_>,
     range: u64,
-    done: &mut Written,
+    done: &mut WrittenChanges,
 ) -> Result<(), Error> {
     let Op::Define { field, to, .. } = lock else { return Ok(()) };
     let now = match read_field_status(master, *field) {

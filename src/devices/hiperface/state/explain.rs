@@ -37,7 +37,7 @@ use crate::app::Text;
 use crate::app::explain::{link, not_started_text};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, TypeMismatch};
 use crate::devices::hiperface::procedures::Error;
-use crate::devices::hiperface::procedures::write::{Interrupted, Written};
+use crate::devices::hiperface::procedures::write::{Interrupted, WrittenChanges};
 use crate::devices::hiperface::profile::{PlanError, RequiredSetup, UnknownMeaningField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
@@ -88,13 +88,13 @@ pub fn connection_loss_text(error: &JobError) -> Option<Text> {
 
 /// Returns the message for a completed write. If no value was read back, it says that the encoder has acknowledged the
 /// write.
-pub fn written(written: &Written) -> Text {
+pub fn written(written: &WrittenChanges) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
 /// Returns the message for a completed write, as shown at the end of a review.
-pub fn verified(written: &Written) -> Text {
+pub fn verified(written: &WrittenChanges) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
         verified => Text::new("review.verified").with("verified", verified).with("cycles", written.write_cycles),
@@ -245,7 +245,7 @@ mod tests {
 
     fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
         let ops = usize::try_from(write_cycles).unwrap();
-        let done = Written { ops, write_cycles, ..Written::default() };
+        let done = WrittenChanges { ops, write_cycles, ..WrittenChanges::default() };
         Interrupted { done, unfinished: None, cause, end_state: EndState::default() }
     }
 
@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn an_access_code_is_acknowledged_and_not_read_back() {
-        let of = |verified| Written { ops: 1, written: 1, verified, write_cycles: 1 };
+        let of = |verified| WrittenChanges { ops: 1, written: 1, verified, write_cycles: 1 };
         assert!(verified(&of(3)).words(Language::English).starts_with("Read back and verified"));
         for text in [written(&of(0)), verified(&of(0))] {
             assert_eq!(text.id(), "session.acknowledged");

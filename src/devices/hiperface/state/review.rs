@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::review::{self, OperationTexts, Permit, Question, Reviewable};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
-use crate::devices::hiperface::procedures::write::Written;
+use crate::devices::hiperface::procedures::write::WrittenChanges;
 use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownMeaningField};
 use crate::devices::hiperface::protocol::AccessCodeNumber;
 use crate::devices::hiperface::state::TEXTS;
@@ -24,7 +24,7 @@ impl Review {
 impl Reviewable for Hiperface {
     type Change = Change;
     type Prepared = Prepared;
-    type Written = Written;
+    type Written = WrittenChanges;
 
     fn change(change: &Change) -> Text {
         words::change(change)
@@ -125,11 +125,11 @@ impl Reviewable for Hiperface {
         }
     }
 
-    fn written(written: &Written) -> Text {
+    fn written(written: &WrittenChanges) -> Text {
         words::written(written)
     }
 
-    fn verified(written: &Written) -> Text {
+    fn verified(written: &WrittenChanges) -> Text {
         words::verified(written)
     }
 }

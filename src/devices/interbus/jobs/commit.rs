@@ -8,7 +8,7 @@ use crate::devices::interbus::procedures::write::EncoderWriter;
 use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, Recorded};
 use crate::profile::{Body, ChangedItem};
 use crate::store::{DeviceKey, EntryKind};
-use crate::worker::commit::{PlanHeader, Planned, backup_document, write_plan};
+use crate::worker::commit::{PlanHeader, PlannedWrite, backup_document, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -26,12 +26,12 @@ pub(super) fn commit(
     })
 }
 
-impl Planned for Prepared {
+impl PlannedWrite for Prepared {
     type Base = Base;
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn head(&self) -> PlanHeader<'_, Self> {
+    fn header(&self) -> PlanHeader<'_, Self> {
         let wear_limit = wear_limit(self.plan.write_cycles());
         PlanHeader { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit }
     }

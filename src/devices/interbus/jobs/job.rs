@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::devices::interbus::procedures::check::InterbusStepResult;
-use crate::devices::interbus::procedures::write::{Interrupted, Written};
+use crate::devices::interbus::procedures::write::{Interrupted, WrittenChanges};
 use crate::devices::interbus::procedures::{Error, Handshake, Identity, Status, Survey, WordReading};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, Parameters, PlanError, RestoreOptions, TypeMismatch,
@@ -168,7 +168,7 @@ impl Prepared {
 
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-pub type Committed = crate::worker::Committed<Written>;
+pub type Committed = crate::worker::CommitResult<WrittenChanges>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-pub use crate::profile::Written;
+pub use crate::profile::WrittenChanges;
 
 use super::error::ImplausibleValue;
 use super::handshake::LeftState;
@@ -17,9 +17,9 @@ use crate::devices::interbus::profile::{
 use crate::devices::interbus::protocol::{
     Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOutNumber, Reply, StartupMode, Value,
 };
-use crate::profile::{Confirmed, Write};
+use crate::profile::{ConfirmedPlan, Write};
 
-pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
+pub type Interrupted = crate::profile::InterruptedWrite<Op, Error, WrittenChanges, EndState>;
 
 /// The state of an encoder after a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,10 +44,10 @@ impl Write for EncoderWriter<'_, '_> {
     type Base = Base;
     type Op = Op;
     type Error = Error;
-    type Written = Written;
+    type Written = WrittenChanges;
     type EndState = EndState;
 
-    fn confirm(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
+    fn confirm_base(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
         let Self { master, identity } = self;
         master.run_guarded(|master| confirm(master, plan, identity))
     }
@@ -56,17 +56,17 @@ impl Write for EncoderWriter<'_, '_> {
         self.master.begin()
     }
 
-    fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
+    fn apply(&mut self, op: &Op, _: &ConfirmedPlan<'_, Base, Op>, done: &mut WrittenChanges) -> Result<(), Error> {
         perform(&mut self.master, op, done)?;
-        done.carried_out(op.weight());
+        done.count_operation(op.weight());
         Ok(())
     }
 
     fn lead_back(
         &mut self,
-        _: &Confirmed<'_, Base, Op>,
+        _: &ConfirmedPlan<'_, Base, Op>,
         ended: Result<(), Error>,
-        _: &mut Written,
+        _: &mut WrittenChanges,
     ) -> Result<(), Error> {
         self.master.end(ended)
     }
@@ -110,7 +110,7 @@ fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) ->
     Ok(())
 }
 
-fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
+fn perform(master: &mut Master<'_>, op: &Op, done: &mut WrittenChanges) -> Result<(), Error> {
     match op {
         Op::Parameterise(changes) => parameterise(master, changes, done)?,
         Op::Program(change) => program(master, change, done)?,
@@ -132,7 +132,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
 }
 
 /// Sets all changed parameters in a single parameterisation and stores them with 80000000h.
-fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
+fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut WrittenChanges) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     done.write_cycles += 1;
     for change in changes {
@@ -179,7 +179,7 @@ fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), E
 }
 
 /// Selects a cam program and changes it. The changes are stored with 80000000h and read back.
-fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) -> Result<(), Error> {
+fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut WrittenChanges) -> Result<(), Error> {
     let number = change.program;
     master.go(StartupMode::Cams(number))?;
     done.write_cycles += 1;

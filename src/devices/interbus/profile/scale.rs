@@ -152,7 +152,7 @@ impl Scale {
     /// measuring range. Positions in steps must always be within it.
     ///
     /// # Errors
-    /// Returns [`Outside`] with the limits if the position is outside the measuring range.
+    /// Returns [`OutsideLimits`] with the limits if the position is outside the measuring range.
     pub fn place(&self, value: f64, range: u32) -> Result<Placed, Outside> {
         let outside = || {
             let first = if self.wraps_around(range) { 0.0 } else { self.value(0, range) };

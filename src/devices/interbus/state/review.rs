@@ -4,7 +4,7 @@ use crate::app::explain::plain;
 use crate::app::review::{self, OperationTexts, Permit, Reviewable};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
-use crate::devices::interbus::procedures::write::Written;
+use crate::devices::interbus::procedures::write::WrittenChanges;
 use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
@@ -15,7 +15,7 @@ pub type ReviewState = review::ReviewState<Interbus>;
 impl Reviewable for Interbus {
     type Change = Change;
     type Prepared = Prepared;
-    type Written = Written;
+    type Written = WrittenChanges;
 
     fn change(change: &Change) -> Text {
         words::change(change)
@@ -85,7 +85,7 @@ impl Reviewable for Interbus {
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }
 
-    fn written(written: &Written) -> Text {
+    fn written(written: &WrittenChanges) -> Text {
         words::written(written)
     }
 }

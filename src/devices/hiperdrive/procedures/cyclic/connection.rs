@@ -28,7 +28,7 @@ pub struct Connection {
 }
 
 /// Number of intervals without a packet after which no motion may start. If a drive is moving, the connection is lost.
-const LOST: u32 = 3;
+const MAX_MISSED_PACKETS: u32 = 3;
 /// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
 /// Length in bytes of the header that a target may send before the data. The manual does not specify it (`U`).
@@ -58,7 +58,7 @@ impl Connection {
         }
     }
 
-    pub const fn figures(&self) -> &LinkStatistics {
+    pub const fn statistics(&self) -> &LinkStatistics {
         &self.figures
     }
 
@@ -73,7 +73,7 @@ impl Connection {
 
     /// Returns whether no packet has arrived for three intervals. The positions of the drives are then unknown.
     pub fn has_timed_out(&self, now: Moment) -> bool {
-        self.began && now.since(self.last_received) > self.come_interval * LOST
+        self.began && now.since(self.last_received) > self.come_interval * MAX_MISSED_PACKETS
     }
 
     /// Returns the time without packets if it is too long.
@@ -85,7 +85,7 @@ impl Connection {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
         }
-        let intervals = self.come_interval * LOST;
+        let intervals = self.come_interval * MAX_MISSED_PACKETS;
         let silence = now.since(self.last_received);
         let listened = now.since(self.last_received.max(self.awake));
         let most = if self.began { self.timeout.max(intervals) } else { FIRST.max(self.timeout) };
@@ -119,7 +119,7 @@ impl Connection {
     }
 
     /// Returns the packet that is due. After a delay, missed packets are skipped and a single one is returned.
-    pub fn packet(&mut self, now: Moment, image: &OutputImage) -> Vec<u8> {
+    pub fn next_packet(&mut self, now: Moment, image: &OutputImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {
             self.next = now + self.send_interval;

@@ -16,7 +16,7 @@ pub struct Drives {
     words: Option<ParameterWords>,
     places: usize,
     lost: Option<ConnectionLoss>,
-    ending: Option<Ending>,
+    ending: Option<ShutdownProgress>,
 }
 
 #[derive(Clone, Debug)]
@@ -28,15 +28,15 @@ struct ControlledDrive {
 
 /// Shutdown of the connection: the drives are stopped, then switched off, and then nothing more is sent.
 #[derive(Clone, Copy, Debug)]
-struct Ending {
+struct ShutdownProgress {
     since: Moment,
     off: u32,
 }
 
 /// Time for the stop ladder, including braking.
-const LADDER: Duration = Duration::from_millis(700);
+const STOP_LADDER_TIME: Duration = Duration::from_millis(700);
 /// Number of packets that switch the drives off. Several are sent, since one may be lost.
-const OFF: u32 = 3;
+const SWITCH_OFF_PACKETS: u32 = 3;
 
 impl Drives {
     /// Creates the drives at the time the connection was opened. Requests numbered up to `spent` move nothing.
@@ -59,14 +59,14 @@ impl Drives {
         self.controlled.iter().map(|man| &man.dead_man)
     }
 
-    pub const fn figures(&self) -> &LinkStatistics {
-        self.connection.figures()
+    pub const fn statistics(&self) -> &LinkStatistics {
+        self.connection.statistics()
     }
 
     /// Sets the parameters to read through the parameter words, if the connection has them.
     pub fn watch_parameters(&mut self, watched: &[ParameterNumber]) {
         if let Some(words) = &mut self.words {
-            words.watch(watched);
+            words.set_watched(watched);
         }
     }
 
@@ -76,7 +76,7 @@ impl Drives {
     }
 
     /// Returns the reason for the loss if the connection was lost.
-    pub const fn lost(&self) -> Option<&ConnectionLoss> {
+    pub const fn connection_loss(&self) -> Option<&ConnectionLoss> {
         self.lost.as_ref()
     }
 
@@ -86,14 +86,14 @@ impl Drives {
 
     /// Returns whether there is nothing more to send, so that the connection can be closed.
     pub fn is_finished(&self) -> bool {
-        let off = self.ending.is_some_and(|ending| ending.off >= OFF);
+        let off = self.ending.is_some_and(|ending| ending.off >= SWITCH_OFF_PACKETS);
         off || matches!(self.lost, Some(ConnectionLoss::DoesNotStand(_) | ConnectionLoss::Port(_)))
     }
 
     /// Starts to close the connection. The drives are stopped, then switched off.
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
-            self.ending = Some(Ending { since: now, off: 0 });
+            self.ending = Some(ShutdownProgress { since: now, off: 0 });
             self.controlled.iter_mut().for_each(|man| man.dead_man.connection_lost(now));
         }
     }
@@ -109,7 +109,7 @@ impl Drives {
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
         let Some(image) = self.connection.on_packet(now, bytes) else { return false };
         for man in &mut self.controlled {
-            man.received = image.drives.get(place(man.dead_man.drive())).copied();
+            man.received = image.drives.get(index_of(man.dead_man.drive())).copied();
         }
         if let (Some(own), Some(received)) = (&mut self.words, image.pkw) {
             own.receive(now, received);
@@ -138,13 +138,13 @@ impl Drives {
         if self.connection.has_timed_out(now) {
             self.controlled.iter_mut().for_each(|man| man.dead_man.handle_contact_loss(now));
         }
-        let rest = MotionIntent::rest(intent.drive, intent.number, now);
+        let rest = MotionIntent::idle(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
         let mut drives = vec![OutputData::default(); self.places];
         for man in &mut self.controlled {
             let number = man.dead_man.drive();
             let setpoint = man.dead_man.next(now, man.received.take(), intent, &permit(number));
-            if let Some(out) = drives.get_mut(place(number)) {
+            if let Some(out) = drives.get_mut(index_of(number)) {
                 *out = setpoint.into();
             }
         }
@@ -156,13 +156,13 @@ impl Drives {
         }
         let ending = self.is_ending();
         let pkw = self.words.as_mut().filter(|_| !ending).map(|words| words.request(now));
-        Some(self.connection.packet(now, &OutputImage { drives, pkw }))
+        Some(self.connection.next_packet(now, &OutputImage { drives, pkw }))
     }
 
     fn check_for_end(&mut self, now: Moment, drives: &mut [OutputData]) {
         let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
-        if idle || ending.off > 0 || now.since(ending.since) >= LADDER {
+        if idle || ending.off > 0 || now.since(ending.since) >= STOP_LADDER_TIME {
             ending.off += 1;
             for out in drives {
                 out.control = 0;
@@ -171,6 +171,6 @@ impl Drives {
     }
 }
 
-fn place(number: DriveNumber) -> usize {
+fn index_of(number: DriveNumber) -> usize {
     usize::from(number.get()) - 1
 }

@@ -60,7 +60,7 @@ const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {
     /// Sets the parameters to read. Readings of all others are dropped.
-    pub fn watch(&mut self, watched: &[ParameterNumber]) {
+    pub fn set_watched(&mut self, watched: &[ParameterNumber]) {
         if self.watched != watched {
             self.watched = watched.to_vec();
             self.readings.retain(|number, _| watched.contains(number));
@@ -101,7 +101,9 @@ impl ParameterWords {
         match self.phase {
             Phase::Clearing { .. } if words.answer_to(Pkw::default()).is_some() => self.phase = Phase::Ready,
             Phase::Reading { number, .. } => {
-                if let Some(result) = words.answer_to(read(number)).and_then(|answer| result(number, words, answer)) {
+                if let Some(result) =
+                    words.answer_to(read(number)).and_then(|answer| parameter_result(number, words, answer))
+                {
                     self.finish(number, ParameterReading { at: now, result });
                 }
             }
@@ -122,7 +124,7 @@ fn read(number: ParameterNumber) -> Pkw {
 }
 
 /// Returns the result of an answer, or `None` if the answer is not a number. Shorter numbers are in the low bytes.
-fn result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
+fn parameter_result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
     if let Answer::Refused(why) = answer {
         return Some(ParameterResult::Refused(why));
     }
@@ -161,7 +163,7 @@ mod tests {
     fn a_parameter_is_requested_until_its_reply_and_again_after_clearing() {
         let mut own = ParameterWords::default();
         assert_eq!(own.request(at(0)), words(CLEAR), "nothing is watched");
-        own.watch(&[number(166)]);
+        own.set_watched(&[number(166)]);
         assert_eq!(own.request(at(10)), words(CLEAR));
         own.receive(at(15), words(CLEAR));
         for ms in [20, 30, 40] {
@@ -184,7 +186,7 @@ mod tests {
     #[test]
     fn replies_to_other_requests_do_not_count() {
         let mut own = ParameterWords::default();
-        own.watch(&[number(166)]);
+        own.set_watched(&[number(166)]);
         own.request(at(0));
         own.receive(at(1), words(CLEAR));
         own.request(at(10));
@@ -205,7 +207,7 @@ mod tests {
             [(11, "0B 10 00 00 FB FF 00 00"), (119, "77 10 00 00 FB 00 00 00"), (107, "6B 20 00 00 FB FF FF FF")];
         for (parameter, reply) in cases {
             let mut own = ParameterWords::default();
-            own.watch(&[number(parameter)]);
+            own.set_watched(&[number(parameter)]);
             own.request(at(0));
             own.receive(at(1), words(CLEAR));
             own.request(at(10));
@@ -218,7 +220,7 @@ mod tests {
     #[test]
     fn a_device_that_does_not_reply_is_reported_and_asked_again() {
         let mut own = ParameterWords::default();
-        own.watch(&[number(11), number(119)]);
+        own.set_watched(&[number(11), number(119)]);
         let mut ms = 0;
         while ms < 1200 {
             assert_eq!(own.request(at(ms)), words(CLEAR), "it never shows that nothing is requested");
@@ -233,7 +235,7 @@ mod tests {
         own.request(at(ms + 10));
         own.receive(at(ms + 15), words(CLEAR));
         assert_eq!(own.request(at(ms + 20)), words("77 10 00 00 00 00 00 00"), "the other one in turn");
-        own.watch(&[number(119)]);
+        own.set_watched(&[number(119)]);
         assert!(!own.readings().contains_key(&number(11)), "it is no longer watched");
     }
 }

@@ -8,7 +8,7 @@ use super::{Connection, ConnectionLoss, Drives};
 use crate::buses::ethernet_ip::protocol::{EPath, ForwardClose, Owner, RequestTimeout};
 use crate::devices::hiperdrive::procedures::OpenedConnection;
 use crate::devices::hiperdrive::procedures::dead_man::{
-    Ended, MotionIntent, MotionRequest, Permit, SpeedTorque, TargetState,
+    ActionEnd, MotionIntent, MotionRequest, Permit, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{
     ByteOrder, Direction, DriveNumber, Layout, OutputData, OutputImage, Topology,
@@ -60,18 +60,18 @@ fn packets_match_the_reference() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
     let out = OutputData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
     let image = OutputImage { drives: vec![out], pkw: None };
-    assert_eq!(connection.packet(at(0), &image), hex(TO_TARGET));
+    assert_eq!(connection.next_packet(at(0), &image), hex(TO_TARGET));
     let came = connection.on_packet(at(4), &hex(TO_ORIGINATOR)).unwrap();
-    assert_eq!((came.drives[0].status.word(), came.drives[0].position), (0x2A37, 163_840));
+    assert_eq!((came.drives[0].status.to_u16(), came.drives[0].position), (0x2A37, 163_840));
     // In the next one both counts are one higher.
-    let second = connection.packet(at(10), &image);
+    let second = connection.next_packet(at(10), &image);
     assert_eq!((second[10], second[18]), (2, 2));
     // A target that sends a header before its data.
     let mut with = hex(TO_ORIGINATOR);
     with.splice(20..20, [1, 0, 0, 0]);
     (with[10], with[16]) = (2, 0x16);
     assert_eq!(connection.on_packet(at(14), &with).unwrap().drives[0].position, 163_840);
-    assert_eq!((connection.figures().sent, connection.figures().received), (2, 2));
+    assert_eq!((connection.statistics().sent, connection.statistics().received), (2, 2));
 }
 
 /// Reference 2: 8 bytes per drive, and 8 of parameter words at the end if present; 14 to 78 bytes of data per packet.
@@ -89,7 +89,7 @@ fn the_connection_determines_the_image_layout() {
             let mut connection = Connection::new(&opened(topology, pkw, order), at(0));
             let mut drives = vec![OutputData::default(); topology.drives().into()];
             drives.last_mut().unwrap().control = 0x0401;
-            let packet = connection.packet(at(0), &OutputImage { drives, pkw: None });
+            let packet = connection.next_packet(at(0), &OutputImage { drives, pkw: None });
             // 14 bytes of addresses, 4 of the item, 6 of count and header.
             assert_eq!(packet.len(), 24 + data, "{topology:?} {pkw}");
             let place = 24 + 8 * (usize::from(topology.drives()) - 1);
@@ -107,14 +107,14 @@ fn deadlines_do_not_drift() {
     let mut due = Vec::new();
     for late in [0, 3, 9, 0, 25, 0] {
         let now = connection.poll_at() + Duration::from_millis(late);
-        connection.packet(now, &image);
+        connection.next_packet(now, &image);
         due.push(connection.poll_at().since(Moment::START).as_millis());
     }
     assert_eq!(due, [15, 25, 35, 45, 80, 90]);
 }
 
 fn permit(_: DriveNumber) -> Permit {
-    Permit::within(-1_000_000, 1_000_000)
+    Permit::for_range(-1_000_000, 1_000_000)
 }
 
 /// Adapter whose drive follows at once, cycle by cycle.
@@ -130,7 +130,7 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let drives = Drives::new(&opened(Topology::Adapter, true, ByteOrder::Little), &[DriveNumber::FIRST], 0, at(0));
-        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, at(0));
+        let intent = MotionIntent::idle(DriveNumber::FIRST, 0, at(0));
         Bench { drives, intent, ms: 0, sequence: 0, status: 0x2A30, answers: true }
     }
 
@@ -168,7 +168,11 @@ impl Bench {
 
     fn jogs() -> Self {
         let mut bench = Bench::new();
-        bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
+        bench.act(MotionRequest::Jog {
+            direction: Direction::Clockwise,
+            effort: SpeedTorque::DEFAULT_JOG,
+            outward: false,
+        });
         assert_eq!(bench.cycles(40).join(" "), "0400 0401 0409 1419 1459");
         bench
     }
@@ -181,15 +185,15 @@ fn a_lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
     bench.answers = false;
     assert_eq!(bench.cycles(3).join(" "), "1459");
-    assert!(bench.drives.lost().is_none());
+    assert!(bench.drives.connection_loss().is_none());
     assert_eq!(bench.cycles(1).join(" "), "1419");
-    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(40) }));
-    assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, Ended::Lost)));
+    assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(40) }));
+    assert_eq!(bench.drives.dead_man_switches().next().unwrap().last_end(), Some((1, ActionEnd::Lost)));
     bench.act(MotionRequest::Lead(TargetState::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_finished());
     bench.answers = true;
-    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false });
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
@@ -205,19 +209,19 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
         assert_eq!(bench.cycles(1).join(" "), "1419", "the first word that leaves again");
         bench.answers = true;
         bench.cycles(3);
-        assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
+        assert_eq!(bench.drives.connection_loss().is_some(), lost, "{away} ms");
         // Without a known position nothing continues to move.
-        let how = if lost { Ended::Lost } else { Ended::Deaf };
-        assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, how)), "{away} ms");
+        let how = if lost { ActionEnd::Lost } else { ActionEnd::Deaf };
+        assert_eq!(bench.drives.dead_man_switches().next().unwrap().last_end(), Some((1, how)), "{away} ms");
     }
     // Nothing more arrives after it either.
     let mut bench = Bench::jogs();
     bench.answers = false;
     bench.ms += 40;
     bench.cycles(3);
-    assert!(bench.drives.lost().is_none(), "listened for 20 ms");
+    assert!(bench.drives.connection_loss().is_none(), "listened for 20 ms");
     bench.cycles(2);
-    assert!(bench.drives.lost().is_some(), "listened for 40 ms");
+    assert!(bench.drives.connection_loss().is_some(), "listened for 40 ms");
 }
 
 /// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing
@@ -230,18 +234,18 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     for missing in [3, 5, 7] {
         bench.answers = false;
         bench.cycles(missing);
-        assert!(bench.drives.lost().is_none(), "{missing} missing");
+        assert!(bench.drives.connection_loss().is_none(), "{missing} missing");
         bench.answers = true;
         bench.cycles(3);
     }
     // No motion starts meanwhile.
     bench.answers = false;
     bench.cycles(4);
-    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false });
     assert_eq!(bench.cycles(3).join(" "), "0409");
-    assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((2, Ended::Deaf)));
+    assert_eq!(bench.drives.dead_man_switches().next().unwrap().last_end(), Some((2, ActionEnd::Deaf)));
     bench.cycles(2);
-    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(90) }));
+    assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::Silent { after: Duration::from_millis(90) }));
 }
 
 /// Closing: stop, standstill, off three times.
@@ -253,7 +257,7 @@ fn ending_the_connection_stops_and_switches_off() {
     let words: Vec<u16> = std::iter::from_fn(|| bench.cycle()).collect();
     assert_eq!(words.first(), Some(&0x1419));
     assert_eq!(words.iter().filter(|word| **word == 0).count(), 3);
-    assert!(bench.drives.is_finished() && bench.drives.lost().is_none());
+    assert!(bench.drives.is_finished() && bench.drives.connection_loss().is_none());
     assert!(bench.ms - begun <= 250, "{} ms", bench.ms - begun);
 }
 
@@ -269,7 +273,7 @@ fn a_drive_that_does_not_stop_ends_the_connection() {
     }
     words.dedup();
     assert_eq!(words, [0x1419, 0x0401, 0x0000]);
-    assert_eq!(bench.drives.lost(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
+    assert_eq!(bench.drives.connection_loss(), Some(&ConnectionLoss::DoesNotStand(DriveNumber::FIRST)));
 }
 
 /// One drive moves at a time: an act for another one stops the first.
@@ -278,8 +282,8 @@ fn only_one_drive_moves_at_a_time() {
     let second = DriveNumber::new(2).unwrap();
     let mut drives =
         Drives::new(&opened(Topology::Hub4, false, ByteOrder::Little), &[DriveNumber::FIRST, second], 0, at(0));
-    let effort = SpeedTorque::JOG;
-    let mut intent = MotionIntent::rest(DriveNumber::FIRST, 1, at(0));
+    let effort = SpeedTorque::DEFAULT_JOG;
+    let mut intent = MotionIntent::idle(DriveNumber::FIRST, 1, at(0));
     let mut moves = [false; 4];
     for ms in (0..3000).step_by(10) {
         intent = match ms {
@@ -324,18 +328,18 @@ proptest! {
         let mut bench = Bench::new();
         bench.cycles(5);
         bench.answers = false;
-        let before = bench.drives.figures().clone();
+        let before = bench.drives.statistics().clone();
         for packet in &packets {
             bench.drives.on_packet(at(bench.ms), packet);
         }
-        let after = bench.drives.figures();
+        let after = bench.drives.statistics();
         prop_assert_eq!(after.malformed + after.received + after.stale, before.malformed + before.received + packets.len() as u64);
         prop_assert_eq!(after.received, before.received);
         // At rest it is kept as long as the target waits, which is eight intervals here.
         bench.cycles(8);
-        prop_assert!(bench.drives.lost().is_none());
+        prop_assert!(bench.drives.connection_loss().is_none());
         bench.cycles(2);
-        prop_assert!(bench.drives.lost().is_some());
+        prop_assert!(bench.drives.connection_loss().is_some());
     }
 
     /// A report that is cut, has a bit flipped, is repeated or late: no panic, and it counts at most once.
@@ -358,7 +362,7 @@ proptest! {
             }
         }
         prop_assert!(counted.is_sorted_by(|one, other| one < other) || reports.iter().any(|report| report.3 == 2));
-        let figures = connection.figures();
+        let figures = connection.statistics();
         prop_assert_eq!(figures.received + figures.stale + figures.malformed, reports.len() as u64);
     }
 }

@@ -12,7 +12,7 @@ pub struct MotionIntent {
     pub request: MotionRequest,
     /// Number of the user's action, higher than all previous numbers.
     pub number: u64,
-    /// Time of the last refresh. No motion continues after [`MotionIntent::FRESH`].
+    /// Time of the last refresh. No motion continues after [`MotionIntent::REFRESH_VALIDITY`].
     pub refreshed: Moment,
 }
 
@@ -38,7 +38,7 @@ pub enum MotionRequest {
     /// Turns while the button is held, at most up to the end of the range.
     Jog {
         direction: Direction,
-        /// Speed and torque; limited to [`SpeedTorque::JOG`] if `outward` is set.
+        /// Speed and torque; limited to [`SpeedTorque::DEFAULT_JOG`] if `outward` is set.
         effort: SpeedTorque,
         /// Whether a drive outside its limits may move further outward. With a wrong reference, this can be the only
         /// way back.
@@ -76,7 +76,7 @@ pub struct SpeedTorque {
 pub struct Permit {
     /// Lower and upper limit (parameters 158 and 160), or `None` if they have not been read.
     pub limits: Option<(i32, i32)>,
-    pub locks: Vec<Lock>,
+    pub locks: Vec<MotionLock>,
     /// Whether the drive may run past its limits.
     pub endless: bool,
     /// Whether the parameters must be read again before a motion starts. A running motion continues.
@@ -86,7 +86,7 @@ pub struct Permit {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Lock {
+pub enum MotionLock {
     Unread,
     /// Parameter 186 is 255 or not a time, so the drive could continue to move after a loss of communication.
     NoTimeout,
@@ -135,7 +135,7 @@ pub enum StopLevel {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum ActionEnd {
     Done,
     Arrived,
     RangeEnd,
@@ -148,9 +148,9 @@ pub enum Ended {
     /// The drive has a fault and cannot move until the fault is acknowledged.
     Fault,
     /// The drive is no longer permitted to move.
-    Locked(Lock),
+    Locked(MotionLock),
     /// The request was refused, and nothing was sent.
-    Refused(Refusal),
+    Refused(MotionRefusal),
     /// The drive did not follow a control word and remains in this state.
     NoAnswer(State),
     NotStarted,
@@ -170,8 +170,8 @@ pub enum Ended {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    Locked(Lock),
+pub enum MotionRefusal {
+    Locked(MotionLock),
     /// Speed or torque is 0 %.
     NoEffort,
     Outside {
@@ -215,22 +215,22 @@ pub enum Refusal {
 
 impl MotionIntent {
     /// Time for which a refresh is valid. Refreshes must be repeated every 100 ms.
-    pub const FRESH: Duration = Duration::from_millis(250);
+    pub const REFRESH_VALIDITY: Duration = Duration::from_millis(250);
 
     /// Creates an intent that requests nothing.
-    pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
+    pub const fn idle(drive: DriveNumber, number: u64, now: Moment) -> Self {
         MotionIntent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
     /// Returns whether the request has not been refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
-        now.since(self.refreshed) > MotionIntent::FRESH
+        now.since(self.refreshed) > MotionIntent::REFRESH_VALIDITY
     }
 }
 
 impl MotionRequest {
     /// Returns whether the request makes the drive move. A pause does not.
-    pub const fn moves(self) -> bool {
+    pub const fn needs_motion(self) -> bool {
         matches!(
             self,
             MotionRequest::Move { .. }
@@ -242,9 +242,9 @@ impl MotionRequest {
     }
 
     /// Returns speed and torque, or `None` for requests without them, such as a stop.
-    pub fn effort(self) -> Option<SpeedTorque> {
+    pub fn speed_torque(self) -> Option<SpeedTorque> {
         match self {
-            MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(SpeedTorque::JOG)),
+            MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(SpeedTorque::DEFAULT_JOG)),
             MotionRequest::Move { effort, .. }
             | MotionRequest::Step { effort, .. }
             | MotionRequest::Jog { effort, .. }
@@ -263,7 +263,7 @@ impl TargetState {
     pub const ALL: [TargetState; 4] =
         [TargetState::Off, TargetState::Ready, TargetState::Operational, TargetState::Enabled];
 
-    pub(super) const fn above(self) -> TargetState {
+    pub(super) const fn next_higher(self) -> TargetState {
         match self {
             TargetState::Off => TargetState::Ready,
             TargetState::Ready => TargetState::Operational,
@@ -272,7 +272,7 @@ impl TargetState {
     }
 
     /// Returns the target state that corresponds to a drive state. Faults and the switch-on lock rank lowest.
-    pub(super) const fn of(state: State) -> TargetState {
+    pub(super) const fn from_state(state: State) -> TargetState {
         match state {
             State::NotReady | State::Fault | State::Locked => TargetState::Off,
             State::Ready => TargetState::Ready,
@@ -286,10 +286,10 @@ impl SpeedTorque {
     /// Zero speed and torque, which start no motion.
     pub const NONE: SpeedTorque = SpeedTorque { speed: Percent::NONE, torque: Percent::NONE };
     /// Default speed and torque of a jog: 10 % and 25 %.
-    pub const JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };
+    pub const DEFAULT_JOG: SpeedTorque = SpeedTorque { speed: percent(10), torque: percent(25) };
     /// Default speed and torque of a move: 25 % speed and full torque. The low speed leaves time to stop after a
     /// mistyped target, and an axis may need the full torque.
-    pub const MOVE: SpeedTorque = SpeedTorque { speed: percent(25), torque: Percent::FULL };
+    pub const DEFAULT_MOVE: SpeedTorque = SpeedTorque { speed: percent(25), torque: Percent::FULL };
 
     pub fn at_most(self, other: SpeedTorque) -> Self {
         SpeedTorque { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
@@ -311,38 +311,38 @@ const fn percent(percent: u8) -> Percent {
 impl Default for Permit {
     /// Returns the permit that applies before a drive's parameters have been read, which allows no motion.
     fn default() -> Self {
-        Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
+        Permit { limits: None, locks: vec![MotionLock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
     /// Creates a permit for motion within the given limits. It has no locks and the factory scale of 65536 steps per
     /// turn.
-    pub const fn within(low: i32, high: i32) -> Self {
+    pub const fn for_range(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
     /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
     ///
     /// # Errors
-    /// Returns the [`Refusal`] if the motion is not permitted.
-    pub fn check(&self, request: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
-        if !request.moves() {
+    /// Returns the [`MotionRefusal`] if the motion is not permitted.
+    pub fn check_request(&self, request: MotionRequest, target: Option<i32>) -> Result<(), MotionRefusal> {
+        if !request.needs_motion() {
             return Ok(());
         }
         if let Some(lock) = self.locks.first() {
-            return Err(Refusal::Locked(*lock));
+            return Err(MotionRefusal::Locked(*lock));
         }
-        if request.effort().is_some_and(SpeedTorque::is_none) {
-            return Err(Refusal::NoEffort);
+        if request.speed_torque().is_some_and(SpeedTorque::is_none) {
+            return Err(MotionRefusal::NoEffort);
         }
         if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
-            return Err(Refusal::Endless);
+            return Err(MotionRefusal::Endless);
         }
         match (target, self.limits) {
-            (_, None) => Err(Refusal::Locked(Lock::Unread)),
+            (_, None) => Err(MotionRefusal::Locked(MotionLock::Unread)),
             (Some(target), Some((low, high))) if !(low..=high).contains(&target) => {
-                Err(Refusal::Outside { target, low, high })
+                Err(MotionRefusal::Outside { target, low, high })
             }
             _ => Ok(()),
         }

@@ -1,6 +1,9 @@
 //! Reasons why a running action ends early.
 
-use super::{CONTACT_TIMEOUT, DeadMan, Ended, Lock, MotionIntent, MotionKind, MotionRequest, Permit, Refusal, Stage};
+use super::{
+    ActionEnd, CONTACT_TIMEOUT, DeadMan, MotionIntent, MotionKind, MotionLock, MotionRefusal, MotionRequest, Permit,
+    Stage,
+};
 use crate::devices::hiperdrive::protocol::{ActualValues, StatusBit};
 use crate::units::Moment;
 
@@ -16,12 +19,12 @@ impl DeadMan {
         if self.act.is_none() {
             return;
         }
-        self.follow(intent, permit, now);
+        self.accept_pause_or_resume(intent, permit, now);
         if let Some(how) = self.cause(now, actual, intent, permit) {
             if self.stage.has_motion() {
                 self.stop(now, how);
             } else {
-                self.end(how);
+                self.end_action(how);
                 self.hold_state(actual.status.state());
             }
         }
@@ -29,8 +32,8 @@ impl DeadMan {
 
     /// Accepts a pause or a resume of the job. It must be the very next request, because a stop in between may have
     /// been missed.
-    fn follow(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
-        let mark = self.mark(now);
+    fn accept_pause_or_resume(&mut self, intent: &MotionIntent, permit: &Permit, now: Moment) {
+        let mark = self.mark_now(now);
         let Some(act) = &mut self.act else { return };
         let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
         let job = matches!(act.motion, Some(motion) if matches!(motion.kind, MotionKind::Job { .. }));
@@ -52,7 +55,13 @@ impl DeadMan {
         }
     }
 
-    fn cause(&mut self, now: Moment, actual: ActualValues, intent: &MotionIntent, permit: &Permit) -> Option<Ended> {
+    fn cause(
+        &mut self,
+        now: Moment,
+        actual: ActualValues,
+        intent: &MotionIntent,
+        permit: &Permit,
+    ) -> Option<ActionEnd> {
         let act = self.act?;
         let status = actual.status;
         let state = status.state();
@@ -65,32 +74,33 @@ impl DeadMan {
             _ => (false, false),
         };
         let moves = self.stage.has_motion();
-        if status.has(StatusBit::Fault) && !acknowledges {
-            return Some(Ended::Fault);
+        if status.is_set(StatusBit::Fault) && !acknowledges {
+            return Some(ActionEnd::Fault);
         }
         if is_out_of_contact {
-            return Some(Ended::Deaf);
+            return Some(ActionEnd::Deaf);
         }
         if let Some(how) = self.superseded_end(act.number, act.request, intent, permit) {
             return Some(how);
         }
         if intent.is_stale(now) && !down {
-            return Some(Ended::Stale);
+            return Some(ActionEnd::Stale);
         }
-        if moves && !status.has(StatusBit::OperationEnabled) {
-            return Some(Ended::Left(state));
+        if moves && !status.is_set(StatusBit::OperationEnabled) {
+            return Some(ActionEnd::Left(state));
         }
-        if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) = (self.stage, self.runs())
-            && status.has(StatusBit::SetpointAcknowledged) == acknowledged
+        if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) =
+            (self.stage, self.is_speed_mode())
+            && status.is_set(StatusBit::SetpointAcknowledged) == acknowledged
         {
             // The drive has restarted. The control word being sent would start the job again.
-            return Some(Ended::Left(state));
+            return Some(ActionEnd::Left(state));
         }
         let motion = act.motion?;
-        match permit.check(motion.request, motion.kind.target()) {
+        match permit.check_request(motion.request, motion.kind.target()) {
             Ok(()) => self.watch_motion(now, actual, permit),
-            Err(Refusal::Locked(lock)) => Some(Ended::Locked(lock)),
-            Err(refusal) => Some(Ended::Refused(refusal)),
+            Err(MotionRefusal::Locked(lock)) => Some(ActionEnd::Locked(lock)),
+            Err(refusal) => Some(ActionEnd::Refused(refusal)),
         }
     }
 
@@ -101,7 +111,7 @@ impl DeadMan {
         request: MotionRequest,
         intent: &MotionIntent,
         permit: &Permit,
-    ) -> Option<Ended> {
+    ) -> Option<ActionEnd> {
         let rests = matches!(
             intent.request,
             MotionRequest::Rest | MotionRequest::Stop | MotionRequest::Pause | MotionRequest::Resume
@@ -109,11 +119,11 @@ impl DeadMan {
         if intent.drive == self.drive && intent.number == number && intent.request == request {
             None
         } else if intent.request == MotionRequest::Resume && permit.doubted {
-            Some(Ended::Refused(Refusal::Locked(Lock::Outdated)))
+            Some(ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated)))
         } else if rests || intent.number < number {
-            Some(Ended::Stopped)
+            Some(ActionEnd::Stopped)
         } else {
-            Some(Ended::Replaced)
+            Some(ActionEnd::Replaced)
         }
     }
 }

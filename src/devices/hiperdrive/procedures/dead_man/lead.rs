@@ -1,7 +1,9 @@
 //! Leading a drive through its states: one control word after another, each until the drive has followed or a time
 //! limit expires (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
 
-use super::{Act, DeadMan, Ended, Mark, MotionKind, Refusal, SETTLE, STEP, Stage, TargetState};
+use super::{
+    ActionEnd, DeadMan, MAX_REPORT_DELAY, MotionKind, MotionRefusal, ReportMark, STEP, Stage, TargetState, UserAction,
+};
 use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
@@ -10,7 +12,7 @@ pub(super) struct StateSequencer {
     goal: TargetState,
     acknowledges: bool,
     /// The control word being sent, and the mark at which sending began.
-    word: Option<(ControlWord, Mark)>,
+    word: Option<(ControlWord, ReportMark)>,
 }
 
 enum StateSequenceStep {
@@ -21,18 +23,18 @@ enum StateSequenceStep {
 
 impl TargetState {
     pub(super) const fn from_word(word: ControlWord) -> TargetState {
-        if !word.has(ControlBit::Control) {
+        if !word.is_set(ControlBit::Control) {
             TargetState::Off
-        } else if !word.has(ControlBit::On) {
+        } else if !word.is_set(ControlBit::On) {
             TargetState::Ready
-        } else if !word.has(ControlBit::Enable) {
+        } else if !word.is_set(ControlBit::Enable) {
             TargetState::Operational
         } else {
             TargetState::Enabled
         }
     }
 
-    pub(super) const fn word(self) -> ControlWord {
+    pub(super) const fn control_word(self) -> ControlWord {
         match self {
             TargetState::Off => ControlWord::OFF,
             TargetState::Ready => ControlWord::READY,
@@ -43,12 +45,12 @@ impl TargetState {
 }
 
 impl StateSequencer {
-    pub(super) const fn to(goal: TargetState) -> Self {
+    pub(super) const fn new(goal: TargetState) -> Self {
         StateSequencer { goal, acknowledges: false, word: None }
     }
 
     /// Creates a sequence that leads the drive out of a fault or the switch-on lock to the ready state.
-    const fn out() -> Self {
+    const fn out_of_fault() -> Self {
         StateSequencer { goal: TargetState::Ready, acknowledges: true, word: None }
     }
 
@@ -58,20 +60,20 @@ impl StateSequencer {
 
     /// Returns whether the sequence only removes torque or keeps it off. It then needs no refresh.
     pub(super) fn only_removes_torque(&self, state: State) -> bool {
-        self.goal <= TargetState::of(state) || self.goal == TargetState::Off
+        self.goal <= TargetState::from_state(state) || self.goal == TargetState::Off
     }
 
     /// Returns the control word being sent, which is zero before the first step.
-    pub(super) fn word(&self) -> ControlWord {
+    pub(super) fn control_word(&self) -> ControlWord {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
 
-    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> StateSequenceStep {
+    fn next_step(&self, now: ReportMark, status: StatusWord, after_run: bool) -> StateSequenceStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has had enough time to process the word, so it will not miss the edge that follows.
         let seen = |word: ControlWord| {
-            self.word.is_some_and(|(sent, since)| sent == word && now.has_elapsed_since(since, SETTLE))
+            self.word.is_some_and(|(sent, since)| sent == word && now.has_elapsed_since(since, MAX_REPORT_DELAY))
         };
         let state = status.state();
         let word = match (state, self.goal) {
@@ -83,43 +85,50 @@ impl StateSequencer {
             (State::Locked, _) => W::OPERATIONAL,
             // Below operational the drive forgets the run.
             (_, goal) if after_run && goal > TargetState::Ready => W::READY,
-            (_, goal) => match TargetState::of(state) {
-                level if level > goal => goal.word(),
-                level if level < goal => level.above().word(),
+            (_, goal) => match TargetState::from_state(state) {
+                level if level > goal => goal.control_word(),
+                level if level < goal => level.next_higher().control_word(),
                 // Nothing else starts before the drive is at rest.
                 _ if state == State::Moving => W::ENABLED,
-                _ if after_run && goal == TargetState::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
+                _ if after_run && goal == TargetState::Ready && status.is_set(StatusBit::SetpointAcknowledged) => {
+                    W::READY
+                }
                 _ => return StateSequenceStep::There,
             },
         };
-        let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.has_elapsed_since(since, STEP);
+        let patience = |(sent, since): (ControlWord, ReportMark)| sent == word && now.has_elapsed_since(since, STEP);
         if self.word.is_some_and(patience) { StateSequenceStep::Lost } else { StateSequenceStep::By(word) }
     }
 }
 
 impl DeadMan {
     /// Starts to lead the drive to the requested state.
-    pub(super) fn lead(&mut self, now: Moment, actual: ActualValues, goal: TargetState) -> Result<(), Refusal> {
-        if actual.status.has(StatusBit::Fault) && goal != TargetState::Off {
-            return Err(Refusal::Fault);
+    pub(super) fn lead_to(
+        &mut self,
+        now: Moment,
+        actual: ActualValues,
+        goal: TargetState,
+    ) -> Result<(), MotionRefusal> {
+        if actual.status.is_set(StatusBit::Fault) && goal != TargetState::Off {
+            return Err(MotionRefusal::Fault);
         }
-        self.stage = Stage::Lead(StateSequencer::to(goal));
-        self.advance(now, actual);
+        self.stage = Stage::Lead(StateSequencer::new(goal));
+        self.advance_stage(now, actual);
         Ok(())
     }
 
-    pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), Refusal> {
+    pub(super) fn acknowledge(&mut self, now: Moment, actual: ActualValues) -> Result<(), MotionRefusal> {
         if matches!(actual.status.state(), State::Fault | State::Locked) {
-            self.stage = Stage::Lead(StateSequencer::out());
-            self.advance(now, actual);
+            self.stage = Stage::Lead(StateSequencer::out_of_fault());
+            self.advance_stage(now, actual);
         } else {
-            self.end(Ended::Done);
+            self.end_action(ActionEnd::Done);
         }
         Ok(())
     }
 
-    pub(super) fn go_on(&mut self, now: Moment, actual: ActualValues, mut lead: StateSequencer) {
-        let mark = self.mark(now);
+    pub(super) fn continue_lead(&mut self, now: Moment, actual: ActualValues, mut lead: StateSequencer) {
+        let mark = self.mark_now(now);
         match lead.next_step(mark, actual.status, self.after_run) {
             StateSequenceStep::By(word) => {
                 if lead.word.is_none_or(|(sent, _)| sent != word) {
@@ -131,22 +140,22 @@ impl DeadMan {
                 self.level = lead.goal;
                 self.stage = Stage::Rest { moves: None };
                 match self.act {
-                    Some(Act { motion: Some(motion), .. }) => self.arm(now, actual, motion.kind),
-                    _ => self.end(Ended::Done),
+                    Some(UserAction { motion: Some(motion), .. }) => self.prepare_motion(now, actual, motion.kind),
+                    _ => self.end_action(ActionEnd::Done),
                 }
             }
             StateSequenceStep::Lost => {
                 self.hold_state(actual.status.state());
-                self.end(Ended::NoAnswer(actual.status.state()));
+                self.end_action(ActionEnd::NoAnswer(actual.status.state()));
             }
         }
     }
 
     /// Enters the stage whose control word allows a motion to begin, without starting one.
-    fn arm(&mut self, now: Moment, actual: ActualValues, kind: MotionKind) {
-        let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
+    fn prepare_motion(&mut self, now: Moment, actual: ActualValues, kind: MotionKind) {
+        let acknowledged = actual.status.is_set(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(kind, MotionKind::Run { .. });
-        self.stage = Stage::Arm { since: self.mark(now), acknowledged };
+        self.stage = Stage::Arm { since: self.mark_now(now), acknowledged };
     }
 
     /// Holds the present state or a lower one after a sequence was abandoned.
@@ -155,7 +164,7 @@ impl DeadMan {
         self.level = match state {
             // Bit 0 stays set for the acknowledgement.
             State::Fault | State::Locked => TargetState::Operational,
-            state => TargetState::of(state),
+            state => TargetState::from_state(state),
         }
         .min(highest)
         .min(TargetState::from_word(self.sent.control));

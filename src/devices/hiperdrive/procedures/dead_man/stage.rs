@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::lead::StateSequencer;
 use super::{
-    DeadMan, Ended, LEVEL_TIME, Motion, MotionKind, SETTLE, SHORT, START, SpeedTorque, StopLevel, TargetState,
+    ActionEnd, DeadMan, LEVEL_TIME, MAX_REPORT_DELAY, Motion, MotionKind, NOT_REACHED_TIME, START, SpeedTorque,
+    StopLevel, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{ActualValues, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
@@ -18,35 +19,35 @@ pub(super) enum Stage {
     Lead(StateSequencer),
     /// The drive has received the setpoints of a motion and the control word from which the motion can start.
     Arm {
-        since: Mark,
+        since: ReportMark,
         /// Last reported value of status bit 12.
         acknowledged: bool,
     },
     Start {
-        since: Mark,
+        since: ReportMark,
         acknowledged: bool,
     },
     Go {
-        since: Mark,
+        since: ReportMark,
         acknowledged: bool,
         /// Mark since which the drive has been at rest.
-        standing_since: Option<Mark>,
+        standing_since: Option<ReportMark>,
     },
     Paused {
-        since: Mark,
+        since: ReportMark,
         acknowledged: bool,
     },
     Stop {
         level: StopLevel,
         since: Moment,
-        begun: Mark,
+        begun: ReportMark,
         word: ControlWord,
     },
 }
 
 /// A point in time, with the number of reports received until then.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mark {
+pub(super) struct ReportMark {
     pub(super) at: Moment,
     pub(super) report: u64,
 }
@@ -54,20 +55,20 @@ pub(super) struct Mark {
 /// Number of reports to wait for after a mark. The last of them certainly describes the time after the mark.
 const REPORTS: u64 = 2;
 
-impl Mark {
+impl ReportMark {
     /// Returns whether at least `time` has passed since `earlier`, and [`REPORTS`] reports have arrived.
-    pub(super) fn has_elapsed_since(self, earlier: Mark, time: Duration) -> bool {
+    pub(super) fn has_elapsed_since(self, earlier: ReportMark, time: Duration) -> bool {
         self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
 }
 
 impl Stage {
-    pub(super) const fn moves(&self) -> bool {
+    pub(super) const fn is_moving(&self) -> bool {
         matches!(self, Stage::Arm { .. } | Stage::Start { .. } | Stage::Go { .. })
     }
 
     pub(super) const fn has_motion(&self) -> bool {
-        self.moves() || matches!(self, Stage::Paused { .. })
+        self.is_moving() || matches!(self, Stage::Paused { .. })
     }
 }
 
@@ -82,26 +83,26 @@ impl StopLevel {
 }
 
 impl DeadMan {
-    pub(super) fn advance(&mut self, now: Moment, actual: ActualValues) {
-        let mark = self.mark(now);
-        let has = |bit| actual.status.has(bit);
+    pub(super) fn advance_stage(&mut self, now: Moment, actual: ActualValues) {
+        let mark = self.mark_now(now);
+        let has = |bit| actual.status.is_set(bit);
         let toggled = |acknowledged| has(StatusBit::SetpointAcknowledged) != acknowledged;
         match self.stage {
-            Stage::Rest { moves } => self.watch(now, actual, moves),
-            Stage::Lead(lead) => self.go_on(now, actual, lead),
+            Stage::Rest { moves } => self.supervise_at_rest(now, actual, moves),
+            Stage::Lead(lead) => self.continue_lead(now, actual, lead),
             Stage::Arm { since, acknowledged } => {
-                if self.runs() || !toggled(acknowledged) {
+                if self.is_speed_mode() || !toggled(acknowledged) {
                     // The drive has received the control word.
                     if mark.has_elapsed_since(since, Duration::ZERO) {
                         self.stage = Stage::Start { since: mark, acknowledged };
                     }
                 } else {
-                    self.stop(now, Ended::NotStarted);
+                    self.stop(now, ActionEnd::NotStarted);
                 }
             }
             Stage::Start { since, acknowledged } => {
                 let moves = actual.status.state() == State::Moving;
-                let begun = if self.runs() {
+                let begun = if self.is_speed_mode() {
                     moves || (has(StatusBit::SetpointAcknowledged) && !acknowledged)
                 } else {
                     toggled(acknowledged)
@@ -110,7 +111,7 @@ impl DeadMan {
                     self.stage = Stage::Go { since: mark, acknowledged, standing_since: None };
                 } else if now.since(since.at) >= START {
                     let at_end = self.act.and_then(|act| act.watch).is_some_and(|watch| watch.at_end);
-                    self.stop(now, if at_end { Ended::RangeEnd } else { Ended::NotStarted });
+                    self.stop(now, if at_end { ActionEnd::RangeEnd } else { ActionEnd::NotStarted });
                 }
             }
             Stage::Go { since, acknowledged, standing_since: stands } => {
@@ -125,46 +126,46 @@ impl DeadMan {
         }
     }
 
-    fn check_motion_end(&mut self, mark: Mark, actual: ActualValues, stands: Mark) {
+    fn check_motion_end(&mut self, mark: ReportMark, actual: ActualValues, stands: ReportMark) {
         let Stage::Go { since, .. } = self.stage else { return };
         // A report from before the start may still show standstill, or another target as reached.
-        let late = mark.has_elapsed_since(since, SETTLE);
-        if self.runs() {
-            if late && mark.has_elapsed_since(stands, SETTLE) {
-                self.stop(mark.at, Ended::RangeEnd);
+        let late = mark.has_elapsed_since(since, MAX_REPORT_DELAY);
+        if self.is_speed_mode() {
+            if late && mark.has_elapsed_since(stands, MAX_REPORT_DELAY) {
+                self.stop(mark.at, ActionEnd::RangeEnd);
             }
-        } else if actual.status.has(StatusBit::TargetReached) {
+        } else if actual.status.is_set(StatusBit::TargetReached) {
             if late {
-                self.end(Ended::Arrived);
+                self.end_action(ActionEnd::Arrived);
                 self.hold_state(actual.status.state());
             }
-        } else if mark.has_elapsed_since(stands, SHORT) {
-            self.stop(mark.at, Ended::Short);
+        } else if mark.has_elapsed_since(stands, NOT_REACHED_TIME) {
+            self.stop(mark.at, ActionEnd::Short);
         }
     }
 
     /// Returns whether the motion is a run in speed mode.
-    pub(super) fn runs(&self) -> bool {
+    pub(super) fn is_speed_mode(&self) -> bool {
         self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.kind, MotionKind::Run { .. }))
     }
 
-    pub(super) fn stop(&mut self, now: Moment, how: Ended) {
+    pub(super) fn stop(&mut self, now: Moment, how: ActionEnd) {
         let moved = self.stage.has_motion();
-        self.end(how);
+        self.end_action(how);
         if moved {
-            let (begun, word) = (self.mark(now), self.sent.control.with_stop());
+            let (begun, word) = (self.mark_now(now), self.sent.control.with_stop());
             self.stage = Stage::Stop { level: StopLevel::Mode, since: now, begun, word };
         }
     }
 
     /// Escalates the stop until the drive is at rest, then holds its state. After a run, that state is ready, from
     /// which the next motion leads up again.
-    fn escalate_stop(&mut self, mark: Mark, actual: ActualValues) {
+    fn escalate_stop(&mut self, mark: ReportMark, actual: ActualValues) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
             return;
         }
-        if mark.has_elapsed_since(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
+        if mark.has_elapsed_since(begun, MAX_REPORT_DELAY) && actual.status.is_set(StatusBit::StandingStill) {
             // The held state is never above the state of the word sent last.
             self.hold_state(actual.status.state());
         } else if mark.at.since(since) >= LEVEL_TIME {
@@ -174,10 +175,10 @@ impl DeadMan {
     }
 
     /// Supervises a drive at rest. If the drive falls to a lower state, that state is held. A moving drive is stopped.
-    fn watch(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
+    fn supervise_at_rest(&mut self, now: Moment, actual: ActualValues, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(TargetState::Operational),
-            state => self.level = self.level.min(TargetState::of(state)),
+            state => self.level = self.level.min(TargetState::from_state(state)),
         }
         let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
         self.stage = Stage::Rest { moves };
@@ -187,7 +188,7 @@ impl DeadMan {
                 TargetState::Operational | TargetState::Ready => StopLevel::Off,
                 TargetState::Off => StopLevel::Close,
             };
-            let (begun, word) = (self.mark(now), self.rest_control_word());
+            let (begun, word) = (self.mark_now(now), self.rest_control_word());
             self.stage = Stage::Stop { level, since: now, begun, word };
         }
     }
@@ -197,20 +198,20 @@ impl DeadMan {
         let sent = self.sent.control;
         let enabled = TargetState::from_word(sent) == TargetState::Enabled;
         match self.level {
-            TargetState::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
-            level => level.word(),
+            TargetState::Enabled if enabled && !sent.is_set(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
+            level => level.control_word(),
         }
     }
 
-    pub(super) fn setpoint(&self, actual: ActualValues) -> Setpoint {
+    pub(super) fn next_setpoint(&self, actual: ActualValues) -> Setpoint {
         let motion = self.act.and_then(|act| act.motion);
         let control = match (&self.stage, motion) {
             (Stage::Rest { .. }, _) => self.rest_control_word(),
-            (Stage::Lead(lead), _) => lead.word(),
+            (Stage::Lead(lead), _) => lead.control_word(),
             (Stage::Stop { level: StopLevel::Mode, word, .. }, _) => *word,
             (Stage::Stop { level: StopLevel::Operational, .. }, _) => ControlWord::OPERATIONAL,
             (Stage::Stop { level: StopLevel::Off | StopLevel::Close, .. }, _) => ControlWord::OFF,
-            (stage, Some(Motion { kind, .. })) => moving(stage, kind, actual),
+            (stage, Some(Motion { kind, .. })) => moving_word(stage, kind, actual),
             // Without an action there is no motion in these stages.
             (_, None) => ControlWord::READY,
         };
@@ -229,14 +230,14 @@ impl DeadMan {
     }
 }
 
-fn moving(stage: &Stage, kind: MotionKind, actual: ActualValues) -> ControlWord {
+fn moving_word(stage: &Stage, kind: MotionKind, actual: ActualValues) -> ControlWord {
     let toggled = |acknowledged: &bool, toggle: bool| {
-        let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
+        let status = actual.status.with_bit(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
         ControlWord::without_job_start(status)
     };
     match (stage, kind) {
         (Stage::Arm { .. }, MotionKind::Run { direction, end }) => ControlWord::speed_mode(direction, end),
-        (_, MotionKind::Run { direction, end }) => ControlWord::running(direction, end),
+        (_, MotionKind::Run { direction, end }) => ControlWord::speed_mode_running(direction, end),
         (Stage::Arm { acknowledged, .. }, MotionKind::Job { .. }) => toggled(acknowledged, false),
         (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, MotionKind::Job { .. }) => {
             toggled(acknowledged, true)

@@ -3,13 +3,13 @@
 
 use std::time::Duration;
 
-use super::{DeadMan, Lock, MotionIntent, MotionRequest, Permit, Phase, SpeedTorque, TargetState};
+use super::{DeadMan, MotionIntent, MotionLock, MotionRequest, Permit, Phase, SpeedTorque, TargetState};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, DriveNumber, StatusWord};
 use crate::units::Moment;
 
 const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
 
-struct Bench {
+struct TestBench {
     man: DeadMan,
     now: Moment,
     intent: MotionIntent,
@@ -25,15 +25,15 @@ struct Bench {
 const READY: u16 = 0x2A31;
 const ENABLED: u16 = 0x2A37;
 const MOVING: u16 = 0x1A37;
-const STANDING: u16 = 0x3A37;
+const STANDSTILL: u16 = 0x3A37;
 
-impl Bench {
+impl TestBench {
     fn new(status: u16) -> Self {
-        Bench {
+        TestBench {
             man: DeadMan::new(DriveNumber::FIRST, 0),
             now: Moment::START,
-            intent: MotionIntent::rest(DriveNumber::FIRST, 0, Moment::START),
-            permit: Permit::within(-10_000, 10_000),
+            intent: MotionIntent::idle(DriveNumber::FIRST, 0, Moment::START),
+            permit: Permit::for_range(-10_000, 10_000),
             status,
             position: 0,
             refreshes: true,
@@ -41,12 +41,12 @@ impl Bench {
         }
     }
 
-    fn act(&mut self, wish: MotionRequest) {
+    fn request(&mut self, wish: MotionRequest) {
         self.intent =
             MotionIntent { request: wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
     }
 
-    fn cycle(&mut self) {
+    fn run_cycle(&mut self) {
         self.now = self.now + Duration::from_millis(10);
         if self.refreshes {
             self.intent.refreshed = self.now;
@@ -55,38 +55,39 @@ impl Bench {
         self.man.next(self.now, self.is_connected.then_some(actual), &self.intent, &self.permit);
     }
 
-    fn cycles(&mut self, count: u32) {
-        (0..count).for_each(|_| self.cycle());
+    fn run_cycles(&mut self, count: u32) {
+        (0..count).for_each(|_| self.run_cycle());
     }
 
     /// Creates a bench whose dead-man is in the given phase of the documented table.
     fn in_phase(name: &str) -> Self {
-        let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::JOG };
-        let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false };
+        let job = MotionRequest::Move { target: 5000, effort: SpeedTorque::DEFAULT_JOG };
+        let jog =
+            MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false };
         let is_below = matches!(name, "at rest" | "leading" | "up to a motion");
-        let mut bench = Bench::new(if is_below { READY } else { ENABLED });
-        bench.cycles(3);
+        let mut bench = TestBench::new(if is_below { READY } else { ENABLED });
+        bench.run_cycles(3);
         match name {
             "at rest" => {}
-            "leading" => bench.act(MotionRequest::Lead(TargetState::Enabled)),
-            "up to a motion" | "moving (run)" | "stopping" => bench.act(jog),
-            _ => bench.act(job),
+            "leading" => bench.request(MotionRequest::Lead(TargetState::Enabled)),
+            "up to a motion" | "moving (run)" | "stopping" => bench.request(jog),
+            _ => bench.request(job),
         }
         // Armed, then started: two reports each.
-        bench.cycles(5);
+        bench.run_cycles(5);
         if !is_below && name != "starting" {
             bench.status = MOVING;
-            bench.cycles(20);
+            bench.run_cycles(20);
         }
         match name {
             "paused" => {
-                bench.act(MotionRequest::Pause);
-                bench.status = STANDING;
-                bench.cycles(3);
+                bench.request(MotionRequest::Pause);
+                bench.status = STANDSTILL;
+                bench.run_cycles(3);
             }
             "stopping" => {
-                bench.act(MotionRequest::Stop);
-                bench.cycles(2);
+                bench.request(MotionRequest::Stop);
+                bench.run_cycles(2);
             }
             _ => {}
         }
@@ -107,25 +108,25 @@ impl Bench {
     fn play_event(&mut self, event: &str) {
         let paused = matches!(self.man.phase(), Phase::Paused { .. });
         match event.split(['(', ',']).next().unwrap_or_default().trim() {
-            "released" => self.act(MotionRequest::Stop),
+            "released" => self.request(MotionRequest::Stop),
             "not refreshed for 250 ms" => {
                 self.refreshes = false;
                 // The packet after 250 ms is the first that may end it.
-                self.cycles(25);
-                let moves = self.man.ended().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
+                self.run_cycles(25);
+                let moves = self.man.last_end().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
                 assert!(moves, "not before");
             }
-            "another action" => self.act(MotionRequest::Lead(TargetState::Operational)),
+            "another action" => self.request(MotionRequest::Lead(TargetState::Operational)),
             "no status from the drive" => {
                 self.is_connected = false;
                 self.man.handle_contact_loss(self.now);
                 // Leading alone takes longer.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
-                self.cycles(if leads { 36 } else { 0 });
+                self.run_cycles(if leads { 36 } else { 0 });
             }
             "the connection is lost or closed" => self.man.connection_lost(self.now),
             "fault" => self.status = 0x2AB8,
-            "a lock" => self.permit.locks.push(Lock::NoAnswer),
+            "a lock" => self.permit.locks.push(MotionLock::NoAnswer),
             "parameters must be read again" => self.permit.doubted = true,
             "operation no longer enabled" => self.status = 0x2A33,
             "beyond a limit" => {
@@ -134,13 +135,13 @@ impl Bench {
             }
             "moves in the wrong direction by more than 1°" => self.position = -400,
             "moves further by more than 1°" => {
-                self.cycles(60);
+                self.run_cycles(60);
                 self.position = 400;
             }
             "standstill" => {
-                self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
+                self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDSTILL };
                 // A start is allowed a second, a drive at standstill half a second.
-                self.cycles(if paused { 0 } else { 110 });
+                self.run_cycles(if paused { 0 } else { 110 });
             }
             other => panic!("{other} is no event"),
         }
@@ -148,7 +149,7 @@ impl Bench {
 }
 
 /// Returns the rows of the table, including its header, as trimmed cells.
-fn table() -> Vec<Vec<&'static str>> {
+fn table_rows() -> Vec<Vec<&'static str>> {
     let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
     lines.filter(|line| !line.starts_with("|---")).map(cells).collect()
@@ -156,22 +157,22 @@ fn table() -> Vec<Vec<&'static str>> {
 
 #[test]
 fn motions_end_as_documented() {
-    let rows = table();
+    let rows = table_rows();
     let (head, events) = rows.split_first().unwrap();
     assert_eq!((head.len(), events.len()), (9, 13), "all phases and all events");
     for row in events {
         for (phase, expected) in head.iter().zip(row).skip(1) {
-            let mut bench = Bench::in_phase(phase);
-            let before = bench.man.ended();
+            let mut bench = TestBench::in_phase(phase);
+            let before = bench.man.last_end();
             bench.play_event(row[0]);
-            bench.cycle();
-            let ended = bench.man.ended().filter(|_| bench.man.ended() != before);
+            bench.run_cycle();
+            let ended = bench.man.last_end().filter(|_| bench.man.last_end() != before);
             let name = ended.map_or("–".to_owned(), |(_, how)| {
                 format!("{how:?}").split([' ', '(', '{']).next().unwrap_or_default().to_owned()
             });
             assert_eq!(&name, expected, "{} while {phase}", row[0]);
             // However the act has ended, the word sent is a standing one.
-            assert!(ended.is_none() || bench.man.sent().control.is_at_rest(), "{} while {phase}", row[0]);
+            assert!(ended.is_none() || bench.man.last_setpoint().control.is_at_rest(), "{} while {phase}", row[0]);
         }
     }
 }

@@ -5,8 +5,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{
-    DeadMan, Ended, LEVEL_TIME, Lock, MotionIntent, MotionRequest, Outside, Permit, Phase, Refusal, Side, SpeedTorque,
-    TargetState,
+    ActionEnd, DeadMan, LEVEL_TIME, LimitSide, MotionIntent, MotionLock, MotionRefusal, MotionRequest, OutsideLimits,
+    Permit, Phase, SpeedTorque, TargetState,
 };
 use crate::devices::hiperdrive::protocol::{
     ActualValues, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
@@ -93,7 +93,7 @@ fn a_standstill_word_starts_no_motion() {
     for word in (0..=u16::MAX).filter_map(|word| ControlWord::parse(word).ok()).filter(|word| word.is_at_rest()) {
         standing += 1;
         for acknowledged in [false, true] {
-            let status = StatusWord::new(0x2A37).with(StatusBit::SetpointAcknowledged, acknowledged);
+            let status = StatusWord::new(0x2A37).with_bit(StatusBit::SetpointAcknowledged, acknowledged);
             for before in [ControlWord::OFF, ControlWord::ENABLED].iter().chain(&befores) {
                 assert_eq!(word.motion_start(*before, status), None, "{word:?} behind {before:?}");
             }
@@ -109,8 +109,8 @@ fn a_standstill_word_starts_no_motion() {
 #[test]
 fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
-    let permit = Permit::within(-1000, 1000);
-    let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::JOG, outward: false };
+    let permit = Permit::for_range(-1000, 1000);
+    let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: SpeedTorque::DEFAULT_JOG, outward: false };
     let mut status = 0x2A37;
     let mut words = Vec::new();
     for at in 0..100u64 {
@@ -118,7 +118,7 @@ fn leaving_speed_mode_passes_through_ready() {
         let wish = if at < 20 { jog } else { MotionRequest::Stop };
         let intent =
             MotionIntent { drive: DriveNumber::FIRST, request: wish, number: 1 + u64::from(at >= 20), refreshed: now };
-        let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
+        let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.to_u16();
         // It acknowledges a run with bit 12, and forgets it only below operational.
         status = match word {
             0x1459 => 0x1A37,
@@ -131,13 +131,13 @@ fn leaving_speed_mode_passes_through_ready() {
     }
     words.dedup();
     assert_eq!(words, [0x1419, 0x1459, 0x1419, 0x0400]);
-    assert_eq!((man.sent().target, man.ended()), (77, Some((1, Ended::Stopped))));
+    assert_eq!((man.last_setpoint().target, man.last_end()), (77, Some((1, ActionEnd::Stopped))));
 }
 
 /// Between two calls of a thread that was suspended, a stop may have been requested, followed by something else.
 #[test]
 fn an_unseen_stop_still_ends_the_job() {
-    let permit = Permit::within(-1000, 1000);
+    let permit = Permit::for_range(-1000, 1000);
     for (waits, next) in [(true, MotionRequest::Resume), (false, MotionRequest::Pause)] {
         let mut man = DeadMan::new(DriveNumber::FIRST, 0);
         let mut now = Moment::START;
@@ -160,7 +160,7 @@ fn an_unseen_stop_still_ends_the_job() {
         // The act between them was a stop.
         let word = look(&mut man, number + 2, next, 0x1A37);
         assert!(word.is_at_rest() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
-        assert_eq!(man.ended(), Some((number, Ended::Stopped)));
+        assert_eq!(man.last_end(), Some((number, ActionEnd::Stopped)));
     }
 }
 
@@ -174,9 +174,9 @@ struct DeadManBench {
 
 impl DeadManBench {
     fn new() -> Self {
-        let intent = MotionIntent::rest(DriveNumber::FIRST, 0, Moment::START);
+        let intent = MotionIntent::idle(DriveNumber::FIRST, 0, Moment::START);
         let man = DeadMan::new(DriveNumber::FIRST, 0);
-        DeadManBench { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
+        DeadManBench { man, now: Moment::START, intent, permit: Permit::for_range(-1000, 1000) }
     }
 
     fn act(&mut self, wish: MotionRequest) {
@@ -190,7 +190,7 @@ impl DeadManBench {
             self.intent.refreshed = self.now;
             self.man.next(self.now, heard(Some((status, position))), &self.intent, &self.permit);
         }
-        self.man.sent()
+        self.man.last_setpoint()
     }
 }
 
@@ -200,7 +200,7 @@ const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Cloc
 /// motion continues, and a paused one does not resume.
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
-    let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
+    let doubted = ActionEnd::Refused(MotionRefusal::Locked(MotionLock::Outdated));
     for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
         let mut looks = DeadManBench::new();
         looks.look(3, 0x2A31, 0);
@@ -209,7 +209,7 @@ fn doubted_limits_delay_the_start_of_a_motion() {
         assert_eq!(looks.man.phase(), Phase::Leading(TargetState::Enabled));
         looks.permit.doubted = true;
         looks.look(1, 0x2A33, 0);
-        assert_eq!(looks.man.ended(), Some((1, doubted)), "{wish:?}");
+        assert_eq!(looks.man.last_end(), Some((1, doubted)), "{wish:?}");
         assert!(looks.look(100, 0x2A37, 0).control.is_at_rest());
     }
     let mut looks = DeadManBench::new();
@@ -218,13 +218,13 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     looks.look(5, 0x1A37, 100);
     looks.permit.doubted = true;
     looks.look(5, 0x1A37, 200);
-    assert!(matches!(looks.man.phase(), Phase::Moving(_)), "{:?}", looks.man.ended());
+    assert!(matches!(looks.man.phase(), Phase::Moving(_)), "{:?}", looks.man.last_end());
     looks.act(MotionRequest::Pause);
     looks.look(3, 0x3A37, 200);
-    assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.ended());
+    assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.last_end());
     looks.act(MotionRequest::Resume);
     assert!(looks.look(1, 0x3A37, 200).control.is_at_rest());
-    assert_eq!(looks.man.ended(), Some((2, doubted)));
+    assert_eq!(looks.man.last_end(), Some((2, doubted)));
 }
 
 /// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and
@@ -248,20 +248,29 @@ fn a_drive_outside_its_limits_before_moving_does_not_start() {
             count += 1;
             assert!(count < 100);
         }
-        looks.permit = Permit::within(-100, 100);
+        looks.permit = Permit::for_range(-100, 100);
         assert!(looks.look(1, 0x2A37, position).control.is_at_rest());
-        let refused = Ended::Refused(Refusal::Outward { position, low: -100, high: 100 });
-        assert_eq!(looks.man.ended(), Some((1, refused)));
+        let refused = ActionEnd::Refused(MotionRefusal::Outward { position, low: -100, high: 100 });
+        assert_eq!(looks.man.last_end(), Some((1, refused)));
     }
 }
 
 /// Issue 21.4: if both limits are within a degree, status bit 15 does not tell at which of them the drive is.
 #[test]
 fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
-    let at = |position| Permit::within(-150, 150).outside(heard(Some((0xAA37, position))).unwrap());
-    assert_eq!((at(-20), at(0), at(20)), (Some(Outside::Unclear), Some(Outside::Unclear), Some(Outside::Unclear)));
-    assert_eq!((at(-34), at(34)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
-    assert_eq!((at(-151), at(151)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
+    let at = |position| Permit::for_range(-150, 150).outside_limits(heard(Some((0xAA37, position))).unwrap());
+    assert_eq!(
+        (at(-20), at(0), at(20)),
+        (Some(OutsideLimits::Unclear), Some(OutsideLimits::Unclear), Some(OutsideLimits::Unclear))
+    );
+    assert_eq!(
+        (at(-34), at(34)),
+        (Some(OutsideLimits::At(LimitSide::Below)), Some(OutsideLimits::At(LimitSide::Above)))
+    );
+    assert_eq!(
+        (at(-151), at(151)),
+        (Some(OutsideLimits::At(LimitSide::Below)), Some(OutsideLimits::At(LimitSide::Above)))
+    );
 }
 
 /// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step
@@ -269,12 +278,12 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = DeadManBench::new();
-    looks.permit = Permit::within(-100_000, 100_000);
+    looks.permit = Permit::for_range(-100_000, 100_000);
     looks.act(MotionRequest::Step { by: 100, effort: FULL });
     looks.look(24, 0x2A37, 0);
     assert_eq!(looks.man.phase(), Phase::Idle);
     let sent = looks.look(20, 0x2A37, 50_000);
-    assert_eq!((sent.target, looks.man.ended()), (50_100, None));
+    assert_eq!((sent.target, looks.man.last_end()), (50_100, None));
     assert!(matches!(looks.man.phase(), Phase::Starting(_)));
 }
 
@@ -285,7 +294,7 @@ proptest! {
     fn the_dead_man_holds_its_invariants_for_any_events(ticks in prop::collection::vec(tick(), 1..120)) {
         let mut man = DeadMan::new(DriveNumber::FIRST, 5);
         let mut now = Moment::START;
-        let mut intent = MotionIntent::rest(DriveNumber::FIRST, 5, now);
+        let mut intent = MotionIntent::idle(DriveNumber::FIRST, 5, now);
         let mut before = Setpoint::default();
         // Acts up to this one have ended, by the test's own record.
         let mut over = 5;
@@ -303,7 +312,7 @@ proptest! {
             }
             if let (Some(wish), None) = (meddled, act) {
                 // Of an act that has been taken; one that still waits may be another.
-                let taken = man.act() == intent.number && wish != intent.request;
+                let taken = man.action_number() == intent.number && wish != intent.request;
                 over = if taken { intent.number } else { over };
                 intent.request = wish;
             }
@@ -313,27 +322,27 @@ proptest! {
             if refreshed {
                 intent.refreshed = now;
             }
-            let locks = if locked { vec![Lock::NotRequested] } else { Vec::new() };
-            let permit = Permit { locks, endless, ..Permit::within(-1000, 1000) };
+            let locks = if locked { vec![MotionLock::NotRequested] } else { Vec::new() };
+            let permit = Permit { locks, endless, ..Permit::for_range(-1000, 1000) };
             let sent = man.next(now, heard(said), &intent, &permit);
             let word = sent.control;
-            prop_assert_eq!(word.word() & NEVER, 0);
+            prop_assert_eq!(word.to_u16() & NEVER, 0);
             let own = intent.drive == DriveNumber::FIRST;
-            let wanted = own && intent.request.moves() && !intent.is_stale(now) && !locked;
+            let wanted = own && intent.request.needs_motion() && !intent.is_stale(now) && !locked;
             let faulty = said.is_some_and(|(status, _)| status & 8 != 0);
             if !word.is_at_rest() {
                 prop_assert!(wanted && intent.number > over, "{:?} for {:?}, over: {}", word, intent, over);
                 prop_assert!(!faulty && sent.speed.get() > 0 && sent.torque.get() > 0);
-                prop_assert!(!word.has(ControlBit::SpeedMode) || !word.has(ControlBit::NoPause) || endless);
-                let job = !word.has(ControlBit::SpeedMode);
+                prop_assert!(!word.is_set(ControlBit::SpeedMode) || !word.is_set(ControlBit::NoPause) || endless);
+                let job = !word.is_set(ControlBit::SpeedMode);
                 prop_assert!(!job || (-1000..=1000).contains(&sent.target), "{:?}", sent);
             }
-            if let Some((ended, _)) = man.ended() {
+            if let Some((ended, _)) = man.last_end() {
                 over = over.max(ended);
             }
             // Out of speed mode: never by clearing bit 12 alone.
-            let leaves = before.control.has(ControlBit::SpeedMode) && !word.has(ControlBit::SpeedMode);
-            prop_assert!(!leaves || !word.has(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
+            let leaves = before.control.is_set(ControlBit::SpeedMode) && !word.is_set(ControlBit::SpeedMode);
+            prop_assert!(!leaves || !word.is_set(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
             // A drive that does not stop is led through the whole ladder.
             unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
             prop_assert!(unmet < LEVEL_TIME * 3 + Duration::from_millis(240) || man.has_exhausted_stop_levels());

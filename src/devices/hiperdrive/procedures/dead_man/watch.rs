@@ -12,28 +12,30 @@
 //! A run that ends within one degree beyond a limit counts as having reached the end of its range: the repeatability of
 //! a drive is ±1° (manual, technical data; reference 5).
 
-use super::{DeadMan, Ended, Lock, Motion, MotionKind, MotionRequest, Permit, Refusal, SHORT, Stage};
+use super::{
+    ActionEnd, DeadMan, Motion, MotionKind, MotionLock, MotionRefusal, MotionRequest, NOT_REACHED_TIME, Permit, Stage,
+};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum LimitSide {
     Below,
     Above,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outside {
-    At(Side),
+pub enum OutsideLimits {
+    At(LimitSide),
     /// Status bit 15 is set, but the position does not show which limit the drive has passed. It is near both limits or
     /// more than a degree inside them.
     Unclear,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watch {
+pub(super) struct ActionMonitor {
     /// How the drive was outside its limits at the start, or `None` once it has been inside.
-    outside: Option<Outside>,
+    outside: Option<OutsideLimits>,
     /// Smallest distance so far: to the target of a job, or in the direction of a run.
     best: i64,
     /// Position after braking while a job is paused.
@@ -45,14 +47,14 @@ pub(super) struct Watch {
 }
 
 /// Accuracy in whole degrees: ±2.5° (manual, technical data; reference 5), rounded up.
-const ACCURACY: i64 = 3;
+const ACCURACY_DEG: i64 = 3;
 
-impl Outside {
+impl OutsideLimits {
     /// Returns whether the direction may lead further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
-            Outside::At(side) => side.outward_direction() == direction,
-            Outside::Unclear => true,
+            OutsideLimits::At(side) => side.outward_direction() == direction,
+            OutsideLimits::Unclear => true,
         }
     }
 }
@@ -60,31 +62,32 @@ impl Outside {
 impl Permit {
     /// Returns how a drive is outside its limits, by its position or else by status bit 15. Status bit 15 counts for
     /// the limit that is within a degree. Returns `None` if the drive is inside, or if no limits are known.
-    pub fn outside(&self, actual: ActualValues) -> Option<Outside> {
+    pub fn outside_limits(&self, actual: ActualValues) -> Option<OutsideLimits> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
             // In a very narrow range both limits are within a degree, and the drive may be at either of them.
-            match [Side::Below, Side::Above].map(|side| side.beyond(actual.position, limits) >= -degree) {
-                [true, false] => Outside::At(Side::Below),
-                [false, true] => Outside::At(Side::Above),
-                _ => Outside::Unclear,
+            match [LimitSide::Below, LimitSide::Above].map(|side| side.steps_beyond(actual.position, limits) >= -degree)
+            {
+                [true, false] => OutsideLimits::At(LimitSide::Below),
+                [false, true] => OutsideLimits::At(LimitSide::Above),
+                _ => OutsideLimits::Unclear,
             }
         };
-        let beyond = side(actual.position, limits).map(Outside::At);
-        beyond.or_else(|| actual.status.has(StatusBit::PositionLimit).then(by_status))
+        let beyond = nearest_side(actual.position, limits).map(OutsideLimits::At);
+        beyond.or_else(|| actual.status.is_set(StatusBit::PositionLimit).then(by_status))
     }
 }
 
-fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
-    (position > high).then_some(Side::Above).or_else(|| (position < low).then_some(Side::Below))
+fn nearest_side(position: i32, (low, high): (i32, i32)) -> Option<LimitSide> {
+    (position > high).then_some(LimitSide::Above).or_else(|| (position < low).then_some(LimitSide::Below))
 }
 
-impl Side {
+impl LimitSide {
     /// Returns the number of steps beyond the limit on this side, negative if inside.
-    pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
+    pub fn steps_beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
-            Side::Above => i64::from(position) - i64::from(high),
-            Side::Below => i64::from(low) - i64::from(position),
+            LimitSide::Above => i64::from(position) - i64::from(high),
+            LimitSide::Below => i64::from(low) - i64::from(position),
         }
     }
 
@@ -92,8 +95,8 @@ impl Side {
     /// parameter 170, +4096, is clockwise).
     pub const fn outward_direction(self) -> Direction {
         match self {
-            Side::Above => Direction::Clockwise,
-            Side::Below => Direction::Counterclockwise,
+            LimitSide::Above => Direction::Clockwise,
+            LimitSide::Below => Direction::Counterclockwise,
         }
     }
 }
@@ -107,7 +110,7 @@ impl Motion {
 
     /// Returns the distance of a job to its target in steps. For a run, which has no target, returns a value that
     /// decreases as the drive moves in the direction of the run.
-    fn distance(&self, actual: ActualValues) -> i64 {
+    fn distance_to_target(&self, actual: ActualValues) -> i64 {
         let position = i64::from(actual.position);
         match self.kind {
             MotionKind::Job { target } => (position - i64::from(target)).abs(),
@@ -117,66 +120,68 @@ impl Motion {
     }
 }
 
-impl Watch {
-    pub(super) fn begin(motion: &Motion, actual: ActualValues, permit: &Permit) -> Self {
+impl ActionMonitor {
+    pub(super) fn start(motion: &Motion, actual: ActualValues, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
-        let outside = limits.and_then(|_| permit.outside(actual));
-        let best = motion.distance(actual);
+        let outside = limits.and_then(|_| permit.outside_limits(actual));
+        let best = motion.distance_to_target(actual);
         let at_end = match (motion.kind, limits) {
-            (MotionKind::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
-                side.outward_direction() == direction
-                    && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
-            }),
+            (MotionKind::Run { direction, .. }, Some(limits)) => {
+                [LimitSide::Below, LimitSide::Above].into_iter().any(|side| {
+                    side.outward_direction() == direction
+                        && side.steps_beyond(actual.position, limits) >= -i64::from(permit.degree)
+                })
+            }
             _ => false,
         };
         let freed = matches!(motion.request, MotionRequest::Jog { outward: true, .. }) && outside.is_some();
-        Watch { outside, best, waits_at: None, freed, at_end }
+        ActionMonitor { outside, best, waits_at: None, freed, at_end }
     }
 
     /// Compares a report with the limits and the target, and returns how the motion must end, if it must.
-    pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<Ended> {
+    pub(super) fn check_report(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         let degree = i64::from(permit.degree);
-        let distance = motion.distance(actual);
+        let distance = motion.distance_to_target(actual);
         self.best = self.best.min(distance);
         let is_job = matches!(motion.kind, MotionKind::Job { .. });
         // The target of a job is within the limits, so a deviation of up to a degree is no overrun.
         let beyond = if is_job && distance <= degree { None } else { self.check_limits(motion, actual, permit) };
         // At its target a job may overshoot by its accuracy.
-        let arrives = is_job && self.best <= ACCURACY * degree;
-        let allowed = if arrives { ACCURACY * degree } else { degree };
+        let arrives = is_job && self.best <= ACCURACY_DEG * degree;
+        let allowed = if arrives { ACCURACY_DEG * degree } else { degree };
         // A user who allows outward motion watches the axis. A drive that counts the wrong way moves inward on this
         // path.
         let leaves = distance > self.best.saturating_add(allowed) && !self.freed;
-        beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
+        beyond.or_else(|| leaves.then_some(ActionEnd::WrongWay { position: actual.position }))
     }
 
     /// Detects motion while a job is paused: more than a degree from the position after braking.
-    fn wait(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<Ended> {
+    fn check_paused(&mut self, has_braked: bool, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         if !has_braked {
             self.waits_at = None;
             return None;
         }
         let at = i64::from(*self.waits_at.get_or_insert(actual.position));
         let moves = i64::from(actual.position).abs_diff(at) > u64::from(permit.degree);
-        moves.then_some(Ended::Left(State::Moving))
+        moves.then_some(ActionEnd::Left(State::Moving))
     }
 
-    fn check_limits(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<Ended> {
+    fn check_limits(&mut self, motion: &Motion, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
         let (limits, degree) = (motion.limits(permit)?, i64::from(permit.degree));
         let runs = matches!(motion.kind, MotionKind::Run { .. });
-        let beyond = Some(Ended::Beyond { position: actual.position });
+        let beyond = Some(ActionEnd::Beyond { position: actual.position });
         let Some(began) = self.outside else {
-            let is_end = match permit.outside(actual)? {
-                Outside::At(side) => side.beyond(actual.position, limits).abs() <= degree,
-                Outside::Unclear => false,
+            let is_end = match permit.outside_limits(actual)? {
+                OutsideLimits::At(side) => side.steps_beyond(actual.position, limits).abs() <= degree,
+                OutsideLimits::Unclear => false,
             };
-            return if runs && is_end { Some(Ended::RangeEnd) } else { beyond };
+            return if runs && is_end { Some(ActionEnd::RangeEnd) } else { beyond };
         };
-        match side(actual.position, limits) {
+        match nearest_side(actual.position, limits) {
             // The drive has crossed the whole range and left it on the other side.
-            Some(side) if Outside::At(side) != began => return beyond,
+            Some(side) if OutsideLimits::At(side) != began => return beyond,
             // Status bit 15 may be late.
-            None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
+            None if !actual.status.is_set(StatusBit::PositionLimit) => self.outside = None,
             _ => {}
         }
         None
@@ -188,30 +193,31 @@ impl Permit {
     /// can allow motion further outward while the button is pressed.
     ///
     /// # Errors
-    /// Returns [`Refusal::Outward`] or [`Refusal::Unclear`] if the motion would lead, or could lead, further outside.
-    pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), Refusal> {
+    /// Returns [`MotionRefusal::Outward`] or [`MotionRefusal::Unclear`] if the motion would lead, or could lead, further outside.
+    pub fn check_position_limits(&self, request: MotionRequest, actual: ActualValues) -> Result<(), MotionRefusal> {
         let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
             MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
             MotionRequest::Move { .. } | MotionRequest::Step { .. } => None,
             _ => return Ok(()),
         };
-        let (Some((low, high)), Some(outside), position) = (self.limits, self.outside(actual), actual.position) else {
+        let (Some((low, high)), Some(outside), position) = (self.limits, self.outside_limits(actual), actual.position)
+        else {
             return Ok(());
         };
         match outside {
-            Outside::Unclear => Err(Refusal::Unclear { position, low, high }),
-            Outside::At(side) if direction == Some(side.outward_direction()) => {
-                Err(Refusal::Outward { position, low, high })
+            OutsideLimits::Unclear => Err(MotionRefusal::Unclear { position, low, high }),
+            OutsideLimits::At(side) if direction == Some(side.outward_direction()) => {
+                Err(MotionRefusal::Outward { position, low, high })
             }
-            Outside::At(_) => Ok(()),
+            OutsideLimits::At(_) => Ok(()),
         }
     }
 }
 
 impl DeadMan {
-    pub(super) fn watch_motion(&mut self, now: Moment, actual: ActualValues, permit: &Permit) -> Option<Ended> {
-        let mark = self.mark(now);
+    pub(super) fn watch_motion(&mut self, now: Moment, actual: ActualValues, permit: &Permit) -> Option<ActionEnd> {
+        let mark = self.mark_now(now);
         let act = self.act.as_mut()?;
         let motion = act.motion.as_ref()?;
         if !self.stage.has_motion() {
@@ -220,15 +226,16 @@ impl DeadMan {
         let Some(watch) = &mut act.watch else {
             // The motion has not started yet, so the conditions for a start apply. This includes the first report after
             // leading up.
-            let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
+            let doubted = permit.doubted.then_some(MotionRefusal::Locked(MotionLock::Outdated));
             let refusal = doubted.or_else(|| permit.check_position_limits(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {
-                act.watch = Some(Watch::begin(motion, actual, permit));
+                act.watch = Some(ActionMonitor::start(motion, actual, permit));
             }
-            return refusal.map(Ended::Refused);
+            return refusal.map(ActionEnd::Refused);
         };
-        let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.has_elapsed_since(since, SHORT));
-        let waits = watch.wait(has_braked, actual, permit);
+        let has_braked =
+            matches!(self.stage, Stage::Paused { since, .. } if mark.has_elapsed_since(since, NOT_REACHED_TIME));
+        let waits = watch.check_paused(has_braked, actual, permit);
         watch.check_report(motion, actual, permit).or(waits)
     }
 }

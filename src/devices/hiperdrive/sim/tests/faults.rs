@@ -5,15 +5,15 @@ use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
 
 /// Returns whether an operational drive reports a fault: 2AB8, with ZSW12 and 10 unchanged.
 fn is_fault(bench: &mut Bench) -> bool {
-    bench.actual(FIRST).status.word() & 0x2AFF == 0x2AB8
+    bench.actual(FIRST).status.to_u16() & 0x2AFF == 0x2AB8
 }
 
 /// Leads out of a fault by the recipe of the reference; each step is done before the next one is sent.
 fn acknowledge(bench: &mut Bench) {
     for step in ACKNOWLEDGE {
-        bench.word(step.word.word());
+        bench.word(step.word.to_u16());
         let status = bench.actual(FIRST).status;
-        assert!(step.is_done(status), "{:04X}: {:04X}", step.word.word(), status.word());
+        assert!(step.is_done(status), "{:04X}: {:04X}", step.word.to_u16(), status.to_u16());
     }
 }
 
@@ -27,7 +27,7 @@ fn a_blocked_drive_faults_and_recovers() {
         bench.load(wall);
         bench.start(target);
         bench.run(2000);
-        assert!(is_fault(&mut bench), "{:04X}", bench.actual(FIRST).status.word());
+        assert!(is_fault(&mut bench), "{:04X}", bench.actual(FIRST).status.to_u16());
         assert_eq!((bench.error(), bench.position().abs()), (code, 30_000));
         assert_eq!(bench.read(197), Value::Number(1));
         acknowledge(&mut bench);
@@ -89,9 +89,9 @@ fn a_target_beyond_the_limits_is_a_fault() {
     assert_eq!(bench.error(), ErrorCode::OVER_CURRENT);
     assert_eq!(bench.read(109), Value::Number(0x8503));
     assert_eq!((bench.read(110), bench.read(197)), (Value::Number(0), Value::Number(2)));
-    assert_ne!(bench.actual(FIRST).status.word() & 0x4000, 0, "over-current is a bit of its own");
+    assert_ne!(bench.actual(FIRST).status.to_u16() & 0x4000, 0, "over-current is a bit of its own");
     acknowledge(&mut bench);
-    assert_eq!(bench.actual(FIRST).status.word() & 0x4080, 0);
+    assert_eq!(bench.actual(FIRST).status.to_u16() & 0x4080, 0);
     (0..20).for_each(|_| bench.drive().fail(now, ErrorCode::SINCOS));
     assert_eq!(bench.read(115), Value::Number(0x8502));
 }
@@ -102,9 +102,9 @@ fn a_drive_that_is_switched_off_warns() {
     let mut bench = Bench::single();
     let now = bench.now;
     bench.drive().fail(now, ErrorCode::RS485);
-    assert_eq!(bench.actual(FIRST).status.word(), 0x2AB0);
+    assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2AB0);
     assert_eq!(bench.write(197, 0), Ok(()));
-    assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
+    assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
 }
 
 /// Reference 3: if bit 0 was cleared before the acknowledgement, the lock needs another falling edge.
@@ -116,7 +116,7 @@ fn releasing_the_lock_needs_an_edge() {
     bench.drive().fail(now, ErrorCode::CONTROL_LOOP);
     assert_eq!(bench.words(&[0x0480, 0x0400]), 0x2A70);
     assert_eq!(bench.word(0x0400), 0x2A70);
-    assert_eq!(bench.words(&UNLOCK.map(|step| step.word.word())), 0x2A31);
+    assert_eq!(bench.words(&UNLOCK.map(|step| step.word.to_u16())), 0x2A31);
 }
 
 /// Reference 7 and 3: 40 ms without a packet, and 100 ms to brake, however often the state is read.
@@ -160,7 +160,7 @@ fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
         bench.station.cyclic(bench.now, &image, false);
         bench.now = bench.now + Duration::from_millis(10);
     }
-    assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
+    assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
     assert!(bench.station.is_open(bench.now));
     bench.enable();
     bench.station.close(bench.now);

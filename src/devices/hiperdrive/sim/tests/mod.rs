@@ -55,7 +55,7 @@ impl Bench {
     fn word(&mut self, control: u16) -> u16 {
         self.out[FIRST].control = control;
         self.run(30);
-        self.actual(FIRST).status.word()
+        self.actual(FIRST).status.to_u16()
     }
 
     fn words(&mut self, controls: &[u16]) -> u16 {
@@ -85,12 +85,12 @@ impl Bench {
     /// Cycles until the first drive reports a status; returns the time taken.
     fn until(&mut self, status: u16) -> u64 {
         for ms in (0..120_000).step_by(10) {
-            if self.actual(FIRST).status.word() == status {
+            if self.actual(FIRST).status.to_u16() == status {
                 return ms;
             }
             self.cycle();
         }
-        panic!("{status:04X} never comes, but {:04X}", self.actual(FIRST).status.word());
+        panic!("{status:04X} never comes, but {:04X}", self.actual(FIRST).status.to_u16());
     }
 
     fn drive(&mut self) -> &mut Drive {

@@ -51,7 +51,7 @@ fn jobs_are_stopped_and_paused() {
     bench.out[FIRST].control = 0x0459;
     bench.run(200);
     let paused = bench.actual(FIRST);
-    assert_eq!((paused.status.word(), paused.speed), (0x3A37, 0));
+    assert_eq!((paused.status.to_u16(), paused.speed), (0x3A37, 0));
     bench.run(500);
     assert_eq!(bench.position(), paused.position);
     assert_eq!(bench.word(0x0479), 0x1A37, "it goes on");
@@ -59,7 +59,7 @@ fn jobs_are_stopped_and_paused() {
     bench.out[FIRST].control = 0x0469;
     bench.run(200);
     let stopped = bench.actual(FIRST);
-    assert_eq!((stopped.status.word(), stopped.speed), (0x3A37, 0));
+    assert_eq!((stopped.status.to_u16(), stopped.speed), (0x3A37, 0));
     // Bit 4 is set again: bit 6 is as it was acknowledged.
     bench.out[FIRST].control = 0x0479;
     bench.run(500);
@@ -76,7 +76,7 @@ fn disabling_operation_ends_the_motion() {
         bench.out[FIRST].control = control;
         bench.run(200);
         let actual = bench.actual(FIRST);
-        assert_eq!((actual.speed, actual.status.word() & 0x2004), (0, 0x2000), "{control:04X}");
+        assert_eq!((actual.speed, actual.status.to_u16() & 0x2004), (0, 0x2000), "{control:04X}");
         // The way back is not a start.
         bench.words(&[0x0400, 0x0401, 0x0409]);
         assert_eq!(bench.position(), actual.position, "{control:04X}");
@@ -126,7 +126,7 @@ fn leaving_speed_mode_directly_starts_a_stale_job() {
     bench.words(&[0x1439, 0x1479]);
     bench.run(4000);
     let actual = bench.actual(FIRST);
-    assert!(actual.position > 65_536 && actual.status.word() & 0x8000 != 0, "{actual:?}");
+    assert!(actual.position > 65_536 && actual.status.to_u16() & 0x8000 != 0, "{actual:?}");
 }
 
 /// Reference 3 and 5: 4096 steps, which bit 4 does not stop; 16 of them are a turn.
@@ -156,7 +156,7 @@ fn a_hub_moves_only_requested_drives() {
     let both = |bench: &mut Bench, control| {
         (bench.out[0].control, bench.out[1].control) = (control, control);
         bench.run(30);
-        [0, 1, 2].map(|drive| bench.actual(drive).status.word())
+        [0, 1, 2].map(|drive| bench.actual(drive).status.to_u16())
     };
     assert_eq!(both(&mut bench, 0x0400), [0x2A30, 0x2A30, 0]);
     assert_eq!(bench.write(252, 1), Ok(()));

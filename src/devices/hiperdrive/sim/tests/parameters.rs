@@ -194,9 +194,9 @@ fn drives_can_be_reset() {
     bench.start(65_536);
     bench.until(0x3E37);
     assert_eq!(bench.write(47, -4), Ok(()));
-    assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
+    assert_eq!(bench.actual(FIRST).status.to_u16(), 0x2A30);
     bench.run(500);
-    assert_eq!((bench.read(47), bench.actual(FIRST).status.word()), (value(1), 0x2A30));
+    assert_eq!((bench.read(47), bench.actual(FIRST).status.to_u16()), (value(1), 0x2A30));
     bench.run(1500);
     assert_eq!((bench.read(47), bench.position()), (value(0), 65_536));
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, ErrorCode, Family, Length, PositionScale, State};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 use crate::units::Moment;
@@ -38,8 +38,8 @@ pub struct DriveFacts {
     /// Lower and upper limit in scaled steps, parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
     pub family: Option<Family>,
-    pub locks: Vec<Lock>,
-    pub ended: Option<(u64, Ended)>,
+    pub locks: Vec<MotionLock>,
+    pub ended: Option<(u64, ActionEnd)>,
     /// Latest error since the last acknowledgement, if it was read.
     pub error: Option<ErrorCode>,
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::supply::{MARK, Power, RestartEvidence, is_marked, mark};
 use super::{Axis, AxisButton, AxisStep, DriveFacts, DriveRequest, TestTarget, differences, words};
 use crate::app::Text;
-use crate::devices::hiperdrive::procedures::dead_man::Lock;
+use crate::devices::hiperdrive::procedures::dead_man::MotionLock;
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, REQUESTED, UPPER};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -259,7 +259,7 @@ impl Axis {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
         let are_agreed = (low == agreed.0 || low == begun.0) && (high == agreed.1 || high == begun.1);
-        own.scale == seen.scale && are_agreed && !seen.locks.contains(&Lock::LimitsUnconfirmed)
+        own.scale == seen.scale && are_agreed && !seen.locks.contains(&MotionLock::LimitsUnconfirmed)
     }
 
     /// Returns the target of a test move.

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::DriveFacts;
 use super::step_outcomes::Origin;
 use super::supply::READJUSTS;
-use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
+use crate::devices::hiperdrive::procedures::dead_man::MAX_REPORT_DELAY;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
 use crate::units::Moment;
 
@@ -61,7 +61,7 @@ impl StandstillMonitor {
         if at.is_none() && !self.interrupted {
             return None;
         }
-        let stands = !seen.moves && actual.status.has(StatusBit::StandingStill) && actual.speed == 0;
+        let stands = !seen.moves && actual.status.is_set(StatusBit::StandingStill) && actual.speed == 0;
         let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
         // After a motion, a changed position means nothing.
@@ -77,7 +77,7 @@ fn shift(before: &StandstillReading, now: &StandstillReading, is_interrupted: bo
     let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.steps_of_degrees(degrees));
     // Each session has its own clock.
     let elapsed = now.at.zip(before.at).filter(|_| !is_interrupted).map(|(now, before)| now.since(before));
-    let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + SETTLE).as_secs_f64();
+    let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + MAX_REPORT_DELAY).as_secs_f64();
     match elapsed {
         _ if allowed(READJUSTS) => None,
         Some(elapsed) if !allowed(READJUSTS + turned(elapsed)) => Some(PositionChange::Jump),

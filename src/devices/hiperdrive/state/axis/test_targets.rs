@@ -1,7 +1,7 @@
 //! Distance by which the axis was jogged, and the three targets of the test.
 
 use super::DriveFacts;
-use crate::devices::hiperdrive::procedures::dead_man::Ended;
+use crate::devices::hiperdrive::procedures::dead_man::ActionEnd;
 use crate::devices::hiperdrive::protocol::Direction;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,7 +16,7 @@ pub enum TestTarget {
 pub struct Outcome {
     pub target: i32,
     pub position: i32,
-    pub ended: Ended,
+    pub ended: ActionEnd,
     /// Allowed deviation from the target in steps, corresponding to 1° (reference 5, repeatability).
     pub allowed: i64,
 }
@@ -54,7 +54,7 @@ impl Outcome {
     }
 
     pub fn is_good(&self) -> bool {
-        self.ended == Ended::Arrived && self.position_deviation().abs() <= self.allowed
+        self.ended == ActionEnd::Arrived && self.position_deviation().abs() <= self.allowed
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::*;
 use crate::app::{Language, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock};
 use crate::devices::hiperdrive::protocol::{ActualValues, Direction, Family, StatusWord};
 
 /// Returns the facts of a drive that is not requested, with factory settings.
@@ -54,7 +54,7 @@ fn apply_command(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
             if let (Some(numerator), Some(denominator)) = (number(154), number(156)) {
                 let part = |value: i64| u16::try_from(value).unwrap();
                 seen.scale = Some(PositionScale::new(part(numerator), part(denominator)).unwrap());
-                seen.locks = vec![Lock::LimitsUnconfirmed];
+                seen.locks = vec![MotionLock::LimitsUnconfirmed];
             }
             if let (Some(low), Some(high)) = (number(158), number(160)) {
                 seen.limits = Some((low.try_into().unwrap(), high.try_into().unwrap()));
@@ -204,7 +204,7 @@ fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
     seen.moves = true;
     axis.look(seen);
     assert_eq!(axis.running_test_target(), Some(place));
-    (seen.moves, seen.ended) = (false, Some((act, Ended::Arrived)));
+    (seen.moves, seen.ended) = (false, Some((act, ActionEnd::Arrived)));
     at(seen, ends);
     axis.look(seen);
 }
@@ -345,7 +345,7 @@ fn a_test_that_misses_its_target_does_not_count() {
     // An earlier act does not count for this one.
     axis.look(&seen);
     assert_eq!((axis.running_test_target(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
-    seen.ended = Some((9, Ended::Stopped));
+    seen.ended = Some((9, ActionEnd::Stopped));
     axis.look(&seen);
     assert!(
         axis.outcome(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.check_can_continue(&seen).is_err()

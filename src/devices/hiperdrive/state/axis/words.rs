@@ -2,7 +2,7 @@
 
 use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, RestartEvidence, StepStatus, TestTarget};
 use crate::app::Text;
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, SpeedTorque};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, SpeedTorque};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -168,13 +168,13 @@ pub fn fault(seen: &DriveFacts) -> Option<Text> {
 
 /// Describes the speed and torque sent for the jog buttons and the test.
 pub fn effort(id: &'static str) -> Text {
-    let SpeedTorque { speed, torque } = SpeedTorque::JOG;
+    let SpeedTorque { speed, torque } = SpeedTorque::DEFAULT_JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
 pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
-    if outcome.ended == Ended::Arrived {
+    if outcome.ended == ActionEnd::Arrived {
         let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
         return text.with_text("missed", mm(outcome.position_deviation()));
     }

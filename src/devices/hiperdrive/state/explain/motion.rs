@@ -5,71 +5,71 @@ use crate::app::explain::link;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::MotionSnapshot;
 use crate::devices::hiperdrive::procedures::cyclic::{ConnectionLoss, ParameterReading, ParameterResult};
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Phase, Refusal, TargetState};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal, Phase, TargetState};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
 /// Explains why motion is locked, and what to do.
-pub fn lock(lock: Lock) -> Text {
+pub fn lock(lock: MotionLock) -> Text {
     TEXTS.text(match lock {
-        Lock::Unread => "hd_lock.unread",
-        Lock::NoTimeout => "hd_lock.no_timeout",
-        Lock::LimitsUnconfirmed => "hd_lock.limits",
-        Lock::NotRequested => "hd_lock.not_requested",
-        Lock::Outdated => "hd_lock.old",
-        Lock::NoAnswer => "hd_lock.no_answer",
+        MotionLock::Unread => "hd_lock.unread",
+        MotionLock::NoTimeout => "hd_lock.no_timeout",
+        MotionLock::LimitsUnconfirmed => "hd_lock.limits",
+        MotionLock::NotRequested => "hd_lock.not_requested",
+        MotionLock::Outdated => "hd_lock.old",
+        MotionLock::NoAnswer => "hd_lock.no_answer",
     })
 }
 
 /// Explains why a request was refused, and what to do. `place` formats steps in the user's unit.
-pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
+pub fn refusal(refusal: MotionRefusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
-        Refusal::Locked(own) => lock(own),
-        Refusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
-        Refusal::Outside { target, low, high } => TEXTS
+        MotionRefusal::Locked(own) => lock(own),
+        MotionRefusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
+        MotionRefusal::Outside { target, low, high } => TEXTS
             .text("hd_refused.outside")
             .with_text("target", place(target))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Outward { position, low, high } => TEXTS
+        MotionRefusal::Outward { position, low, high } => TEXTS
             .text("hd_refused.outward")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Unclear { position, low, high } => TEXTS
+        MotionRefusal::Unclear { position, low, high } => TEXTS
             .text("hd_refused.unclear")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Endless => TEXTS.text("hd_refused.endless"),
-        Refusal::Fault => TEXTS.text("hd_refused.fault"),
-        Refusal::SwitchOnLock => TEXTS.text("hd_refused.lock"),
-        Refusal::NothingToPause => TEXTS.text("hd_refused.nothing_to_pause"),
-        Refusal::NothingToResume => TEXTS.text("hd_refused.nothing_to_resume"),
-        Refusal::Absent => TEXTS.text("hd_refused.absent"),
+        MotionRefusal::Endless => TEXTS.text("hd_refused.endless"),
+        MotionRefusal::Fault => TEXTS.text("hd_refused.fault"),
+        MotionRefusal::SwitchOnLock => TEXTS.text("hd_refused.lock"),
+        MotionRefusal::NothingToPause => TEXTS.text("hd_refused.nothing_to_pause"),
+        MotionRefusal::NothingToResume => TEXTS.text("hd_refused.nothing_to_resume"),
+        MotionRefusal::Absent => TEXTS.text("hd_refused.absent"),
     }
 }
 
 /// Describes how an action ended, and what to do if it did not end well.
-pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
+pub fn ended(ended: ActionEnd, place: impl Fn(i32) -> Text) -> Text {
     match ended {
-        Ended::Done => TEXTS.text("hd_end.done"),
-        Ended::Arrived => TEXTS.text("hd_end.arrived"),
-        Ended::RangeEnd => TEXTS.text("hd_end.range_end"),
-        Ended::Stopped => TEXTS.text("hd_end.stopped"),
-        Ended::Replaced => TEXTS.text("hd_end.replaced"),
-        Ended::Stale => TEXTS.text("hd_end.stale"),
-        Ended::Deaf => TEXTS.text("hd_end.deaf"),
-        Ended::Lost => TEXTS.text("hd_end.lost"),
-        Ended::Fault => TEXTS.text("hd_end.fault"),
-        Ended::Locked(own) => lock(own),
-        Ended::Refused(why) => refusal(why, place),
-        Ended::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state(own)),
-        Ended::NotStarted => TEXTS.text("hd_end.not_started"),
-        Ended::Left(own) => TEXTS.text("hd_end.left").with_text("state", state(own)),
-        Ended::Short => TEXTS.text("hd_end.short"),
-        Ended::Beyond { position } => TEXTS.text("hd_end.beyond").with_text("position", place(position)),
-        Ended::WrongWay { position } => TEXTS.text("hd_end.wrong_way").with_text("position", place(position)),
+        ActionEnd::Done => TEXTS.text("hd_end.done"),
+        ActionEnd::Arrived => TEXTS.text("hd_end.arrived"),
+        ActionEnd::RangeEnd => TEXTS.text("hd_end.range_end"),
+        ActionEnd::Stopped => TEXTS.text("hd_end.stopped"),
+        ActionEnd::Replaced => TEXTS.text("hd_end.replaced"),
+        ActionEnd::Stale => TEXTS.text("hd_end.stale"),
+        ActionEnd::Deaf => TEXTS.text("hd_end.deaf"),
+        ActionEnd::Lost => TEXTS.text("hd_end.lost"),
+        ActionEnd::Fault => TEXTS.text("hd_end.fault"),
+        ActionEnd::Locked(own) => lock(own),
+        ActionEnd::Refused(why) => refusal(why, place),
+        ActionEnd::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state(own)),
+        ActionEnd::NotStarted => TEXTS.text("hd_end.not_started"),
+        ActionEnd::Left(own) => TEXTS.text("hd_end.left").with_text("state", state(own)),
+        ActionEnd::Short => TEXTS.text("hd_end.short"),
+        ActionEnd::Beyond { position } => TEXTS.text("hd_end.beyond").with_text("position", place(position)),
+        ActionEnd::WrongWay { position } => TEXTS.text("hd_end.wrong_way").with_text("position", place(position)),
     }
 }
 
@@ -86,19 +86,19 @@ pub const MOTION_ENDS: [&str; 9] = [
     "hd_end.wrong_way",
 ];
 
-pub const fn weight(ended: Ended) -> Severity {
+pub const fn weight(ended: ActionEnd) -> Severity {
     match ended {
-        Ended::Done | Ended::Arrived | Ended::Stopped | Ended::Replaced => Severity::Note,
-        Ended::RangeEnd | Ended::Refused(_) | Ended::Locked(_) | Ended::Short => Severity::Warning,
-        Ended::Stale
-        | Ended::Deaf
-        | Ended::Lost
-        | Ended::Fault
-        | Ended::NoAnswer(_)
-        | Ended::NotStarted
-        | Ended::Left(_)
-        | Ended::Beyond { .. }
-        | Ended::WrongWay { .. } => Severity::Error,
+        ActionEnd::Done | ActionEnd::Arrived | ActionEnd::Stopped | ActionEnd::Replaced => Severity::Note,
+        ActionEnd::RangeEnd | ActionEnd::Refused(_) | ActionEnd::Locked(_) | ActionEnd::Short => Severity::Warning,
+        ActionEnd::Stale
+        | ActionEnd::Deaf
+        | ActionEnd::Lost
+        | ActionEnd::Fault
+        | ActionEnd::NoAnswer(_)
+        | ActionEnd::NotStarted
+        | ActionEnd::Left(_)
+        | ActionEnd::Beyond { .. }
+        | ActionEnd::WrongWay { .. } => Severity::Error,
     }
 }
 

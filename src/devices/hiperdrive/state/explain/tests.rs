@@ -6,7 +6,7 @@ use super::{device, ended, lock, plan, warning, weight, wrong_length};
 use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
-use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Refusal};
+use crate::devices::hiperdrive::procedures::dead_man::{ActionEnd, MotionLock, MotionRefusal};
 use crate::devices::hiperdrive::procedures::{
     Damage, Error, LateReplyError, Refusal as Refused, RequestedItem, WrongLength,
 };
@@ -46,7 +46,7 @@ fn invalid_input_names_cause_and_remedy() {
         english(&device(&Error::NotRequested { drive: ONE })),
         "Drive 1 rejected the request because its parameter 152 (Requested) is 0. Set this parameter to 1 first."
     );
-    let switch = ended(Ended::NotStarted, plain);
+    let switch = ended(ActionEnd::NotStarted, plain);
     assert!(english(&switch).contains("S3 of the hub is at 0"), "{}", english(&switch));
     let master = device(&Error::OtherMaster { extended: 0x0106 });
     assert!(
@@ -144,34 +144,34 @@ fn plan_errors_and_ended_motions_name_a_remedy() {
         Warning::NotRequested(ONE),
     ];
     warnings.iter().for_each(|own| assert_complete(&warning(own), 2));
-    let locks = [Lock::Unread, Lock::NoTimeout, Lock::LimitsUnconfirmed, Lock::NotRequested];
+    let locks = [MotionLock::Unread, MotionLock::NoTimeout, MotionLock::LimitsUnconfirmed, MotionLock::NotRequested];
     let refusals = [
-        Refusal::NoEffort,
-        Refusal::Outside { target: 3, low: 1, high: 2 },
-        Refusal::Endless,
-        Refusal::Fault,
-        Refusal::SwitchOnLock,
-        Refusal::NothingToPause,
-        Refusal::NothingToResume,
-        Refusal::Absent,
+        MotionRefusal::NoEffort,
+        MotionRefusal::Outside { target: 3, low: 1, high: 2 },
+        MotionRefusal::Endless,
+        MotionRefusal::Fault,
+        MotionRefusal::SwitchOnLock,
+        MotionRefusal::NothingToPause,
+        MotionRefusal::NothingToResume,
+        MotionRefusal::Absent,
     ];
     let bad = [
-        Ended::RangeEnd,
-        Ended::Stale,
-        Ended::Deaf,
-        Ended::Lost,
-        Ended::Fault,
-        Ended::NoAnswer(State::Ready),
-        Ended::NotStarted,
-        Ended::Left(State::Fault),
-        Ended::Short,
+        ActionEnd::RangeEnd,
+        ActionEnd::Stale,
+        ActionEnd::Deaf,
+        ActionEnd::Lost,
+        ActionEnd::Fault,
+        ActionEnd::NoAnswer(State::Ready),
+        ActionEnd::NotStarted,
+        ActionEnd::Left(State::Fault),
+        ActionEnd::Short,
     ];
     locks.iter().for_each(|own| assert_complete(&lock(*own), 2));
-    for own in bad.into_iter().chain(refusals.map(Ended::Refused)).chain(locks.map(Ended::Locked)) {
+    for own in bad.into_iter().chain(refusals.map(ActionEnd::Refused)).chain(locks.map(ActionEnd::Locked)) {
         assert_complete(&ended(own, plain), 2);
         assert!(weight(own) >= Severity::Warning, "{own:?}");
     }
-    for own in [Ended::Done, Ended::Arrived, Ended::Stopped, Ended::Replaced] {
+    for own in [ActionEnd::Done, ActionEnd::Arrived, ActionEnd::Stopped, ActionEnd::Replaced] {
         assert_complete(&ended(own, plain), 1);
         assert_eq!(weight(own), Severity::Note, "nobody has to do anything");
     }

@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
-use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
+use crate::devices::hiperdrive::procedures::write::{Interrupted, WrittenChanges};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, PlanError, Service, TypeMismatch, Warning};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
@@ -152,7 +152,7 @@ pub fn warning(warning: &Warning) -> Text {
     }
 }
 
-pub fn written(written: &Written) -> Text {
+pub fn written(written: &WrittenChanges) -> Text {
     // A service of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use crate::app::Language::{English, German};
 use crate::devices::interbus::jobs::ChangeKind;
-use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
+use crate::devices::interbus::procedures::write::{EndState, Interrupted, WrittenChanges};
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::profile::{Edge, Item, Op, PlanError, ProgramChange, TypeMismatch};
 use crate::devices::interbus::protocol::{
@@ -156,7 +156,7 @@ fn plan_refusals_name_both_limits() {
 #[test]
 fn an_interrupted_write_names_the_remaining_steps() {
     let told = |write_cycles, left, kind| -> Vec<String> {
-        let done = Written { ops: 1, write_cycles, written: 1, verified: 1 };
+        let done = WrittenChanges { ops: 1, write_cycles, written: 1, verified: 1 };
         let shift = Some((WindowShift::default(), WindowShift::default()));
         let program = ProgramNumber::new(1).unwrap();
         let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
@@ -185,7 +185,7 @@ fn an_interrupted_write_names_the_remaining_steps() {
 fn completing_a_write_is_advised_after_leading_back() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
-        let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
+        let done = WrittenChanges { ops: 1, write_cycles: 1, written: 1, verified: 1 };
         let last = |left| {
             let interrupted =
                 Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, end_state: left };

@@ -8,7 +8,7 @@ use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
-use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
+use crate::devices::interbus::procedures::write::{EndState, Interrupted, WrittenChanges};
 use crate::devices::interbus::profile::{
     CamChange, Edge, Item, Op, ParameterChange, PlanError, ProgramChange, TypeMismatch,
 };
@@ -152,7 +152,7 @@ pub(super) fn not_started_text(why: &NotStarted) -> Text {
     }
 }
 
-pub fn written(written: &Written) -> Text {
+pub fn written(written: &WrittenChanges) -> Text {
     // The values of the factory settings are unknown, so none of them is verified.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)

@@ -31,7 +31,7 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
     // Locked, although it was confirmed once: the lock counts.
     press(&mut axis, &mut seen, AxisButton::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
-    seen.locks = vec![Lock::LimitsUnconfirmed];
+    seen.locks = vec![MotionLock::LimitsUnconfirmed];
     go_back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 

@@ -64,7 +64,7 @@ fn a_position_jump_at_standstill_means_a_changed_reference() {
 fn a_known_position_change_is_not_a_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
     let cases: [Case<'_>; 3] = [
-        ("moved by a person, between two looks", |seen| seen.ended = Some((9, Ended::Arrived))),
+        ("moved by a person, between two looks", |seen| seen.ended = Some((9, ActionEnd::Arrived))),
         ("it moves still", |seen| seen.moves = true),
         ("nothing is concluded while it is busy", |seen| seen.busy = true),
     ];
