@@ -30,7 +30,7 @@ fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();
     let mut noisy = |value: f64| value + 1e-3 * (random.f64() - 0.5);
     let (sine, cosine) = (0..count)
-        .map(|at| ELLIPSE.at(TAU * at as f64 / 1000.0))
+        .map(|at| ELLIPSE.point_at(TAU * at as f64 / 1000.0))
         .map(|(sine, cosine)| (noisy(sine), noisy(cosine)))
         .unzip();
     (time, sine, cosine)
@@ -60,18 +60,18 @@ pub(crate) fn run() {
     println!("analysis of {SAMPLES} samples, median of {ROUNDS} in seconds (goal: 0.5)");
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
     println!("{:<28} {:>8.3}", "ellipse", median(ROUNDS, || Ellipse::fit(&sine, &cosine).unwrap()));
-    println!("{:<28} {:>8.3}", "ellipse and all the rest", median(ROUNDS, || Analysis::of(samples).unwrap()));
+    println!("{:<28} {:>8.3}", "ellipse and all the rest", median(ROUNDS, || Analysis::from_samples(samples).unwrap()));
     let mut sparks = sine.clone();
     sparks.iter_mut().step_by(99_991).for_each(|value| *value += 3.0);
     let samples = Samples { time_s: &time, sine_v: &sparks, cosine_v: &cosine };
-    println!("{:<28} {:>8.3}", "the same with 101 spikes", median(ROUNDS, || Analysis::of(samples).unwrap()));
+    println!("{:<28} {:>8.3}", "the same with 101 spikes", median(ROUNDS, || Analysis::from_samples(samples).unwrap()));
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
-    let analysis = Analysis::of(samples).unwrap();
+    let analysis = Analysis::from_samples(samples).unwrap();
     let record = Record { samples, references_v: None, periods: Some(1000) };
     println!("{:<28} {:>8.3}", "diagnosis", median(ROUNDS, || diagnose(&record, Ok(&analysis), &Limits::HIPERFACE)));
     let density = || {
-        let mut density = SampleDensity::new(PlotSquare::around(&sine, &cosine).unwrap(), 256).unwrap();
-        density.add(&sine, &cosine);
+        let mut density = SampleDensity::new(PlotSquare::enclosing(&sine, &cosine).unwrap(), 256).unwrap();
+        density.add_samples(&sine, &cosine);
         density
     };
     println!("{:<28} {:>8.3}", "density of the Lissajous", median(ROUNDS, density));

@@ -7,7 +7,7 @@
 use crate::median;
 use std::hint::black_box;
 
-use encoder_studio::analysis::history::{History, Kind, Part};
+use encoder_studio::analysis::history::{ColumnPart, History, Kind};
 use encoder_studio::analysis::{PositionUnwrapper, SampleTime};
 use encoder_studio::buses::bridge::protocol::{
     BissData, BissStatus, Continuity, Message, PacketGap, Receiver, StreamData,
@@ -121,10 +121,10 @@ fn receive(bytes: &[u8], layout: &Layout) -> u64 {
                 let nanoseconds = (data.t0_us as i64 + at as i64 * i64::from(data.period_us)) * 1000;
                 times.push(SampleTime::from_nanoseconds(nanoseconds));
             }
-            history.append(&times, &[Part::whole(&steps)]).unwrap();
+            history.append(&times, &[ColumnPart::from_integers(&steps)]).unwrap();
         }
     }
-    history.all().end
+    history.indices().end
 }
 
 fn stream() {

@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use encoder_studio::analysis::history::{Flags, Grid, History, Kind, Part, Picture};
+use encoder_studio::analysis::history::{ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
 use encoder_studio::analysis::{PositionUnwrapper, SampleTime};
 
 const SAMPLES: usize = 10_000_000;
@@ -56,7 +56,7 @@ struct NaiveColumn {
 
 impl Naive {
     fn append(&mut self, times: &[SampleTime], columns: &[Vec<f64>]) {
-        self.times.extend(times.iter().map(|time| time.nanoseconds()));
+        self.times.extend(times.iter().map(|time| time.as_nanoseconds()));
         self.columns.resize_with(columns.len(), Default::default);
         for (NaiveColumn { values, levels }, new) in self.columns.iter_mut().zip(columns) {
             for value in new {
@@ -103,7 +103,7 @@ fn append(batch: usize) {
             let mut total = Duration::ZERO;
             for (number, least) in least[which].iter_mut().enumerate() {
                 let times: Vec<SampleTime> = times(number * batch, batch);
-                let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values)).collect();
+                let parts: Vec<ColumnPart<'_>> = columns.iter().map(|values| ColumnPart::from_reals(values)).collect();
                 let began = Instant::now();
                 if which == 0 {
                     naive.append(&times, &columns);
@@ -151,22 +151,22 @@ fn copies(times: &[SampleTime], columns: &[Vec<f64>], batches: usize) -> (Durati
 
 /// Pictures while the view moves by a tenth of a pixel column a picture.
 fn pictures(history: &History) {
-    let all = history.all();
+    let all = history.indices();
     let (first, last) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap());
     let span = last.nanoseconds_since(first);
     println!("  pictures of {SIGNALS} columns at {PIXELS} pixel columns, median (least) of 101:");
     let zooms = [("all", 1), ("a tenth", 10), ("a hundredth", 100), ("5000 samples", 2_000), ("1000 samples", 10_000)];
     for (zoom, part) in zooms {
-        let from = first.plus(span / 3 - span / 3 / part);
+        let from = first.saturating_add_ns(span / 3 - span / 3 / part);
         let step = span / part / PIXELS as i64 / 10;
-        let mut picture = Picture::default();
+        let mut picture = HistoryPicture::default();
         let mut took: Vec<Duration> = (0..101)
             .map(|shift| {
-                let from = from.plus(shift * step);
+                let from = from.saturating_add_ns(shift * step);
                 let began = Instant::now();
-                let cut = history.cut(&Grid::new(from, from.plus(span / part), PIXELS));
+                let cut = history.divide_into_pixels(&Grid::new(from, from.saturating_add_ns(span / part), PIXELS));
                 for column in 0..SIGNALS {
-                    history.picture(column, &cut, &mut picture);
+                    history.render_column(column, &cut, &mut picture);
                     black_box(&picture);
                 }
                 began.elapsed()
@@ -182,7 +182,7 @@ fn pictures(history: &History) {
 /// Computes first, min, max, last from the raw samples, as a plot without a pyramid has to.
 fn scan(history: &History) -> Vec<Duration> {
     let columns: Vec<Vec<f64>> = (0..SIGNALS)
-        .map(|column| history.all().map(|index| history.sample(column, index).unwrap().value.to_f64()).collect())
+        .map(|column| history.indices().map(|index| history.sample(column, index).unwrap().value.to_f64()).collect())
         .collect();
     (0..5)
         .map(|_| {
@@ -200,7 +200,7 @@ fn scan(history: &History) -> Vec<Duration> {
 }
 
 fn statistics(history: &History) {
-    let all = history.all();
+    let all = history.indices();
     let mut took: Vec<Duration> = (0..101)
         .map(|shift| {
             let began = Instant::now();
@@ -246,27 +246,28 @@ fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind)
             }));
         }
         let part = |column: usize| match kind {
-            Kind::Real => Part::real(&reals[column]),
-            Kind::Whole => Part::whole(&wholes),
+            Kind::Real => ColumnPart::from_reals(&reals[column]),
+            Kind::Whole => ColumnPart::from_integers(&wholes),
         };
         history.append(&times, &(0..columns).map(part).collect::<Vec<_>>()).unwrap();
-        let all = history.all();
+        let all = history.indices();
         let start = all.end - BATCH as u64;
         let found = (0..BATCH).step_by(997).all(|at| {
-            history.time(start + at as u64) == Some(times[at]) && history.nearest(times[at]) == Some(start + at as u64)
+            history.time(start + at as u64) == Some(times[at])
+                && history.nearest_index(times[at]) == Some(start + at as u64)
         });
         wrong += u64::from(!found);
-        let grid = Grid::new(times[0], times[BATCH - 1].plus(1), 10);
-        let mut picture = Picture::default();
-        history.picture(columns - 1, &history.cut(&grid), &mut picture);
+        let grid = Grid::new(times[0], times[BATCH - 1].saturating_add_ns(1), 10);
+        let mut picture = HistoryPicture::default();
+        history.render_column(columns - 1, &history.divide_into_pixels(&grid), &mut picture);
         breaks_seen +=
             u64::from(picture.pixels.iter().any(|pixel| pixel.flags.contains(Flags::BREAK) && !pixel.joined));
         most = most.max(history.memory());
     }
-    let all = history.all();
+    let all = history.indices();
     let grid = Grid::new(history.time(all.start).unwrap(), history.time(all.end - 1).unwrap(), PIXELS);
-    let mut picture = Picture::default();
-    history.picture(0, &history.cut(&grid), &mut picture);
+    let mut picture = HistoryPicture::default();
+    history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
     let kept = picture.pixels.iter().filter(|pixel| pixel.flags.contains(Flags::BREAK)).count();
     println!("soak, {label}: {:.1} s", began.elapsed().as_secs_f64());
     println!("  at most {:.1} MB, {} samples kept of {}", most as f64 / 1e6, all.end - all.start, all.end);
@@ -291,10 +292,10 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
         let wholes: Vec<Vec<i64>> =
             reals.iter().map(|values| values.iter().map(|value| (value * 1e6) as i64 + (1 << 40)).collect()).collect();
         let part = |column: usize| match kind {
-            Kind::Real => Part::real(&reals[column]),
-            Kind::Whole => Part::whole(&wholes[column]),
+            Kind::Real => ColumnPart::from_reals(&reals[column]),
+            Kind::Whole => ColumnPart::from_integers(&wholes[column]),
         };
-        let parts: Vec<Part<'_>> = (0..columns).map(|column| part(column).with_flags(&flags)).collect();
+        let parts: Vec<ColumnPart<'_>> = (0..columns).map(|column| part(column).with_flags(&flags)).collect();
         history.append(&times(number * BATCH, BATCH), &parts).unwrap();
     }
     history

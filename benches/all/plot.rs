@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, RawInput, Rect, Vec2, pos2};
 use encoder_studio::analysis::SampleTime;
-use encoder_studio::analysis::history::{Flags, Kind, Part};
+use encoder_studio::analysis::history::{ColumnPart, Flags, Kind};
 use encoder_studio::app::recorder::{self, GroupId, Recorder, Scale, Series};
 use encoder_studio::app::{ColorScheme, Language, RecorderOwner, SessionId, Text, ThemeData};
 use encoder_studio::ui::plot::{PlotUiState, plot_ui};
@@ -104,7 +104,8 @@ fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, f
     let flags: Vec<Flags> =
         (first..first + count).map(|at| if at % 4000 == 7 { Flags::WARNING } else { Flags::NONE }).collect();
     let flags: &[Flags] = if flagged { &flags } else { &[] };
-    let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values).with_flags(flags)).collect();
+    let parts: Vec<ColumnPart<'_>> =
+        columns.iter().map(|values| ColumnPart::from_reals(values).with_flags(flags)).collect();
     recorder.append(group, &times, &parts).unwrap();
 }
 

@@ -19,12 +19,12 @@ impl Phase {
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
     }
 
-    pub fn periods(self) -> f64 {
+    pub fn to_periods(self) -> f64 {
         self.0
     }
 
     /// Returns the phase in electrical degrees, 0 ≤ φ < 360.
-    pub fn degrees(self) -> f64 {
+    pub fn to_degrees(self) -> f64 {
         self.0 * DEGREES
     }
 
@@ -47,7 +47,7 @@ impl Phase {
 
 /// Returns the exact phase of a pair of offset-free voltages. Returns `None` if both voltages are zero or one is not a
 /// number.
-pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
+pub fn from_voltages(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::from_periods(sine.atan2(cosine) / TAU) }
 }
 
@@ -129,12 +129,12 @@ mod tests {
     fn angles_match_section_3() {
         let table = OctantTable::default();
         for (sine, cosine, degrees, by_table, phase, five, sixteen) in GOLDEN {
-            let told = exact(sine, cosine).unwrap();
-            assert!((told.degrees() - degrees).abs() < 6e-6, "{degrees}: {told:?}");
-            assert!((told.periods() - phase).abs() < 6e-7, "{degrees}: {told:?}");
+            let told = from_voltages(sine, cosine).unwrap();
+            assert!((told.to_degrees() - degrees).abs() < 6e-6, "{degrees}: {told:?}");
+            assert!((told.to_periods() - phase).abs() < 6e-7, "{degrees}: {told:?}");
             assert_eq!((told.step(5), told.nearest_step(16)), (five, sixteen), "{degrees}");
             let told = table.phase(sine, cosine).unwrap();
-            assert!((told.degrees() - by_table).abs() < 6e-6, "{degrees}: {told:?}");
+            assert!((told.to_degrees() - by_table).abs() < 6e-6, "{degrees}: {told:?}");
         }
     }
 
@@ -148,7 +148,7 @@ mod tests {
             assert!((TAU / largest / fraction - 1.0).abs() < 3e-3, "{intervals}: {}", TAU / largest);
             for step in 0..20_000 {
                 let angle = TAU * f64::from(step) / 20_000.0;
-                let told = table.phase(angle.sin(), angle.cos()).unwrap().periods() * TAU;
+                let told = table.phase(angle.sin(), angle.cos()).unwrap().to_periods() * TAU;
                 let off = (told - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
                 assert!(off.abs() <= largest * 1.000_001, "{intervals} intervals at {angle}: {off}");
             }
@@ -159,7 +159,7 @@ mod tests {
     fn without_a_signal_there_is_no_angle() {
         let table = OctantTable::default();
         for (sine, cosine) in [(0.0, 0.0), (-0.0, 0.0), (f64::NAN, 0.5), (0.5, f64::NAN)] {
-            assert_eq!((exact(sine, cosine), table.phase(sine, cosine)), (None, None), "{sine} {cosine}");
+            assert_eq!((from_voltages(sine, cosine), table.phase(sine, cosine)), (None, None), "{sine} {cosine}");
         }
         assert_eq!(table.phase(f64::INFINITY, 1.0), None);
     }
@@ -167,8 +167,8 @@ mod tests {
     #[test]
     fn a_phase_is_always_below_one() {
         assert_eq!(Phase::from_periods(-1e-20), Phase::from_periods(0.0));
-        assert_eq!(Phase::from_periods(3.25).unwrap().periods(), 0.25);
-        assert_eq!(Phase::from_periods(-0.25).unwrap().degrees(), 270.0);
+        assert_eq!(Phase::from_periods(3.25).unwrap().to_periods(), 0.25);
+        assert_eq!(Phase::from_periods(-0.25).unwrap().to_degrees(), 270.0);
         assert_eq!(Phase::from_periods(1.0 - f64::EPSILON / 2.0).unwrap().step(32), u32::MAX);
         assert_eq!(Phase::from_periods(1.0 - f64::EPSILON / 2.0).unwrap().nearest_step(16), 0);
         assert_eq!(Phase::from_periods(f64::NAN), None);

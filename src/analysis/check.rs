@@ -21,7 +21,7 @@ pub struct StepResult<S, F> {
 
 impl<S, F> StepResult<S, F> {
     /// Creates the result of a step. Its verdict is that of the worst finding, or good if there are no findings.
-    pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
+    pub(crate) fn new(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
@@ -29,16 +29,16 @@ impl<S, F> StepResult<S, F> {
 
 /// Known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wear {
+pub struct MemoryWear {
     /// Counted write cycles, if known.
     pub seen: Option<u64>,
     pub warning: u64,
     pub limit: u64,
 }
 
-impl Wear {
+impl MemoryWear {
     /// Returns the number of counted write cycles and the verdict on it. Returns `None` if the number is unknown.
-    pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
+    pub(crate) fn verdict(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {
             _ if seen >= self.limit => Verdict::Bad,

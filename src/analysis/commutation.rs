@@ -28,7 +28,7 @@ impl ElectricalAngle {
     pub fn from_turns(turns: f64) -> Option<Self> {
         const STEPS: f64 = 4_294_967_296.0;
         // 0.999… may round to a whole turn, which is equivalent to 0.
-        Phase::from_periods(turns).map(|phase| ElectricalAngle((phase.periods() * STEPS).round() as u64 as u32))
+        Phase::from_periods(turns).map(|phase| ElectricalAngle((phase.to_periods() * STEPS).round() as u64 as u32))
     }
 
     /// Creates an angle from the number stored in the encoder's memory.
@@ -42,7 +42,7 @@ impl ElectricalAngle {
     }
 
     /// Returns the angle in electrical degrees, from 0 to below 360.
-    pub fn degrees(self) -> f64 {
+    pub fn to_degrees(self) -> f64 {
         f64::from(self.0) * (360.0 / 4_294_967_296.0)
     }
 }
@@ -56,7 +56,7 @@ impl Motor {
     /// Returns the offset to store (method 1). The argument is the fine position in periods at which the shaft rests in
     /// a static vector. Returns `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
-        ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
+        ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions_from_periods(fine_periods))
     }
 
     /// Returns the electrical angle at a fine position in periods, using the stored offset.
@@ -87,7 +87,7 @@ impl Motor {
 
     /// Converts periods to the position within one revolution. Whole revolutions are dropped first, because they would
     /// cost digits of the fraction.
-    fn revolutions(&self, periods: f64) -> f64 {
+    fn revolutions_from_periods(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }
 }
@@ -111,11 +111,11 @@ mod tests {
         let motor = Motor::new(1024, 4).unwrap();
         let offset = motor.offset(339.02).unwrap();
         assert_eq!(offset.bits(), 0x5305_1EB8);
-        assert!((offset.degrees() - 116.746_875).abs() < 1e-7);
+        assert!((offset.to_degrees() - 116.746_875).abs() < 1e-7);
         // A tenth of a revolution further, plus any number of whole revolutions.
         for turns in [0.0, 1.0, 4095.0] {
             let angle = motor.electrical_angle(339.02 + 102.4 + 1024.0 * turns, offset).unwrap();
-            assert!((angle.degrees() / 360.0 - 0.4).abs() < 1e-8, "{angle:?}");
+            assert!((angle.to_degrees() / 360.0 - 0.4).abs() < 1e-8, "{angle:?}");
         }
         assert_eq!(motor.electrical_angle(339.02, offset), Some(ElectricalAngle::default()));
         assert_eq!(motor.offset(f64::NAN), None);

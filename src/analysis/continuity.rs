@@ -7,11 +7,11 @@
 /// Multiple of the usual time step above which a step is a gap.
 const GAP: f64 = 1.5;
 /// Approximate number of time steps from which the usual step is taken. The usual step is their median.
-const SAMPLED: usize = 1 << 14;
+const SAMPLED_STEPS: usize = 1 << 14;
 /// Relative deviation from the usual time step within which a step counts as equal.
-const SAME: f64 = 0.01;
+const STEP_TOLERANCE: f64 = 0.01;
 /// Share of equal time steps below which differences are attributed to the limited digits of the times.
-const MOSTLY: f64 = 0.9;
+const EVEN_STEP_SHARE: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
@@ -33,7 +33,7 @@ pub struct MissingSamples {
 
 impl Continuity {
     /// Examines the continuity of times given in seconds.
-    pub fn of(times_s: &[f64]) -> Self {
+    pub fn from_times(times_s: &[f64]) -> Self {
         let Some(longest_even) = longest_even_step(times_s) else { return Continuity::default() };
         let mut continuity = Continuity::default();
         let mut lost_s = 0.0;
@@ -62,21 +62,21 @@ impl Continuity {
 /// Returns the longest time step in seconds that is not a gap. Returns `None` if no time passes.
 fn longest_even_step(times_s: &[f64]) -> Option<f64> {
     // An odd stride does not fall in step with a pattern of length 2ⁿ.
-    let stride = (times_s.len() / SAMPLED) | 1;
-    let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
+    let stride = (times_s.len() / SAMPLED_STEPS) | 1;
+    let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(time_step).collect();
     let middle = steps.len() / 2;
     let median = (middle < steps.len()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)?;
     let forward = || steps.iter().filter(|step| **step >= 0.0);
     // If the samples are closer together than the digits of the times can resolve, most steps are zero.
     let usual = if median > 0.0 { median } else { forward().sum::<f64>() / forward().count().max(1) as f64 };
-    let same = steps.iter().filter(|step| (**step / usual - 1.0).abs() <= SAME).count();
-    let digit = if same as f64 >= MOSTLY * steps.len() as f64 { 0.0 } else { last_digit(times_s, stride) };
+    let same = steps.iter().filter(|step| (**step / usual - 1.0).abs() <= STEP_TOLERANCE).count();
+    let digit = if same as f64 >= EVEN_STEP_SHARE * steps.len() as f64 { 0.0 } else { last_digit(times_s, stride) };
     // Rounding must not turn a step exactly at the limit into a gap.
     let longest = (GAP * usual + digit) * (1.0 + 1e-6);
     (longest.is_finite() && longest > 0.0).then_some(longest)
 }
 
-fn step(pair: &[f64]) -> Option<f64> {
+fn time_step(pair: &[f64]) -> Option<f64> {
     match pair {
         [from, to] => Some(to - from),
         _ => None,
@@ -108,7 +108,7 @@ mod tests {
         // 2.5 µs per row, 799 rows missing after the thousandth: one step of 800 intervals.
         let mut capture = times(4000, |at| at * 2.5e-6);
         capture.drain(1000..1799);
-        let told = Continuity::of(&capture);
+        let told = Continuity::from_times(&capture);
         let missing = told.missing.unwrap();
         assert_eq!((missing.gaps, told.breaks.as_slice(), told.back), (1, [1000].as_slice(), None));
         near(Some(missing.longest_s), 2e-3);
@@ -116,14 +116,14 @@ mod tests {
         near(told.stretches_s, 3199.0 * 2.5e-6);
         let mut one = times(100, |at| at * 1e-3);
         one.remove(50);
-        assert_eq!(Continuity::of(&one).breaks, [50], "a single sample");
+        assert_eq!(Continuity::from_times(&one).breaks, [50], "a single sample");
     }
 
     #[test]
     fn a_backward_time_step_is_reported_with_its_sample() {
         // Two recordings in one file.
         let capture = times(2000, |at| (at % 1000.0) * 1e-5);
-        let told = Continuity::of(&capture);
+        let told = Continuity::from_times(&capture);
         assert_eq!((told.back, told.missing, told.breaks.as_slice()), (Some(1000), None, [1000].as_slice()));
         near(told.stretches_s, 2.0 * 999e-5);
     }
@@ -136,19 +136,19 @@ mod tests {
             ("none and one", 0.3e-6, 1e-6),
             ("exact", 1e-3, 1e-3),
         ] {
-            let told = Continuity::of(&times(5000, |at| (at * step / digit + 1e-6).floor() * digit));
+            let told = Continuity::from_times(&times(5000, |at| (at * step / digit + 1e-6).floor() * digit));
             assert_eq!((told.missing, told.back, told.breaks.len()), (None, None, 0), "{label}");
         }
         let mut gap = times(5000, |at| (at * 2.5).floor() * 1e-6);
         gap.drain(100..110);
-        assert_eq!(Continuity::of(&gap).breaks, [100], "27 or 28 µs are one");
+        assert_eq!(Continuity::from_times(&gap).breaks, [100], "27 or 28 µs are one");
     }
 
     #[test]
     fn without_times_nothing_is_reported() {
         for nothing in [&[][..], &[1.0], &[1.0, 1.0, 1.0], &[f64::NAN, f64::NAN, f64::NAN]] {
-            assert_eq!(Continuity::of(nothing), Continuity::default(), "{nothing:?}");
+            assert_eq!(Continuity::from_times(nothing), Continuity::default(), "{nothing:?}");
         }
-        assert_eq!(Continuity::of(&[3.0, 2.0, 1.0]).stretches_s, None, "backwards all along");
+        assert_eq!(Continuity::from_times(&[3.0, 2.0, 1.0]).stretches_s, None, "backwards all along");
     }
 }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::ellipse::Ellipse;
-use super::outliers::kept;
+use super::outliers::remaining_ranges;
 
 /// Path of the samples along an ellipse and their distance from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub(super) struct UnwrappedAngle {
 }
 
 impl UnwrappedAngle {
-    fn of(sine: f64, cosine: f64) -> Self {
+    fn from_sample(sine: f64, cosine: f64) -> Self {
         UnwrappedAngle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
     }
 
@@ -88,7 +88,7 @@ enum Direction {
 
 impl AnglePath {
     /// Number of quarter periods that an angle must move back to count as a reversal. Noise moves it back less.
-    const BACK: i64 = 3;
+    const REVERSAL_QUARTERS: i64 = 3;
 
     fn from(first: UnwrappedAngle) -> Self {
         AnglePath {
@@ -110,10 +110,10 @@ impl AnglePath {
         self.here = here;
         self.high = if here.is_ahead_of(&self.high) { here } else { self.high };
         self.low = if self.low.is_ahead_of(&here) { here } else { self.low };
-        if self.direction != Direction::Down && self.high.quarters - here.quarters >= Self::BACK {
+        if self.direction != Direction::Down && self.high.quarters - here.quarters >= Self::REVERSAL_QUARTERS {
             self.turn_at(self.high, Direction::Down);
             self.low = here;
-        } else if self.direction != Direction::Up && here.quarters - self.low.quarters >= Self::BACK {
+        } else if self.direction != Direction::Up && here.quarters - self.low.quarters >= Self::REVERSAL_QUARTERS {
             self.turn_at(self.low, Direction::Up);
             self.high = here;
         }
@@ -137,7 +137,7 @@ impl AnglePath {
         self.direction = Direction::Unknown;
     }
 
-    fn ended(mut self) -> Self {
+    fn finish_at_gap(mut self) -> Self {
         self.end_section();
         self
     }
@@ -155,7 +155,7 @@ impl AnglePath {
 }
 
 /// Splits a range of samples before each index in `breaks` that lies inside the range.
-fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
+fn split_at_breaks(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
     let inside = breaks.get(breaks.partition_point(|at| *at <= part.start)..).unwrap_or_default();
     let inside = inside.get(..inside.partition_point(|at| *at < part.end)).unwrap_or_default();
     let starts = std::iter::once(part.start).chain(inside.iter().copied());
@@ -178,13 +178,13 @@ fn quadrant_of(sine: f64, cosine: f64) -> i32 {
 impl Coverage {
     /// Follows the samples in order. The angle must move by less than half a period between consecutive samples.
     /// Returns `None` without samples.
-    pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
-        Coverage::without(sine, cosine, &[], &[], ellipse)
+    pub fn measure(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
+        Coverage::measure_without(sine, cosine, &[], &[], ellipse)
     }
 
     /// Follows the samples in order, except the ranges in `left_out`, which are ordered and do not overlap. Each index
     /// in `breaks` is a sample that the angle reached by an unknown path.
-    pub(super) fn without(
+    pub(super) fn measure_without(
         sine: &[f64],
         cosine: &[f64],
         left_out: &[Range<usize>],
@@ -195,14 +195,14 @@ impl Coverage {
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
         let length = sine.len().min(cosine.len());
-        let start = kept(length, left_out).next()?.start;
+        let start = remaining_ranges(length, left_out).next()?.start;
         let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
-        let first = UnwrappedAngle::of(first_y, first_x);
+        let first = UnwrappedAngle::from_sample(first_y, first_x);
         let (mut here, mut way) = (first, AnglePath::from(first));
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        let parts = kept(length, left_out).flat_map(|part| cut(part, breaks));
+        let parts = remaining_ranges(length, left_out).flat_map(|part| split_at_breaks(part, breaks));
         let parts = parts.filter_map(|part| Some((part.start, sine.get(part.clone())?, cosine.get(part)?)));
         let mut seen = 0;
         for (start, sine, cosine) in parts {
@@ -230,7 +230,7 @@ impl Coverage {
                 count += ys.len().min(xs.len());
             }
         }
-        let way = way.ended();
+        let way = way.finish_at_gap();
         Some(Coverage {
             octants: octants.count_ones(),
             periods: way.top.periods() - way.bottom.periods(),
@@ -257,8 +257,8 @@ mod tests {
     };
 
     fn coverage(angles: impl Iterator<Item = f64>) -> Coverage {
-        let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.at(TAU * periods)).unzip();
-        Coverage::of(&sine, &cosine, &ELLIPSE).unwrap()
+        let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.point_at(TAU * periods)).unzip();
+        Coverage::measure(&sine, &cosine, &ELLIPSE).unwrap()
     }
 
     #[test]
@@ -299,8 +299,8 @@ mod tests {
         // 2.7 periods, a jump of 40.4, then 1.1 periods back with one sample left out at their start.
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
-        let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.at(TAU * periods)).unzip();
-        let told = Coverage::without(&sine, &cosine, &[100..101, 150..152], &[100], &ELLIPSE).unwrap();
+        let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.point_at(TAU * periods)).unzip();
+        let told = Coverage::measure_without(&sine, &cosine, &[100..101, 150..152], &[100], &ELLIPSE).unwrap();
         assert!((told.travel_periods - (99.0 * 0.027 - 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
         assert!((told.path_periods - (99.0 * 0.027 + 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
         assert_eq!((told.reversals, told.octants), (0, 8), "which way it went in between is not known");
@@ -311,8 +311,8 @@ mod tests {
     fn the_amplitude_vector_matches_section_7() {
         let reference = Ellipse { phase_error_rad: 3.0_f64.to_radians(), ..ELLIPSE };
         let (sine, cosine): (Vec<f64>, Vec<f64>) =
-            (0..360).map(|degree| reference.at(f64::to_radians(f64::from(degree)))).unzip();
-        let (least, most) = Coverage::of(&sine, &cosine, &reference).unwrap().vector_v;
+            (0..360).map(|degree| reference.point_at(f64::to_radians(f64::from(degree)))).unzip();
+        let (least, most) = Coverage::measure(&sine, &cosine, &reference).unwrap().vector_v;
         assert!((least - 0.44595).abs() < 6e-6 && (most - 0.53764).abs() < 6e-6, "{least} {most}");
     }
 }

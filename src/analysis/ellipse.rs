@@ -28,7 +28,7 @@ pub struct Ellipse {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The fit has too few points. An ellipse has five parameters, and one more point is needed to assess the fit.
-    #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
+    #[error("{points} points where {least} are needed", least = MIN_POINTS)]
     TooFew { points: usize },
     #[error("sample {index} is not a finite number")]
     NotFinite {
@@ -37,7 +37,7 @@ pub enum FitError {
     },
     #[error("all points are equal")]
     Constant,
-    #[error("the {} channel does not change", .0.word())]
+    #[error("the {} channel does not change", .0.keyword())]
     Dead(SignalChannel),
     /// Both channels carry the same signal, or one channel carries the inverse of the other.
     #[error("the points lie on a line")]
@@ -56,20 +56,20 @@ pub enum SignalChannel {
     Cosine,
 }
 
-pub const LEAST_POINTS: usize = 6;
+pub const MIN_POINTS: usize = 6;
 
 /// Fraction of the other channel's range below which a channel counts as dead. Noise may reach this range.
-const DEAD: f64 = 0.05;
+const DEAD_CHANNEL_FRACTION: f64 = 0.05;
 /// Ratio of the variance across a line to that along it. Below this ratio, the points lie on the line.
-const THIN: f64 = 1e-4;
+const LINE_VARIANCE_RATIO: f64 = 1e-4;
 /// Ratio of the smallest to the largest eigenvalue of the normal equations. Below this ratio, there is no unique
 /// solution.
-const CONDITION: f64 = 1e-13;
+const MIN_EIGENVALUE_RATIO: f64 = 1e-13;
 /// Number of times the origin is moved to the centre of the previous ellipse.
-const ROUNDS: usize = 4;
+const CENTRING_PASSES: usize = 4;
 
 impl SignalChannel {
-    pub const fn word(self) -> &'static str {
+    pub const fn keyword(self) -> &'static str {
         match self {
             SignalChannel::Sine => "sine",
             SignalChannel::Cosine => "cosine",
@@ -79,7 +79,7 @@ impl SignalChannel {
 
 /// Coefficients of A·x² + B·y² + C·xy + D·x + E·y = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conic {
+pub struct ConicCoefficients {
     pub a: f64,
     pub b: f64,
     pub c: f64,
@@ -87,10 +87,10 @@ pub struct Conic {
     pub e: f64,
 }
 
-impl Conic {
+impl ConicCoefficients {
     /// Returns the ellipse by Heydemann's formulae, or `None` if the curve is not an ellipse around the origin.
-    pub fn ellipse(&self) -> Option<Ellipse> {
-        let Conic { a, b, c, d, e } = *self;
+    pub fn to_ellipse(&self) -> Option<Ellipse> {
+        let ConicCoefficients { a, b, c, d, e } = *self;
         if a <= 0.0 || b <= 0.0 || c * c >= 4.0 * a * b {
             return None;
         }
@@ -120,7 +120,7 @@ impl Ellipse {
     /// Returns a [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the
     /// period.
     pub fn fit(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
-        Ellipse::from_moments(&Moments::of(sine, cosine)?)
+        Ellipse::from_moments(&Moments::from_samples(sine, cosine)?)
     }
 
     /// Fits an ellipse to points given by their moments.
@@ -128,23 +128,23 @@ impl Ellipse {
     /// # Errors
     /// Returns the same errors as [`fit`](Self::fit).
     pub fn from_moments(moments: &Moments) -> Result<Self, FitError> {
-        if moments.count() < LEAST_POINTS {
+        if moments.count() < MIN_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
         }
         let around_mean = moments.central_moments();
         ensure_nonzero_area(&around_mean)?;
         let mut moments = around_mean;
-        let mut found = solve(&moments)?;
-        for _ in 1..ROUNDS {
+        let mut found = solve_normal_equations(&moments)?;
+        for _ in 1..CENTRING_PASSES {
             // After a poor start the centre may be outside. The fit around the mean is kept then.
-            let moved = moments.translated(found.offset_cosine_v, found.offset_sine_v);
-            let Ok(better) = solve(&moved) else { break };
+            let moved = moments.with_origin(found.offset_cosine_v, found.offset_sine_v);
+            let Ok(better) = solve_normal_equations(&moved) else { break };
             (moments, found) = (moved, better);
         }
         Ok(moments.ellipse_in_volts(&found))
     }
 
-    pub fn at(&self, angle: f64) -> (f64, f64) {
+    pub fn point_at(&self, angle: f64) -> (f64, f64) {
         let lagging = (angle - self.phase_error_rad).sin();
         (
             self.amplitude_v * lagging / self.gain_ratio + self.offset_sine_v,
@@ -161,7 +161,7 @@ impl Ellipse {
     /// Returns points of the outline as (cosine, sine) in volts. The first point is repeated at the end.
     pub fn outline_points(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
-            let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
+            let (sine, cosine) = self.point_at(at as f64 / points as f64 * std::f64::consts::TAU);
             (cosine, sine)
         };
         (0..=points).map(point).collect()
@@ -204,7 +204,7 @@ impl EllipseCorrection {
 
     /// Returns the factors by which changes in the cosine and the sine affect the corrected sine. The corrected cosine
     /// changes exactly as the cosine does.
-    pub(super) fn stretch(&self) -> (f64, f64) {
+    pub(super) fn correction_factors(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
 }
@@ -220,20 +220,20 @@ fn ensure_nonzero_area(around_mean: &Moments) -> Result<(), FitError> {
     if most <= around_mean.max_abs_voltage() * 1e-9 {
         return Err(FitError::Constant);
     }
-    if range_x < DEAD * most {
+    if range_x < DEAD_CHANNEL_FRACTION * most {
         return Err(FitError::Dead(SignalChannel::Cosine));
     }
-    if range_y < DEAD * most {
+    if range_y < DEAD_CHANNEL_FRACTION * most {
         return Err(FitError::Dead(SignalChannel::Sine));
     }
     let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
     // Each channel is taken relative to its own spread. Otherwise, a small gain would look like a line.
     let correlation = (xy / (xx * yy).sqrt()).abs();
-    if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
+    if 1.0 - correlation < LINE_VARIANCE_RATIO { Err(FitError::Line) } else { Ok(()) }
 }
 
 /// Builds and solves the 5 × 5 normal equations, in the scale of the moments.
-fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
+fn solve_normal_equations(moments: &Moments) -> Result<Ellipse, FitError> {
     /// Powers of x and y for the coefficients A to E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];
     let power = |column: usize| POWERS.get(column).copied().unwrap_or_default();
@@ -246,12 +246,12 @@ fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
         moments.sum(i, j)
     });
     let eigenvalues = normal.symmetric_eigenvalues();
-    if eigenvalues.min() <= CONDITION * eigenvalues.max() {
+    if eigenvalues.min() <= MIN_EIGENVALUE_RATIO * eigenvalues.max() {
         return Err(FitError::Ambiguous);
     }
     let solution = normal.cholesky().ok_or(FitError::Ambiguous)?.solve(&right);
     let [a, b, c, d, e] = solution.into();
-    Conic { a, b, c, d, e }.ellipse().ok_or(FitError::NotAnEllipse)
+    ConicCoefficients { a, b, c, d, e }.to_ellipse().ok_or(FitError::NotAnEllipse)
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub struct FilterResponse {
 }
 
 impl InputFilter {
-    pub fn at(&self, frequency_hz: f64) -> FilterResponse {
+    pub fn response_at(&self, frequency_hz: f64) -> FilterResponse {
         let product = TAU * frequency_hz * self.resistance_ohm * self.capacitance_f;
         FilterResponse { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }
     }
@@ -59,7 +59,7 @@ mod tests {
             (102.4e3, 47e-12, 16.825, 1.496, 0.95719),
         ];
         for (frequency, capacitance_f, phase, steps, gain) in rows {
-            let response = InputFilter { resistance_ohm: 10e3, capacitance_f }.at(frequency);
+            let response = InputFilter { resistance_ohm: 10e3, capacitance_f }.response_at(frequency);
             assert!((response.phase_deg - phase).abs() < 6e-4, "{response:?}");
             assert!((response.lag_in_steps() - steps).abs() < 6e-4, "{response:?}");
             assert!((response.gain - gain).abs() < 6e-6, "{response:?}");

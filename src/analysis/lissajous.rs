@@ -36,37 +36,37 @@ pub struct VectorLengths {
 /// Number of directions of 5° each, counted from the cosine axis towards the sine axis.
 pub const SECTORS: usize = 72;
 /// Maximum number of cells per side.
-pub const MOST_CELLS: usize = 2048;
+pub const MAX_CELLS: usize = 2048;
 
 /// Margin around the samples, as a fraction of their range.
 const MARGIN: f64 = 0.05;
 /// Minimum distance from the centre to an edge in volts, for samples that are all equal.
-const LEAST_HALF_V: f64 = 1e-3;
+const MIN_HALF_V: f64 = 1e-3;
 
 impl PlotSquare {
     /// Creates a square centred on zero, the origin of the vectors.
-    pub const fn centred(half_v: f64) -> Self {
+    pub const fn centred_on_zero(half_v: f64) -> Self {
         PlotSquare { cosine_v: 0.0, sine_v: 0.0, half_v }
     }
 
     /// Returns a square around all finite samples, with a margin. Returns `None` if a channel has no finite value.
-    pub fn around(sine: &[f64], cosine: &[f64]) -> Option<Self> {
-        let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
-        let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
+    pub fn enclosing(sine: &[f64], cosine: &[f64]) -> Option<Self> {
+        let ((left, right), (bottom, top)) = (finite_range(cosine)?, finite_range(sine)?);
+        let half = ((right - left).max(top - bottom) / 2.0).max(MIN_HALF_V);
         let middle = |low: f64, high: f64| low + (high - low) / 2.0;
         Some(PlotSquare { cosine_v: middle(left, right), sine_v: middle(bottom, top), half_v: half * (1.0 + MARGIN) })
     }
 }
 
 impl SampleDensity {
-    /// Creates an empty picture of `side` × `side` cells. `side` is limited to the range 1 to [`MOST_CELLS`]. Returns
+    /// Creates an empty picture of `side` × `side` cells. `side` is limited to the range 1 to [`MAX_CELLS`]. Returns
     /// `None` for an empty square.
     pub fn new(square: PlotSquare, side: usize) -> Option<Self> {
         let PlotSquare { cosine_v, sine_v, half_v } = square;
         if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
             return None;
         }
-        let side = side.clamp(1, MOST_CELLS);
+        let side = side.clamp(1, MAX_CELLS);
         let mut density = SampleDensity {
             square,
             side,
@@ -85,7 +85,7 @@ impl SampleDensity {
     }
 
     /// Adds samples in volts. If one channel is longer, its surplus values are ignored.
-    pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
+    pub fn add_samples(&mut self, sine: &[f64], cosine: &[f64]) {
         let PlotSquare { cosine_v, sine_v, half_v } = self.square;
         let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
         let side = self.side as f64;
@@ -125,13 +125,13 @@ impl SampleDensity {
         self.square
     }
 
-    pub fn side(&self) -> usize {
+    pub fn cells_per_side(&self) -> usize {
         self.side
     }
 
     /// Returns the number of samples in each cell, row by row. The sine increases from row to row, and the cosine
     /// within a row.
-    pub fn counts(&self) -> &[u32] {
+    pub fn cell_counts(&self) -> &[u32] {
         &self.counts
     }
 
@@ -139,7 +139,7 @@ impl SampleDensity {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
-    pub fn outside(&self) -> u64 {
+    pub fn outside_count(&self) -> u64 {
         self.outside
     }
 
@@ -166,7 +166,7 @@ fn sector_of(sine: f64, cosine: f64) -> usize {
 }
 
 /// Returns the minimum and maximum of the finite values. Returns `None` if there are none.
-fn range(values: &[f64]) -> Option<(f64, f64)> {
+fn finite_range(values: &[f64]) -> Option<(f64, f64)> {
     let finite = |value: f64| value.abs() < f64::INFINITY;
     let (groups, rest) = values.as_chunks::<4>();
     let mut ends = [(f64::INFINITY, f64::NEG_INFINITY); 4];
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn a_sample_is_counted_in_the_cell_of_its_voltages() {
         // Cells of 0.25 V from −0.5 to 0.5 V.
-        let mut density = SampleDensity::new(PlotSquare::centred(0.5), 4).unwrap();
+        let mut density = SampleDensity::new(PlotSquare::centred_on_zero(0.5), 4).unwrap();
         let samples = [
             (-0.5, -0.5, Some(0)),
             (-0.49, 0.49, Some(3)),
@@ -205,17 +205,17 @@ mod tests {
         ];
         for (sine, cosine, cell) in samples {
             density.clear();
-            density.add(&[sine], &[cosine]);
-            let found = density.counts().iter().position(|count| *count == 1);
-            assert_eq!((found, density.outside()), (cell, u64::from(cell.is_none())), "{sine} {cosine}");
+            density.add_samples(&[sine], &[cosine]);
+            let found = density.cell_counts().iter().position(|count| *count == 1);
+            assert_eq!((found, density.outside_count()), (cell, u64::from(cell.is_none())), "{sine} {cosine}");
         }
-        density.add(&[f64::NAN, 0.1, f64::INFINITY], &[0.1, f64::NAN, 0.1]);
+        density.add_samples(&[f64::NAN, 0.1, f64::INFINITY], &[0.1, f64::NAN, 0.1]);
         assert_eq!((density.invalid_count(), density.max_count()), (3, 0));
     }
 
     #[test]
     fn lengths_are_those_of_the_samples_in_each_direction() {
-        let mut density = SampleDensity::new(PlotSquare::centred(0.7), 256).unwrap();
+        let mut density = SampleDensity::new(PlotSquare::centred_on_zero(0.7), 256).unwrap();
         for degree in 0..3_600 {
             let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
             // 0.5 V all around, 0.4 V at 90°, 0.65 V at 200°, and 2 V at 300°, which is outside.
@@ -225,7 +225,7 @@ mod tests {
                 3_020 => 2.0,
                 _ => 0.5,
             };
-            density.add(&[length * y], &[length * x]);
+            density.add_samples(&[length * y], &[length * x]);
         }
         let lengths = density.vector_lengths();
         let near = |found: VectorLengths, least: f64, most: f64| {
@@ -235,23 +235,23 @@ mod tests {
         near(lengths[18], 0.4, 0.5);
         near(lengths[40], 0.5, 0.65);
         near(lengths[60], 0.5, 2.0);
-        assert_eq!((density.outside(), density.max_count() > 1), (1, true));
+        assert_eq!((density.outside_count(), density.max_count() > 1), (1, true));
         density.clear();
         assert_eq!(density.vector_lengths()[0], VectorLengths { least_v: f64::INFINITY, most_v: 0.0 });
     }
 
     #[test]
     fn a_square_is_fitted_around_the_samples() {
-        let square = PlotSquare::around(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
+        let square = PlotSquare::enclosing(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
         assert!((square.sine_v - 2.5).abs() < 1e-12 && square.cosine_v.abs() < 1e-12);
         assert!((square.half_v - 0.525).abs() < 1e-12);
-        assert!((PlotSquare::around(&[2.5], &[2.5]).unwrap().half_v - 1.05e-3).abs() < 1e-9);
-        assert_eq!(PlotSquare::around(&[], &[]), None);
-        assert_eq!(PlotSquare::around(&[f64::NAN], &[1.0]), None);
+        assert!((PlotSquare::enclosing(&[2.5], &[2.5]).unwrap().half_v - 1.05e-3).abs() < 1e-9);
+        assert_eq!(PlotSquare::enclosing(&[], &[]), None);
+        assert_eq!(PlotSquare::enclosing(&[f64::NAN], &[1.0]), None);
         for half_v in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(SampleDensity::new(PlotSquare::centred(half_v), 4).is_none());
+            assert!(SampleDensity::new(PlotSquare::centred_on_zero(half_v), 4).is_none());
         }
-        assert_eq!(SampleDensity::new(PlotSquare::centred(1.0), 0).unwrap().side(), 1);
+        assert_eq!(SampleDensity::new(PlotSquare::centred_on_zero(1.0), 0).unwrap().cells_per_side(), 1);
     }
 
     proptest! {
@@ -261,14 +261,14 @@ mod tests {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =
                 samples.iter().map(|(sine, cosine)| (f64::from(*sine), f64::from(*cosine))).unzip();
             let cut = cut.min(sine.len());
-            for square in [PlotSquare::around(&sine, &cosine), Some(PlotSquare::centred(0.6))].into_iter().flatten() {
+            for square in [PlotSquare::enclosing(&sine, &cosine), Some(PlotSquare::centred_on_zero(0.6))].into_iter().flatten() {
                 let mut density = SampleDensity::new(square, 16).unwrap();
-                density.add(&sine[..cut], &cosine[..cut]);
-                density.add(&sine[cut..], &cosine[cut..]);
-                let inside: u64 = density.counts().iter().map(|count| u64::from(*count)).sum();
-                prop_assert_eq!(inside + density.outside() + density.invalid_count(), sine.len() as u64);
+                density.add_samples(&sine[..cut], &cosine[..cut]);
+                density.add_samples(&sine[cut..], &cosine[cut..]);
+                let inside: u64 = density.cell_counts().iter().map(|count| u64::from(*count)).sum();
+                prop_assert_eq!(inside + density.outside_count() + density.invalid_count(), sine.len() as u64);
                 if square.half_v != 0.6 {
-                    prop_assert_eq!(density.outside(), 0);
+                    prop_assert_eq!(density.outside_count(), 0);
                 }
             }
         }

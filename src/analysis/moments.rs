@@ -59,13 +59,13 @@ impl Moments {
     ///
     /// # Errors
     /// Returns [`FitError::NotFinite`] with the index of the first sample that is not finite.
-    pub fn of(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
-        let Extremes { least, most } = Extremes::of(sine, cosine);
+    pub fn from_samples(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
+        let Extremes { least, most } = Extremes::from_samples(sine, cosine);
         let middle = |low: f64, high: f64| low + (high - low) / 2.0;
         let amplitude = ((most.0 - least.0).max(most.1 - least.1) / 2.0).max(f64::MIN_POSITIVE);
         let scale = Scale::new(middle(least.1, most.1), middle(least.0, most.0), amplitude);
         let mut moments = Moments::new(scale);
-        moments.add(sine, cosine)?;
+        moments.add_samples(sine, cosine)?;
         Ok(moments)
     }
 
@@ -74,12 +74,12 @@ impl Moments {
     /// # Errors
     /// Returns [`FitError::NotFinite`] if a sample is not finite. Whole blocks before that sample have then been added,
     /// and nothing else.
-    pub fn add(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
+    pub fn add_samples(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
         let length = sine.len().min(cosine.len());
         let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());
         for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
-            let sums = self.block(xs, ys);
-            let extremes = Extremes::of(ys, xs);
+            let sums = self.block_sums(xs, ys);
+            let extremes = Extremes::from_samples(ys, xs);
             // A sample that is not finite shows in these sums, and so does one that is too large for its fourth power.
             if !sums.iter().all(|sum| sum.is_finite()) {
                 let bad = xs.iter().zip(ys).position(|(x, y)| !x.is_finite() || !y.is_finite());
@@ -121,12 +121,12 @@ impl Moments {
 
     pub(super) fn central_moments(&self) -> Moments {
         let count = self.sum(0, 0).max(1.0);
-        self.translated(self.sum(1, 0) / count, self.sum(0, 1) / count)
+        self.with_origin(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
     /// Returns the moments with the origin moved to (x, y), in the unit of the scale. The binomial theorem expands (x −
     /// a)ⁱ·(y − b)ʲ.
-    pub(super) fn translated(&self, x: f64, y: f64) -> Moments {
+    pub(super) fn with_origin(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],
             [1.0, 1.0, 0.0, 0.0, 0.0],
@@ -162,7 +162,7 @@ impl Moments {
         }
     }
 
-    fn block(&self, xs: &[f64], ys: &[f64]) -> [f64; 14] {
+    fn block_sums(&self, xs: &[f64], ys: &[f64]) -> [f64; 14] {
         let mut lanes = [[0.0; LANES]; 14];
         let factor = 1.0 / self.scale.unit;
         let add = |lanes: &mut [[f64; LANES]; 14], lane: usize, x: f64, y: f64| {
@@ -193,13 +193,13 @@ impl Moments {
 }
 
 impl Extremes {
-    fn of(sine: &[f64], cosine: &[f64]) -> Self {
-        let ((least_x, most_x), (least_y, most_y)) = (extremes(cosine), extremes(sine));
+    fn from_samples(sine: &[f64], cosine: &[f64]) -> Self {
+        let ((least_x, most_x), (least_y, most_y)) = (min_and_max(cosine), min_and_max(sine));
         Extremes { least: (least_x, least_y), most: (most_x, most_y) }
     }
 }
 
-fn extremes(values: &[f64]) -> (f64, f64) {
+fn min_and_max(values: &[f64]) -> (f64, f64) {
     let (groups, rest) = values.as_chunks::<4>();
     let mut least = [f64::INFINITY; 4];
     let mut most = [f64::NEG_INFINITY; 4];

@@ -29,7 +29,7 @@ impl Motion {
 
     /// Creates averages over `window` nanoseconds (at least 1). If samples arrive more slowly, an average covers one
     /// sample.
-    pub fn over(window: i64) -> Self {
+    pub fn with_window(window: i64) -> Self {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
@@ -44,8 +44,8 @@ impl Motion {
         if self.recent.back().is_some_and(|(before, _)| time <= *before) {
             return MotionRates::default();
         }
-        let middle = self.before(time.plus(-self.window));
-        let oldest = middle.and_then(|(middle, _)| self.before(middle.plus(-self.window)));
+        let middle = self.position_before(time.saturating_add_ns(-self.window));
+        let oldest = middle.and_then(|(middle, _)| self.position_before(middle.saturating_add_ns(-self.window)));
         let speed = middle.map(|middle| slope(middle, (time, steps)));
         let acceleration = match (speed, middle, oldest) {
             (Some(speed), Some(middle), Some(oldest)) => {
@@ -60,7 +60,7 @@ impl Motion {
     }
 
     /// Returns the newest position at or before `time`, or `None` if there is none.
-    fn before(&self, time: SampleTime) -> Option<(SampleTime, i64)> {
+    fn position_before(&self, time: SampleTime) -> Option<(SampleTime, i64)> {
         let after = self.recent.partition_point(|(at, _)| *at <= time);
         self.recent.get(after.checked_sub(1)?).copied()
     }
@@ -79,7 +79,9 @@ impl Motion {
         }
         self.recent.push_back((time, steps));
         // One position older than two windows must stay, because a range starts there.
-        let start = self.before(time.plus(-self.window)).and_then(|(middle, _)| self.before(middle.plus(-self.window)));
+        let start = self
+            .position_before(time.saturating_add_ns(-self.window))
+            .and_then(|(middle, _)| self.position_before(middle.saturating_add_ns(-self.window)));
         while let (Some(start), Some(first)) = (start, self.recent.front())
             && first.0 < start.0
         {
@@ -107,7 +109,7 @@ mod tests {
     #[test]
     fn a_steady_speed_is_exact_at_any_rate() {
         for (label, period) in [("slow", 250), ("as the window", 100), ("fast", 1)] {
-            let mut motion = Motion::over(100 * MILLISECOND);
+            let mut motion = Motion::with_window(100 * MILLISECOND);
             let days = 10 * 86_400_000;
             let rates: Vec<MotionRates> =
                 (0..1000).map(|k| motion.next(at(days + k * period), (1 << 50) + k * period * 3)).collect();
@@ -118,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_parabola_has_its_acceleration() {
-        let mut motion = Motion::over(50 * MILLISECOND);
+        let mut motion = Motion::with_window(50 * MILLISECOND);
         let mut last = MotionRates::default();
         // Uneven periods: 7 and 13 ms.
         let mut now = 0;
@@ -132,7 +134,7 @@ mod tests {
 
     #[test]
     fn there_is_no_speed_in_the_first_window_or_across_a_break() {
-        let mut motion = Motion::over(10 * MILLISECOND);
+        let mut motion = Motion::with_window(10 * MILLISECOND);
         assert_eq!(motion.next(at(0), 0).speed, None);
         assert_eq!(motion.next(at(9), 9).speed, None);
         assert_eq!(motion.next(at(10), 10), MotionRates { speed: Some(1000.0), acceleration: None });
@@ -144,7 +146,7 @@ mod tests {
 
     #[test]
     fn memory_is_bounded_at_any_rate() {
-        let mut motion = Motion::over(1_000 * MILLISECOND);
+        let mut motion = Motion::with_window(1_000 * MILLISECOND);
         let capacity = motion.recent.capacity();
         let mut last = MotionRates::default();
         for k in 0..300_000 {

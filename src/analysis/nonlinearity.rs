@@ -48,7 +48,11 @@ pub enum NonlinearityError {
 ///
 /// # Errors
 /// Returns a [`NonlinearityError`] if the reference reverses, or the data are too short or invalid.
-pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result<Nonlinearity, NonlinearityError> {
+pub fn compute_nonlinearity(
+    measured: &[f64],
+    reference: &[f64],
+    periods: u32,
+) -> Result<Nonlinearity, NonlinearityError> {
     let count = measured.len().min(reference.len());
     let (measured, reference) = (measured.get(..count).unwrap_or_default(), reference.get(..count).unwrap_or_default());
     let finite = measured.iter().chain(reference).all(|value| value.is_finite());
@@ -148,7 +152,7 @@ mod tests {
         let (values, reference) = measured(40_000, 1.1, 128.0);
         let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
         for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
-            let told = nonlinearity(&values, &reference, 128).unwrap();
+            let told = compute_nonlinearity(&values, &reference, 128).unwrap();
             // The mean over 1/128 revolution reduces a sine of one revolution by only 1e-4 of its amplitude.
             assert!((told.integral_deg - 0.02).abs() < 5e-6, "{}", told.integral_deg);
             assert!((told.differential_deg - 0.003).abs() < 5e-6, "{}", told.differential_deg);
@@ -159,7 +163,7 @@ mod tests {
     #[test]
     fn a_period_need_not_be_a_whole_number_of_samples() {
         let (values, reference) = measured(1111, 1.0, 16.0);
-        let told = nonlinearity(&values, &reference, 16).unwrap();
+        let told = compute_nonlinearity(&values, &reference, 16).unwrap();
         // The mean over 1/16 revolution removes (π/16)²/6 of a sine of one revolution, which is added to the
         // differential part.
         let leaked = 0.02 * (TAU / 32.0).powi(2) / 6.0;
@@ -170,13 +174,13 @@ mod tests {
     #[test]
     fn insufficient_data_is_refused() {
         let (values, mut reference) = measured(1000, 1.0, 16.0);
-        assert_eq!(nonlinearity(&values[..100], &reference[..100], 16), Err(NonlinearityError::TooLittle));
-        assert_eq!(nonlinearity(&values, &reference, 512), Err(NonlinearityError::TooLittle));
-        assert_eq!(nonlinearity(&values, &reference, 0), Err(NonlinearityError::NotFinite));
-        assert_eq!(nonlinearity(&[], &[], 16), Err(NonlinearityError::TooLittle));
+        assert_eq!(compute_nonlinearity(&values[..100], &reference[..100], 16), Err(NonlinearityError::TooLittle));
+        assert_eq!(compute_nonlinearity(&values, &reference, 512), Err(NonlinearityError::TooLittle));
+        assert_eq!(compute_nonlinearity(&values, &reference, 0), Err(NonlinearityError::NotFinite));
+        assert_eq!(compute_nonlinearity(&[], &[], 16), Err(NonlinearityError::TooLittle));
         reference[500] = reference[499];
-        assert_eq!(nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotMonotonic { index: 500 }));
+        assert_eq!(compute_nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotMonotonic { index: 500 }));
         reference[500] = f64::NAN;
-        assert_eq!(nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotFinite));
+        assert_eq!(compute_nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotFinite));
     }
 }

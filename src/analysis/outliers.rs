@@ -25,23 +25,23 @@ pub struct Outliers {
 /// samples.
 pub const DEVIATIONS: f64 = 8.0;
 /// Fraction of the amplitude within which a sample is never an outlier, however low the noise is.
-pub const LEAST_SHARE: f64 = 0.02;
+pub const MIN_SHARE: f64 = 0.02;
 /// Share of deviating samples above which the cause is the signal itself. The samples are then not outliers.
-pub const MOST: f64 = 0.05;
+pub const MAX_OUTLIER_SHARE: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
-pub const LEAST_SAMPLES: usize = 50;
+pub const MIN_SAMPLES: usize = 50;
 
 /// Approximate number of evenly spread samples from which medians are taken.
-const SAMPLED: usize = 1 << 15;
+const MEDIAN_SAMPLES: usize = 1 << 15;
 /// Maximum number of fits without outliers. The search ends earlier if the outliers no longer change.
-const ROUNDS: usize = 4;
+const MAX_FITS: usize = 4;
 /// Ratio of a normal distribution's standard deviation to the median of its distances from zero.
-const NORMAL: f64 = 1.4826;
+const NORMAL_DEVIATION_RATIO: f64 = 1.4826;
 /// Median distance from an upright ellipse, as a fraction of its amplitude, above which the samples lie on no ellipse.
 /// A cloud of samples has 0.3.
-const UPRIGHT: f64 = 0.15;
+const MAX_MEDIAN_DISTANCE: f64 = 0.15;
 /// Fraction of the other channel's range below which a channel counts as constant.
-const DEAD: f64 = 0.05;
+const DEAD_CHANNEL_FRACTION: f64 = 0.05;
 
 pub(super) enum OutlierResult {
     /// No outliers were found, or too many samples deviate to count as outliers.
@@ -52,19 +52,21 @@ pub(super) enum OutlierResult {
 /// Searches for outliers. `all` is the ellipse through all samples, if known.
 pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierResult {
     let count = sine.len().min(cosine.len());
-    if count < LEAST_SAMPLES {
+    if count < MIN_SAMPLES {
         return OutlierResult::Nothing;
     }
     // An odd stride does not lock onto a period of 2ⁿ samples.
-    let stride = (count / SAMPLED) | 1;
+    let stride = (count / MEDIAN_SAMPLES) | 1;
     let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
     let (ys, xs) = (sampled(sine), sampled(cosine));
     // An ellipse distorted by an outlier misses the other samples. The upright ellipse is used if it fits them better.
-    let upright = boxed(&ys, &xs).ok().filter(|boxed| median_deviation(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
+    let upright = ellipse_from_quantiles(&ys, &xs)
+        .ok()
+        .filter(|boxed| median_deviation(&ys, &xs, boxed) < MAX_MEDIAN_DISTANCE * boxed.amplitude_v);
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
             let off = median_deviation(&ys, &xs, all);
-            let misses = off > LEAST_SHARE * upright.amplitude_v && off > median_deviation(&ys, &xs, &upright);
+            let misses = off > MIN_SHARE * upright.amplitude_v && off > median_deviation(&ys, &xs, &upright);
             if misses { upright } else { *all }
         }
         (Some(all), None) => *all,
@@ -73,11 +75,12 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     };
     let mut ellipse = start;
     let mut stretches: Vec<Range<usize>> = Vec::new();
-    for round in 0..ROUNDS {
-        let limit = (DEVIATIONS * NORMAL * median_deviation(&ys, &xs, &ellipse)).max(LEAST_SHARE * ellipse.amplitude_v);
-        let found = beyond(sine, cosine, &ellipse, limit);
+    for round in 0..MAX_FITS {
+        let limit = (DEVIATIONS * NORMAL_DEVIATION_RATIO * median_deviation(&ys, &xs, &ellipse))
+            .max(MIN_SHARE * ellipse.amplitude_v);
+        let found = find_outliers(sine, cosine, &ellipse, limit);
         let left_out: usize = found.iter().map(Range::len).sum();
-        if left_out as f64 > MOST * count as f64 {
+        if left_out as f64 > MAX_OUTLIER_SHARE * count as f64 {
             return OutlierResult::Nothing;
         }
         if (round > 0 || Some(&ellipse) == all) && found == stretches {
@@ -97,7 +100,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
         count: stretches.iter().map(Range::len).sum(),
         longest: stretches.iter().map(Range::len).max().unwrap_or(0),
         farthest_v: max_distance(sine, cosine, &stretches, &ellipse),
-        all: all.and_then(|all| Some((*all, Coverage::of(sine, cosine, all)?))),
+        all: all.and_then(|all| Some((*all, Coverage::measure(sine, cosine, all)?))),
         stretches,
     };
     OutlierResult::Outliers(ellipse, outliers)
@@ -105,12 +108,12 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
 
 /// Returns the channel that is constant apart from single samples. Returns `None` if both channels move.
 pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<SignalChannel> {
-    let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
-    boxed(sine, cosine).err().flatten().filter(|_| !few)
+    let few = sine.len().min(cosine.len()) < MIN_SAMPLES;
+    ellipse_from_quantiles(sine, cosine).err().flatten().filter(|_| !few)
 }
 
 /// Returns the ranges of `length` samples that remain after the ranges in `left_out` are removed.
-pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
+pub(crate) fn remaining_ranges(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end)
@@ -118,8 +121,8 @@ pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<It
 
 fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: Scale) -> Result<Ellipse, FitError> {
     let mut moments = Moments::new(scale);
-    for part in kept(sine.len().min(cosine.len()), left_out) {
-        moments.add(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;
+    for part in remaining_ranges(sine.len().min(cosine.len()), left_out) {
+        moments.add_samples(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;
     }
     Ellipse::from_moments(&moments)
 }
@@ -128,13 +131,13 @@ fn fit_excluding(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale:
 ///
 /// # Errors
 /// Returns the constant channel, or `None` if both channels are constant.
-fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>> {
+fn ellipse_from_quantiles(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>> {
     /// Share of samples beyond each quantile. A sine is outside cos(0.05·π) of its amplitude for a tenth of the time.
-    const SHARE: f64 = 0.05;
-    let reach = (SHARE * std::f64::consts::PI).cos();
+    const QUANTILE_SHARE: f64 = 0.05;
+    let reach = (QUANTILE_SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
         let mut values = values.to_vec();
-        let (last, rank) = (values.len().saturating_sub(1), (values.len() as f64 * SHARE) as usize);
+        let (last, rank) = (values.len().saturating_sub(1), (values.len() as f64 * QUANTILE_SHARE) as usize);
         let low = value_at_rank(&mut values, rank);
         let high = value_at_rank(&mut values, last.saturating_sub(rank));
         ((low + high) / 2.0, (high - low) / 2.0 / reach)
@@ -144,9 +147,9 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<SignalChannel>>
     // A constant 2.5 V still varies by a few units in the last place.
     if most <= 1e-9 * offset_sine_v.abs().max(offset_cosine_v.abs()) {
         Err(None)
-    } else if sine_v < DEAD * most {
+    } else if sine_v < DEAD_CHANNEL_FRACTION * most {
         Err(Some(SignalChannel::Sine))
-    } else if amplitude_v < DEAD * most {
+    } else if amplitude_v < DEAD_CHANNEL_FRACTION * most {
         Err(Some(SignalChannel::Cosine))
     } else {
         let gain_ratio = amplitude_v / sine_v;
@@ -172,7 +175,7 @@ fn value_at_rank(values: &mut [f64], rank: usize) -> f64 {
 }
 
 /// Returns the ranges of samples farther from the ellipse than `limit` volts.
-fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
+fn find_outliers(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
     /// Number of samples checked together. Usually, none of them is an outlier.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();

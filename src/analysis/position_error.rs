@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::coverage::Coverage;
 use super::ellipse::{Ellipse, EllipseCorrection};
-use super::outliers::kept;
+use super::outliers::remaining_ranges;
 
 /// Number of fitted harmonics of the period.
 pub const HARMONICS: usize = 8;
@@ -52,12 +52,12 @@ const SEGMENTS: usize = 32;
 /// Maximum number of samples per segment. A segment with more samples is thinned out.
 const SEGMENT_SAMPLES: usize = 4096;
 /// Minimum number of samples for a fit of the motion with all harmonics.
-const LEAST_SAMPLES: usize = 3 * TERMS;
+const MIN_SAMPLES: usize = 3 * TERMS;
 /// Minimum number of periods. With fewer, harmonics and motion cannot be separated.
-const LEAST_PERIODS: f64 = 0.95;
+const MIN_PERIODS: f64 = 0.95;
 /// Ratio of the noise to the value expected from the distance to the ellipse. Above this ratio, the motion was not
 /// steady.
-const STEADY: f64 = 3.0;
+const UNSTEADY_NOISE_RATIO: f64 = 3.0;
 
 type Normal = SMatrix<f64, TERMS, TERMS>;
 type Terms = SVector<f64, TERMS>;
@@ -73,16 +73,21 @@ pub struct Samples<'a> {
 impl PositionError {
     /// Calculates the error of samples relative to their ellipse. The ranges in `left_out` are excluded. They are
     /// ordered and do not overlap.
-    pub(super) fn of(samples: Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, coverage: &Coverage) -> Self {
+    pub(super) fn from_samples(
+        samples: Samples<'_>,
+        left_out: &[Range<usize>],
+        ellipse: &Ellipse,
+        coverage: &Coverage,
+    ) -> Self {
         let expected_deg = coverage.residual_rms.to_degrees();
-        let found = fit(&samples, left_out, ellipse, coverage.periods)
-            .filter(|(_, noise_deg)| *noise_deg <= STEADY * expected_deg.max(0.01));
+        let found = fit_harmonics(&samples, left_out, ellipse, coverage.periods)
+            .filter(|(_, noise_deg)| *noise_deg <= UNSTEADY_NOISE_RATIO * expected_deg.max(0.01));
         let corrected_deg: Vec<f64> = match &found {
             Some((terms, _)) => sample_angles().map(|angle| harmonics_at(angle).dot(terms).to_degrees()).collect(),
             None => vec![0.0; POINTS],
         };
         let of_ellipse = sample_angles().map(|angle| {
-            let (sine, cosine) = ellipse.at(angle);
+            let (sine, cosine) = ellipse.point_at(angle);
             (sine.atan2(cosine) - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
         });
         let mut raw_deg: Vec<f64> =
@@ -103,7 +108,7 @@ impl PositionError {
 }
 
 /// Returns the peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
-pub fn harmonics(curve: &[f64]) -> [f64; HARMONICS] {
+pub fn harmonic_amplitudes(curve: &[f64]) -> [f64; HARMONICS] {
     let count = curve.len().max(1) as f64;
     let mut order = 0.0;
     [0.0; HARMONICS].map(|_| {
@@ -141,17 +146,22 @@ fn harmonics_at(angle: f64) -> Terms {
 
 /// Returns the harmonics in radians and the rms of the residual in degrees. Returns `None` if there are too few
 /// samples.
-fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
+fn fit_harmonics(
+    samples: &Samples<'_>,
+    left_out: &[Range<usize>],
+    ellipse: &Ellipse,
+    periods: f64,
+) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
-    if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
+    if count < MIN_SAMPLES || periods < MIN_PERIODS {
         return None;
     }
     let timed = samples.time_s.len() >= count && samples.time_s.windows(2).all(|pair| matches!(pair, [a, b] if a < b));
-    let segments = ((periods / SEGMENT_PERIODS) as usize).clamp(1, SEGMENTS.min(count / LEAST_SAMPLES).max(1));
+    let segments = ((periods / SEGMENT_PERIODS) as usize).clamp(1, SEGMENTS.min(count / MIN_SAMPLES).max(1));
     let length = if segments == 1 && periods < 2.0 * SEGMENT_PERIODS {
         count
     } else {
-        ((count as f64 * SEGMENT_PERIODS / periods) as usize).clamp(LEAST_SAMPLES.min(count), count)
+        ((count as f64 * SEGMENT_PERIODS / periods) as usize).clamp(MIN_SAMPLES.min(count), count)
     };
     let bends = periods >= 2.0;
     let correction = ellipse.correction();
@@ -159,7 +169,7 @@ fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, peri
         NormalEquations { normal: Normal::zeros(), right: Terms::zeros(), squares: 0.0, count: 0, motions: 0 };
     for segment in 0..segments {
         let start = if segments == 1 { 0 } else { (count - length) * segment / (segments - 1) };
-        sums.add(&Segment::of(samples, left_out, start..start + length, timed), &correction, bends);
+        sums.add_segment(&Segment::fit_segment(samples, left_out, start..start + length, timed), &correction, bends);
     }
     sums.solve()
 }
@@ -172,7 +182,7 @@ struct Segment {
 }
 
 impl Segment {
-    fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
+    fn fit_segment(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
         let from = left_out.partition_point(|stretch| stretch.end <= range.start);
         let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);
         // Convert an index to one within the range.
@@ -180,11 +190,14 @@ impl Segment {
         let inside: Vec<Range<usize>> = inside.map(|stretch| own(stretch.start)..own(stretch.end)).collect();
         let parts = |values: &[f64]| {
             let values = values.get(range.clone()).unwrap_or_default();
-            kept(values.len(), &inside).flat_map(|part| values.get(part).unwrap_or_default()).copied().collect()
+            remaining_ranges(values.len(), &inside)
+                .flat_map(|part| values.get(part).unwrap_or_default())
+                .copied()
+                .collect()
         };
         let times = match timed {
             true => parts(samples.time_s),
-            false => kept(range.len(), &inside).flatten().map(|at| at as f64).collect(),
+            false => remaining_ranges(range.len(), &inside).flatten().map(|at| at as f64).collect(),
         };
         Segment { times, sine: parts(samples.sine_v), cosine: parts(samples.cosine_v) }
     }
@@ -200,7 +213,7 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    fn add(&mut self, segment: &Segment, correction: &EllipseCorrection, bends: bool) {
+    fn add_segment(&mut self, segment: &Segment, correction: &EllipseCorrection, bends: bool) {
         let Segment { times, sine, cosine } = segment;
         let stride = (times.len() / SEGMENT_SAMPLES).max(1);
         let (Some(begin), Some(end)) = (times.first(), times.last()) else { return };
@@ -243,12 +256,12 @@ impl NormalEquations {
     fn solve(self) -> Option<(Terms, f64)> {
         /// Smallest significant eigenvalue, as a share of the largest one. Few samples per period cannot separate high
         /// harmonics from low ones.
-        const RANK: f64 = 1e-4;
+        const MIN_EIGENVALUE_SHARE: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();
         let largest = parts.eigenvalues.max();
         let mut terms = Terms::zeros();
         for (value, vector) in parts.eigenvalues.iter().zip(parts.eigenvectors.column_iter()) {
-            if *value > RANK * largest {
+            if *value > MIN_EIGENVALUE_SHARE * largest {
                 terms += vector * (vector.dot(&self.right) / value);
             }
         }

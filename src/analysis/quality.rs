@@ -55,7 +55,7 @@ impl Family {
 
     /// Returns the supply voltage of the family's encoders. It is from the HIPERFACE description 8010701, or 4.5 to 5.5
     /// V for AFS and AFM60 with sine and cosine.
-    pub const fn supply(self) -> SupplyVoltage {
+    pub const fn supply_voltage(self) -> SupplyVoltage {
         match self {
             Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
             Family::AfsAfm60 => SupplyVoltage { least: 4_500, given: 5_000, greatest: 5_500 },
@@ -92,7 +92,7 @@ pub enum QualityFinding {
 }
 
 /// Tolerance of the limits. Without it, rounding could move a value at the limit beyond it.
-const SLACK: f64 = 1e-9;
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Limits {
     /// Limits for HIPERFACE: 0.9 … 1.1 V peak to peak, mean level 2.0 … 3.0 V.
@@ -121,9 +121,9 @@ impl Limits {
 
     /// Judges a peak amplitude in volts.
     pub fn amplitude_verdict(&self, volts: f64) -> Verdict {
-        if within(volts, self.ok_v) {
+        if is_within(volts, self.ok_v) {
             Verdict::Ok
-        } else if within(volts, self.fault_v) {
+        } else if is_within(volts, self.fault_v) {
             Verdict::Warn
         } else {
             Verdict::Fault
@@ -132,17 +132,17 @@ impl Limits {
 
     /// Returns the quantities of an ellipse that are outside their limits, in the order of section 2 of the project's
     /// sine/cosine reference. `residual_rms` is relative to the amplitude.
-    pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
+    pub fn check_ellipse(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
         let amplitude = ellipse.amplitude_v;
         let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude_verdict(volts), volts));
         let (verdict, volts) = if worst[1].0 > worst[0].0 { worst[1] } else { worst[0] };
         let offsets = [ellipse.offset_sine_v / amplitude, ellipse.offset_cosine_v / amplitude];
-        let beyond = |value: f64, limit: f64| !within(value, (-limit, limit));
+        let beyond = |value: f64, limit: f64| !is_within(value, (-limit, limit));
         [
             (verdict != Verdict::Ok, QualityFinding::Amplitude { volts, ok_v: self.ok_v, verdict }),
             (beyond(offsets[0], self.offset), QualityFinding::OffsetSine(offsets[0])),
             (beyond(offsets[1], self.offset), QualityFinding::OffsetCosine(offsets[1])),
-            (!within(ellipse.gain_ratio, self.gain_ratio), QualityFinding::GainRatio(ellipse.gain_ratio)),
+            (!is_within(ellipse.gain_ratio, self.gain_ratio), QualityFinding::GainRatio(ellipse.gain_ratio)),
             (beyond(ellipse.phase_error_deg(), self.phase_deg), QualityFinding::PhaseError(ellipse.phase_error_deg())),
             (beyond(residual_rms, self.residual), QualityFinding::Residual(residual_rms)),
         ]
@@ -152,8 +152,8 @@ impl Limits {
     }
 }
 
-pub(super) fn within(value: f64, (least, most): (f64, f64)) -> bool {
-    value >= least - SLACK && value <= most + SLACK
+pub(super) fn is_within(value: f64, (least, most): (f64, f64)) -> bool {
+    value >= least - ROUNDING_TOLERANCE && value <= most + ROUNDING_TOLERANCE
 }
 
 #[cfg(test)]
@@ -198,7 +198,7 @@ mod tests {
             phase_error_rad: -5.0_f64.to_radians(),
         };
         let limits = Limits::HIPERFACE;
-        assert_eq!(limits.judge(&good, 0.02), []);
+        assert_eq!(limits.check_ellipse(&good, 0.02), []);
         let bad = Ellipse { amplitude_v: 0.5, gain_ratio: 2.0, offset_sine_v: 0.03, ..good };
         let amplitude = QualityFinding::Amplitude { volts: 0.25, ok_v: (0.45, 0.55), verdict: Verdict::Fault };
         let expected = [
@@ -207,6 +207,6 @@ mod tests {
             QualityFinding::GainRatio(2.0),
             QualityFinding::Residual(0.03),
         ];
-        assert_eq!(limits.judge(&bad, 0.03), expected);
+        assert_eq!(limits.check_ellipse(&bad, 0.03), expected);
     }
 }

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::ellipse::Ellipse;
-use super::nonlinearity::{Nonlinearity, NonlinearityError, nonlinearity};
-use super::outliers::kept;
+use super::nonlinearity::{Nonlinearity, NonlinearityError, compute_nonlinearity};
+use super::outliers::remaining_ranges;
 
 /// Nonlinearity with and without the correction of the ellipse.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub enum RevolutionError {
 }
 
 /// Largest permitted deviation of the counted from the given number of periods, as a fraction.
-const CLOSE: f64 = 0.02;
+const MAX_PERIOD_DEVIATION: f64 = 0.02;
 
 impl Revolution {
     /// Compares sine and cosine in volts with the reference angle in mechanical degrees. The reference may be wrapped
@@ -41,7 +41,7 @@ impl Revolution {
     ///
     /// # Errors
     /// Returns a [`RevolutionError`] if the signals and the reference are unsuitable or do not match.
-    pub fn of(
+    pub fn from_samples(
         sine: &[f64],
         cosine: &[f64],
         reference_deg: &[f64],
@@ -57,7 +57,7 @@ impl Revolution {
         let (mut raw, mut corrected, mut shaft) =
             (AngleUnwrapper::new(TAU), AngleUnwrapper::new(TAU), AngleUnwrapper::new(360.0));
         let (mut as_measured, mut as_corrected, mut reference) = (Vec::new(), Vec::new(), Vec::new());
-        for at in kept(count, left_out).flatten() {
+        for at in remaining_ranges(count, left_out).flatten() {
             let (Some(y), Some(x), Some(angle)) = (sine.get(at), cosine.get(at), reference_deg.get(at)) else { break };
             let (own_y, own_x) = correction.apply(*y, *x);
             let (measured, own) = (raw.next(y.atan2(*x)), corrected.next(own_y.atan2(own_x)));
@@ -75,15 +75,17 @@ impl Revolution {
             return Err(NonlinearityError::TooLittle.into());
         }
         // Less than a period does not show how many there are.
-        if turned.abs() >= 1.0 && (found.abs() / f64::from(periods) - 1.0).abs() > CLOSE.max(1.0 / turned.abs()) {
+        if turned.abs() >= 1.0
+            && (found.abs() / f64::from(periods) - 1.0).abs() > MAX_PERIOD_DEVIATION.max(1.0 / turned.abs())
+        {
             return Err(RevolutionError::Periods { found: found.abs(), given: periods });
         }
         // A reference that is mounted the other way round counts in the other direction.
         let factor = 360.0 / TAU / f64::from(periods) * found.signum();
         let mechanical = |angles: &[f64]| angles.iter().map(|angle| angle * factor).collect::<Vec<f64>>();
         Ok(Revolution {
-            raw: nonlinearity(&mechanical(&as_measured), &reference, periods)?,
-            corrected: nonlinearity(&mechanical(&as_corrected), &reference, periods)?,
+            raw: compute_nonlinearity(&mechanical(&as_measured), &reference, periods)?,
+            corrected: compute_nonlinearity(&mechanical(&as_corrected), &reference, periods)?,
         })
     }
 }
@@ -120,7 +122,7 @@ mod tests {
         let (mut sine, mut cosine, mut reference) = (vec![], vec![], vec![]);
         for at in 0..20_000 {
             let turn = 1.1 * f64::from(at) / 20_000.0;
-            let (y, x) = ELLIPSE.at(TAU * 128.0 * (turn + 0.02 / 360.0 * (TAU * turn).sin()));
+            let (y, x) = ELLIPSE.point_at(TAU * 128.0 * (turn + 0.02 / 360.0 * (TAU * turn).sin()));
             sine.push(sign * y);
             cosine.push(x);
             reference.push((360.0 * turn + 300.0) % 360.0);
@@ -134,7 +136,7 @@ mod tests {
         for sign in [1.0, -1.0] {
             let (mut sine, cosine, reference) = made(sign);
             sine[7_777] = 3.0;
-            let told = Revolution::of(&sine, &cosine, &reference, &spike, &ELLIPSE, 128).unwrap();
+            let told = Revolution::from_samples(&sine, &cosine, &reference, &spike, &ELLIPSE, 128).unwrap();
             assert!((told.raw.integral_deg - 0.02).abs() < 2e-5, "{}", told.raw.integral_deg);
             // An offset of 1 % is ±0.5730 electrical degrees (section 6).
             assert!((told.raw.differential_deg - 0.573 / 128.0).abs() < 3e-5, "{}", told.raw.differential_deg);
@@ -146,7 +148,7 @@ mod tests {
     #[test]
     fn a_wrong_number_of_periods_is_reported() {
         let (sine, cosine, reference) = made(1.0);
-        let told = Revolution::of(&sine, &cosine, &reference, &[], &ELLIPSE, 100);
+        let told = Revolution::from_samples(&sine, &cosine, &reference, &[], &ELLIPSE, 100);
         let Err(RevolutionError::Periods { found, given: 100 }) = told else { panic!("{told:?}") };
         assert!((found - 128.0).abs() < 0.1, "{found}");
     }
@@ -155,16 +157,16 @@ mod tests {
     fn a_coarse_reference_works_and_a_constant_one_fails() {
         let (sine, cosine, mut reference) = made(1.0);
         let standing = vec![12.0; reference.len()];
-        let told = Revolution::of(&sine, &cosine, &standing, &[], &ELLIPSE, 128);
+        let told = Revolution::from_samples(&sine, &cosine, &standing, &[], &ELLIPSE, 128);
         assert_eq!(told, Err(NonlinearityError::TooLittle.into()));
         // Steps of 0.04°, two samples each.
         reference.iter_mut().for_each(|angle| *angle = (*angle / 0.04).floor() * 0.04);
-        let told = Revolution::of(&sine, &cosine, &reference, &[], &ELLIPSE, 128).unwrap();
+        let told = Revolution::from_samples(&sine, &cosine, &reference, &[], &ELLIPSE, 128).unwrap();
         assert!((told.raw.integral_deg - 0.02).abs() < 2e-3, "{}", told.raw.integral_deg);
         for (reference, periods) in [(vec![f64::NAN; 9], 128), (vec![1.0; 9], 0)] {
-            let told = Revolution::of(&sine, &cosine, &reference, &[], &ELLIPSE, periods);
+            let told = Revolution::from_samples(&sine, &cosine, &reference, &[], &ELLIPSE, periods);
             assert_eq!(told, Err(NonlinearityError::NotFinite.into()));
         }
-        assert!(Revolution::of(&[], &[], &[], &[], &ELLIPSE, 128).is_err());
+        assert!(Revolution::from_samples(&[], &[], &[], &[], &ELLIPSE, 128).is_err());
     }
 }

@@ -9,7 +9,7 @@ use super::outliers::{self, OutlierResult, Outliers};
 use super::position_error::{PositionError, Samples};
 
 /// Minimum number of octants of a period that must contain samples (U).
-pub const LEAST_OCTANTS: u32 = 6;
+pub const MIN_OCTANTS: u32 = 6;
 /// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse. A cloud of noise around
 /// one point has 0.4 or more, while a residual of 0.02 is already a poor signal.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
@@ -40,7 +40,7 @@ pub enum AnalysisError {
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The capture covers too little of a period for a reliable ellipse.
-    #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
+    #[error("samples in {octants} of 8 octants where {least} are needed", least = MIN_OCTANTS)]
     Coverage { octants: u32 },
     /// All samples lie around one point away from zero. The signal is present, and the shaft is at rest.
     #[error("all samples lie around one point")]
@@ -59,8 +59,8 @@ impl Analysis {
     /// # Errors
     /// Returns an [`AnalysisError`] if the samples do not determine an ellipse or cover fewer than six octants of a
     /// period.
-    pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
-        Self::attempt(samples).map_err(|error| match error {
+    pub fn from_samples(samples: Samples<'_>) -> Result<Self, AnalysisError> {
+        Self::try_from_samples(samples).map_err(|error| match error {
             // For few samples or NaN, there is nothing more to find out. Equal points may also be a dead cable.
             AnalysisError::Fit(FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant) => error,
             _ if is_at_rest(samples.sine_v, samples.cosine_v) => AnalysisError::AtRest,
@@ -73,7 +73,7 @@ impl Analysis {
         })
     }
 
-    fn attempt(samples: Samples<'_>) -> Result<Self, AnalysisError> {
+    fn try_from_samples(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         let Samples { time_s, sine_v, cosine_v } = samples;
         let all = Ellipse::fit(sine_v, cosine_v);
         if let Err(error @ (FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant)) = all {
@@ -84,18 +84,18 @@ impl Analysis {
             OutlierResult::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
         };
         let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
-        let continuity = Continuity::of(time_s);
-        let coverage = Coverage::without(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
+        let continuity = Continuity::from_times(time_s);
+        let coverage = Coverage::measure_without(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
         let coverage = coverage.ok_or(FitError::TooFew { points: 0 })?;
         if coverage.residual_rms > LARGEST_RESIDUAL {
             return Err(AnalysisError::NoSignal { share: coverage.residual_rms });
         }
-        if coverage.octants < LEAST_OCTANTS {
+        if coverage.octants < MIN_OCTANTS {
             return Err(AnalysisError::Coverage { octants: coverage.octants });
         }
         let duration = time_s.last().zip(time_s.first()).map(|(last, first)| last - first);
         Ok(Analysis {
-            error: PositionError::of(samples, left_out, &ellipse, &coverage),
+            error: PositionError::from_samples(samples, left_out, &ellipse, &coverage),
             coverage,
             continuity,
             step_deg: step_deg(sine_v, cosine_v, &ellipse),
@@ -124,7 +124,7 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     /// Rms scatter of one channel, relative to the distance of the point from zero. The value is 6° of a signal (U).
     const SCATTER: f64 = 0.1;
     /// Distance from zero in volts below which there may be no signal (U).
-    const LEAST_V: f64 = 0.1;
+    const MIN_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -132,15 +132,15 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     };
     let ((sine, sine_rms), (cosine, cosine_rms)) = (of(sine_v), of(cosine_v));
     let away = sine.hypot(cosine);
-    away >= LEAST_V && sine_rms.max(cosine_rms) <= SCATTER * away
+    away >= MIN_V && sine_rms.max(cosine_rms) <= SCATTER * away
 }
 
 /// Returns the median angle between consecutive samples, in degrees.
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
-    const SAMPLED: usize = 1 << 13;
+    const SAMPLED_VALUES: usize = 1 << 13;
     let correction = ellipse.correction();
     // An odd stride does not fall in step with a period of 2ⁿ samples.
-    let stride = (sine_v.len() / SAMPLED) | 1;
+    let stride = (sine_v.len() / SAMPLED_VALUES) | 1;
     let step = |pair: (&[f64], &[f64])| match pair {
         ([y, later_y], [x, later_x]) => {
             let (y, x) = correction.apply(*y, *x);

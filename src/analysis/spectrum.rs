@@ -34,7 +34,7 @@ pub enum SpectrumError {
     NotFinite,
 }
 
-const LEAST: usize = 8;
+const MIN_SAMPLES: usize = 8;
 /// Number of lines on each side of a peak that belong to it in a Hann window.
 const PEAK_REACH: usize = 2;
 
@@ -43,9 +43,9 @@ impl Spectrum {
     ///
     /// # Errors
     /// Returns a [`SpectrumError`] if there are too few samples, or if a sample is not finite.
-    pub fn of(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
+    pub fn from_samples(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
         let count = samples.len();
-        if count < LEAST {
+        if count < MIN_SAMPLES {
             return Err(SpectrumError::TooFew { samples: count });
         }
         let mean = samples.iter().sum::<f64>() / count as f64;
@@ -75,7 +75,7 @@ impl Spectrum {
 
     /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines of a peak
     /// found before are skipped, and so are those around 0 Hz, which belong to the mean.
-    pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
+    pub fn highest_peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
             .filter(|at| {
@@ -118,7 +118,7 @@ impl Spectrum {
 /// # Errors
 /// Returns a [`SpectrumError`] if there are fewer than eight times, or if they do not increase evenly.
 pub fn sample_rate_hz(times_s: &[f64]) -> Result<f64, SpectrumError> {
-    let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= LEAST) else {
+    let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= MIN_SAMPLES) else {
         return Err(SpectrumError::TooFew { samples: times_s.len() });
     };
     let mean = (last - first) / (times_s.len() - 1) as f64;
@@ -145,7 +145,7 @@ mod tests {
                     offset + 0.5 * (TAU * frequency * t).sin() + 0.01 * (TAU * (3.0 * frequency) * t + 1.0).sin()
                 })
                 .collect();
-            let peaks = Spectrum::of(&samples, 4000.0).unwrap().peaks(2);
+            let peaks = Spectrum::from_samples(&samples, 4000.0).unwrap().highest_peaks(2);
             for (peak, (hertz, volts)) in peaks.iter().zip([(frequency, 0.5), (3.0 * frequency, 0.01)]) {
                 assert!((peak.frequency_hz - hertz).abs() < 0.02, "{peaks:?}");
                 assert!((peak.amplitude_v / volts - 1.0).abs() < 0.01, "{peaks:?}");
@@ -156,16 +156,16 @@ mod tests {
 
     #[test]
     fn a_constant_has_no_peak() {
-        let spectrum = Spectrum::of(&[1.5; 64], 100.0).unwrap();
-        assert_eq!((spectrum.peaks(3), spectrum.amplitudes_v().len()), (Vec::new(), 33));
+        let spectrum = Spectrum::from_samples(&[1.5; 64], 100.0).unwrap();
+        assert_eq!((spectrum.highest_peaks(3), spectrum.amplitudes_v().len()), (Vec::new(), 33));
         assert_eq!(spectrum.spacing_hz(), 100.0 / 64.0);
     }
 
     #[test]
     fn data_without_a_spectrum_is_refused() {
-        assert_eq!(Spectrum::of(&[0.0; 7], 1.0), Err(SpectrumError::TooFew { samples: 7 }));
-        assert_eq!(Spectrum::of(&[f64::NAN; 8], 1.0), Err(SpectrumError::NotFinite));
-        assert_eq!(Spectrum::of(&[0.0; 8], 0.0), Err(SpectrumError::NotFinite));
+        assert_eq!(Spectrum::from_samples(&[0.0; 7], 1.0), Err(SpectrumError::TooFew { samples: 7 }));
+        assert_eq!(Spectrum::from_samples(&[f64::NAN; 8], 1.0), Err(SpectrumError::NotFinite));
+        assert_eq!(Spectrum::from_samples(&[0.0; 8], 0.0), Err(SpectrumError::NotFinite));
         let mut times: Vec<f64> = (0..20).map(|at| 1.0 + f64::from(at) * 1e-6).collect();
         assert!((sample_rate_hz(&times).unwrap() / 1e6 - 1.0).abs() < 1e-6);
         times[10] += 0.3e-6;

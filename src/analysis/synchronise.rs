@@ -43,7 +43,7 @@ pub struct AmbiguousPeriodError;
 
 impl Synchroniser {
     /// Greatest difference of the positions in steps of 1/32 period that is not a fault (U).
-    pub const MOST_STEPS: f64 = 14.0;
+    pub const MAX_STEPS: f64 = 14.0;
 
     pub fn new(periods: u64) -> Self {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
@@ -53,17 +53,17 @@ impl Synchroniser {
     ///
     /// # Errors
     /// Returns an [`AmbiguousPeriodError`] at exactly half a period.
-    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriodError> {
+    pub fn combine(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriodError> {
         /// Tolerance in steps for rounding at half a period.
-        const SLACK: f64 = 1e-9;
+        const ROUNDING_TOLERANCE: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
-        let difference = low - STEPS as f64 * phase.periods();
+        let difference = low - STEPS as f64 * phase.to_periods();
         // The offset may add several periods to the difference. Only the last one is to be decided.
         let periods = difference / STEPS as f64;
         let nearest = periods.round();
         let residual = periods - nearest;
-        if (residual.abs() - 0.5).abs() * (STEPS as f64) < SLACK || !residual.is_finite() {
+        if (residual.abs() - 0.5).abs() * (STEPS as f64) < ROUNDING_TOLERANCE || !residual.is_finite() {
             return Err(AmbiguousPeriodError);
         }
         let range = self.periods.max(1);
@@ -71,7 +71,7 @@ impl Synchroniser {
         let period = ((u128::from(absolute / STEPS) + u128::from(forward)) % u128::from(range)) as u64;
         let off = residual.abs() * STEPS as f64;
         let verdict = match off {
-            off if off > Self::MOST_STEPS => Verdict::Fault,
+            off if off > Self::MAX_STEPS => Verdict::Fault,
             off if off > 8.0 => Verdict::Warn,
             _ => Verdict::Ok,
         };
@@ -80,7 +80,7 @@ impl Synchroniser {
 
     /// Returns the fine position from a quadrature counter, which counts quarters of a period.
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
-        let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
+        let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.to_periods()).round();
         let range = u128::from(self.periods.max(1));
         // `nearest` is −1, 0 or 1. Adding the range once keeps the sum positive.
         let period = (u128::from(quarters / 4) + range).saturating_add_signed(nearest as i128) % range;
@@ -90,11 +90,11 @@ impl Synchroniser {
 
 impl SynchronisedPosition {
     pub fn periods(&self) -> f64 {
-        self.period as f64 + self.phase.periods()
+        self.period as f64 + self.phase.to_periods()
     }
 
     /// Returns the fine position with 2^`bits` steps per period, where `bits` is at most 32.
-    pub fn steps(&self, bits: u32) -> u128 {
+    pub fn steps_per_period(&self, bits: u32) -> u128 {
         (u128::from(self.period) << bits.min(32)) + u128::from(self.phase.step(bits))
     }
 }
@@ -104,7 +104,7 @@ impl SynchronisedPosition {
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {
-        let angle = TAU * ((absolute % STEPS) as f64 / STEPS as f64 - phase.periods());
+        let angle = TAU * ((absolute % STEPS) as f64 / STEPS as f64 - phase.to_periods());
         sine += angle.sin();
         cosine += angle.cos();
         count += 1;
@@ -137,19 +137,19 @@ mod tests {
             ("past the limit", 16, 0, 0.51, -1, 15.51, 0.49, Fault),
         ];
         for (label, periods, absolute, phi, k, fine, residual, verdict) in rows {
-            let told = Synchroniser::new(periods).synchronise(absolute, phase(phi)).unwrap();
+            let told = Synchroniser::new(periods).combine(absolute, phase(phi)).unwrap();
             assert_eq!((told.correction, told.verdict), (k, verdict), "{label}: {told:?}");
             assert!((told.periods() - fine).abs() < 1e-9, "{label}: {told:?}");
             assert!((told.residual_periods - residual).abs() < 6e-5, "{label}: {told:?}");
         }
-        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(AmbiguousPeriodError));
+        assert_eq!(Synchroniser::new(16).combine(0, phase(0.5)), Err(AmbiguousPeriodError));
     }
 
     #[test]
     fn positions_interpolate_to_sixteen_bits() {
-        let told = Synchroniser::new(1024).synchronise(0x2A5F, phase(0.02)).unwrap();
-        assert_eq!(told.steps(16), 0x0153_051E);
-        let degrees = told.steps(16) as f64 * 360.0 / (1024.0 * 65_536.0);
+        let told = Synchroniser::new(1024).combine(0x2A5F, phase(0.02)).unwrap();
+        assert_eq!(told.steps_per_period(16), 0x0153_051E);
+        let degrees = told.steps_per_period(16) as f64 * 360.0 / (1024.0 * 65_536.0);
         assert!((degrees - 119.186_715).abs() < 5e-7, "{degrees}");
     }
 
@@ -173,7 +173,7 @@ mod tests {
             let fine = f64::from(step) / 100.0;
             for drift in [-0.48, -0.2, 0.0, 0.2, 0.48] {
                 let absolute = ((fine + drift).rem_euclid(64.0) * 32.0) as u64;
-                let told = synchroniser.synchronise(absolute, phase(fine)).unwrap();
+                let told = synchroniser.combine(absolute, phase(fine)).unwrap();
                 assert!((told.periods() - fine).abs() < 1e-9, "{fine} {drift}: {told:?}");
                 assert!((told.residual_periods - drift).abs() <= 0.5 / 32.0 + 1e-9, "{fine} {drift}: {told:?}");
             }
@@ -193,7 +193,7 @@ mod tests {
         assert!((offset - -14.9).abs() < 0.05, "{offset}");
         let synchroniser = Synchroniser { offset_steps: offset, ..Synchroniser::new(64) };
         for (absolute, phase) in pairs {
-            let told = synchroniser.synchronise(absolute, phase).unwrap();
+            let told = synchroniser.combine(absolute, phase).unwrap();
             assert!(told.residual_periods.abs() < 0.02, "{told:?}");
         }
         assert_eq!(measure_offset([]), None);

@@ -17,12 +17,12 @@ impl SampleTime {
         SampleTime(nanoseconds)
     }
 
-    pub const fn nanoseconds(self) -> i64 {
+    pub const fn as_nanoseconds(self) -> i64 {
         self.0
     }
 
     /// Returns the point in time `nanoseconds` later, saturating at the end of the range.
-    pub const fn plus(self, nanoseconds: i64) -> Self {
+    pub const fn saturating_add_ns(self, nanoseconds: i64) -> Self {
         SampleTime(self.0.saturating_add(nanoseconds))
     }
 
@@ -55,16 +55,16 @@ mod tests {
     #[test]
     fn a_moment_keeps_its_nanoseconds() {
         let ten_days = Duration::new(864_000, 1);
-        assert_eq!(SampleTime::from(Moment::from_elapsed(ten_days)).nanoseconds(), 864_000_000_000_001);
-        assert_eq!(SampleTime::from(Moment::from_elapsed(Duration::MAX)).nanoseconds(), i64::MAX);
+        assert_eq!(SampleTime::from(Moment::from_elapsed(ten_days)).as_nanoseconds(), 864_000_000_000_001);
+        assert_eq!(SampleTime::from(Moment::from_elapsed(Duration::MAX)).as_nanoseconds(), i64::MAX);
     }
 
     #[test]
     fn differences_are_exact_after_days() {
         let late = SampleTime::from_nanoseconds(864_000_000_000_000);
-        assert_eq!(late.plus(1).nanoseconds_since(late), 1);
-        assert_eq!(late.plus(1).seconds_since(late), 1e-9);
-        assert_eq!(late.nanoseconds_since(late.plus(1)), -1);
-        assert_eq!(SampleTime::from_nanoseconds(i64::MAX).plus(1), SampleTime::from_nanoseconds(i64::MAX));
+        assert_eq!(late.saturating_add_ns(1).nanoseconds_since(late), 1);
+        assert_eq!(late.saturating_add_ns(1).seconds_since(late), 1e-9);
+        assert_eq!(late.nanoseconds_since(late.saturating_add_ns(1)), -1);
+        assert_eq!(SampleTime::from_nanoseconds(i64::MAX).saturating_add_ns(1), SampleTime::from_nanoseconds(i64::MAX));
     }
 }

@@ -30,7 +30,7 @@ impl PositionUnwrapper {
     }
 
     /// Marks a gap before the next sample.
-    pub fn gap(&mut self) {
+    pub fn mark_gap(&mut self) {
         self.gap = true;
     }
 
@@ -38,7 +38,7 @@ impl PositionUnwrapper {
     /// Returns `None` for a word outside the range, which counts as a gap.
     pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
-            self.gap();
+            self.mark_gap();
             return None;
         }
         let gap = std::mem::take(&mut self.gap);
@@ -91,9 +91,9 @@ mod tests {
     #[test]
     fn after_a_gap_the_distance_is_unknown() {
         let mut ring = PositionUnwrapper::rotary(100).unwrap();
-        ring.gap();
+        ring.mark_gap();
         assert_eq!(ring.next(98), Some(UnwrappedPosition { steps: 98, broken: false }));
-        ring.gap();
+        ring.mark_gap();
         assert_eq!(ring.next(2), Some(UnwrappedPosition { steps: 102, broken: true }));
         assert_eq!(ring.next(3), Some(UnwrappedPosition { steps: 103, broken: false }));
         assert_eq!(ring.next(100), None);
@@ -106,7 +106,7 @@ mod tests {
         let mut linear = PositionUnwrapper::without_wrap();
         assert_eq!(follow(linear, &[-5, 1 << 40, 0]), [(-5, false), (1 << 40, false), (0, false)]);
         linear.next(1);
-        linear.gap();
+        linear.mark_gap();
         assert_eq!(linear.next(9), Some(UnwrappedPosition { steps: 9, broken: true }));
     }
 

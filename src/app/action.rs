@@ -114,7 +114,7 @@ pub enum Done {
     },
     /// The attempt to open a link for a session has succeeded or failed.
     OpenedConnection(Attempt),
-    /// A search in the connection form of a tab has a result. See [`Done::finder`].
+    /// A search in the connection form of a tab has a result. See [`TaskResult::finder`].
     Finder(Tab, Payload),
     /// A task that belongs to no session has ended. Contains the function that handles its result.
     Shared(SharedResultHandler),
@@ -166,7 +166,7 @@ pub enum Done {
     },
     /// A task of one kind of device has ended, for one session. See `Done::device`.
     Device(SessionId, Payload),
-    /// A task of a tool has ended. See [`Done::tool`].
+    /// A task of a tool has ended. See [`TaskResult::tool`].
     Tool(Tab, Payload),
 }
 

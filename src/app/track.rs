@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Zoned};
 
-use crate::analysis::history::{Flags, Kind, Part, Value};
+use crate::analysis::history::{ColumnPart, Flags, Kind, Value};
 use crate::analysis::{MotionRates, SampleTime};
 use crate::app::closing::MUCH;
 use crate::app::recorder::{self, GroupId, Recorder, SeriesId};
@@ -148,7 +148,7 @@ impl<W: Watchable> DeviceRecorder<W> {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
         // The clock of the system may be set back.
-        let behind = self.newest.map_or(0, |newest| newest.nanoseconds().saturating_add(1));
+        let behind = self.newest.map_or(0, |newest| newest.as_nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
         self.gap();
     }
@@ -182,16 +182,16 @@ impl<W: Watchable> DeviceRecorder<W> {
         }
         let flags = &columns.flags;
         let parts = [
-            Part::whole(&columns.steps).with_flags(flags),
-            Part::real(&columns.speed).with_flags(flags),
-            Part::real(&columns.acceleration).with_flags(flags),
+            ColumnPart::from_integers(&columns.steps).with_flags(flags),
+            ColumnPart::from_reals(&columns.speed).with_flags(flags),
+            ColumnPart::from_reals(&columns.acceleration).with_flags(flags),
         ];
         // This cannot fail, because the times are in order and none is before the newest one.
         let _ = self.recorder.append(self.positions, &columns.times, &parts);
     }
 
     fn add_sample(&mut self, sighting: &PositionSample, columns: &mut Columns) {
-        let time = SampleTime::from(sighting.at).plus(self.shift);
+        let time = SampleTime::from(sighting.at).saturating_add_ns(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
             // This is a single reading, taken between two samples that are already recorded.
             return;
@@ -277,7 +277,7 @@ impl<W: Watchable> DeviceRecorder<W> {
             Some(Value::Real(real)) => ([real as i64], [real]),
             None => ([0], [f64::NAN]),
         };
-        let part = if what.is_whole() { Part::whole(&whole) } else { Part::real(&real) };
+        let part = if what.is_whole() { ColumnPart::from_integers(&whole) } else { ColumnPart::from_reals(&real) };
         // This cannot fail. The samples of a value arrive in the order of time, and the clock of a later session starts
         // after the last position.
         let _ = self.recorder.append(group, &[time], &[part.with_flags(&flags)]);
@@ -290,7 +290,8 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     pub fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
-        let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());
+        let all =
+            self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.indices());
         all.map_or(0, |all| all.end - all.start)
     }
 
@@ -362,7 +363,7 @@ impl<W: Watchable> DeviceRecorder<W> {
 
     /// Returns the name and the heading of a line that ends now.
     fn ended_line_name(&self, line: SeriesId) -> (Text, String) {
-        let newest = self.newest.map_or(0, SampleTime::nanoseconds);
+        let newest = self.newest.map_or(0, SampleTime::as_nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
         let until =
             until.map_or_else(|| format!("{:.1} s", newest as f64 / 1e9), |at| at.strftime("%H:%M:%S").to_string());
@@ -385,7 +386,7 @@ impl<W: Watchable> DeviceRecorder<W> {
     }
 
     fn time(&self, at: Moment) -> SampleTime {
-        SampleTime::from(at).plus(self.shift)
+        SampleTime::from(at).saturating_add_ns(self.shift)
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file_error::{FileError, FileErrorKind, FileOperation};
-use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, TableHints};
+use crate::analysis::capture::{Capture, CaptureError, HEAD_BYTES, Layout, TableHints, TableImport};
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadCaptureError {
@@ -43,7 +43,7 @@ pub fn read_capture(
     let mut file = File::open(path).map_err(failed)?;
     let total = file.metadata().map(|data| if data.is_file() { data.len() } else { 0 }).unwrap_or(0);
     let mut piece = Vec::with_capacity(PIECE);
-    let mut import: Option<Import> = None;
+    let mut import: Option<TableImport> = None;
     let mut done = 0;
     loop {
         if cancel.load(Ordering::Relaxed) {
@@ -51,12 +51,12 @@ pub fn read_capture(
         }
         piece.clear();
         // A single read from a pipe may return few bytes, but the first piece has to contain the head.
-        let read = (&mut file).take(PIECE.max(HEAD) as u64).read_to_end(&mut piece).map_err(failed)?;
+        let read = (&mut file).take(PIECE.max(HEAD_BYTES) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,
-            none => none.insert(Import::begin(&piece, hints)?),
+            none => none.insert(TableImport::from_head(&piece, hints)?),
         };
-        importing.feed(&piece)?;
+        importing.process(&piece)?;
         done += read as u64;
         progress(done, total);
         if read == 0 {
@@ -78,7 +78,7 @@ pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error: io::Error| FileErrorKind::from(error).of(FileOperation::Read, path);
     let mut head = Vec::new();
     if std::fs::metadata(path).map_err(failed)?.is_file() {
-        File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head)).map_err(failed)?;
+        File::open(path).and_then(|file| file.take(HEAD_BYTES as u64).read_to_end(&mut head)).map_err(failed)?;
     }
     Ok(head)
 }

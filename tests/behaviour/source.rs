@@ -2,7 +2,7 @@
 
 use encoder_studio::analysis::SampleTime;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
-use encoder_studio::analysis::nonlinearity::nonlinearity;
+use encoder_studio::analysis::nonlinearity::compute_nonlinearity;
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
 use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
@@ -21,7 +21,7 @@ fn diagnosed(settings: Settings) -> (Result<Analysis, AnalysisError>, Diagnosis)
     let (time_s, wires) = recorded(settings);
     let (sine_v, cosine_v) = (wires.sine_v(), wires.cosine_v());
     let samples = Samples { time_s: &time_s, sine_v: &sine_v, cosine_v: &cosine_v };
-    let analysis = Analysis::of(samples);
+    let analysis = Analysis::from_samples(samples);
     let references_v = Some((wires.refsin_v.as_slice(), wires.refcos_v.as_slice()));
     let record = Record { samples, references_v, periods: Some(512) };
     let told = diagnose(&record, analysis.as_ref(), &Limits::HIPERFACE);
@@ -117,7 +117,7 @@ fn eccentricity_is_integral_and_an_offset_differential_nonlinearity() {
     };
     let angles = wires.sine_v().iter().zip(wires.cosine_v()).map(|(y, x)| y.atan2(x).to_degrees()).collect();
     let measured: Vec<f64> = unwrapped(angles, 360.0).iter().map(|angle| angle / 512.0).collect();
-    let told = nonlinearity(&measured, &unwrapped(wires.reference_deg, 360.0), 512).unwrap();
+    let told = compute_nonlinearity(&measured, &unwrapped(wires.reference_deg, 360.0), 512).unwrap();
     near(told.integral_deg * 3_600.0, 100.0, 0.2);
     near(told.differential_deg * 3_600.0, 4.03, 0.05);
 }

@@ -1,6 +1,6 @@
 //! Parsers of files, links and entries.
 
-use encoder_studio::analysis::capture::{Import, TableHints, decode_head};
+use encoder_studio::analysis::capture::{TableHints, TableImport, decode_head};
 use encoder_studio::app::Settings;
 use encoder_studio::devices::biss::protocol::Description;
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
@@ -48,8 +48,8 @@ fn profiles() {
 fn captures() {
     fuzz("captures", &files("profiles/signals"), |bytes| {
         let _ = decode_head(bytes);
-        if let Ok(mut import) = Import::begin(bytes, &TableHints::default()) {
-            let fed: Result<Vec<()>, _> = bytes.chunks(1000).map(|part| import.feed(part)).collect();
+        if let Ok(mut import) = TableImport::from_head(bytes, &TableHints::default()) {
+            let fed: Result<Vec<()>, _> = bytes.chunks(1000).map(|part| import.process(part)).collect();
             if fed.is_ok() {
                 let _ = import.finish();
             }

@@ -105,8 +105,8 @@ fn positions_are_polled_and_recorded() {
     let positions = |desk: &Desk| {
         let recorder = desk.shown().recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
-        let samples = history.all().filter_map(|index| history.sample(0, index));
-        samples.map(|sample| (sample.time.nanoseconds(), sample.value)).collect::<Vec<_>>()
+        let samples = history.indices().filter_map(|index| history.sample(0, index));
+        samples.map(|sample| (sample.time.as_nanoseconds(), sample.value)).collect::<Vec<_>>()
     };
     desk.until("it has been recorded", |desk| positions(desk).len() > 30);
     desk.command(DeviceCommand::Poll(None));

@@ -143,12 +143,12 @@ fn a_register_is_watched_with_the_position() {
         let record = &studio.biss().unwrap().record;
         let watched = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
         let history = watched.and_then(|line| record.recorder().history(line));
-        record.positions() > 50 && history.is_some_and(|history| !history.all().is_empty())
+        record.positions() > 50 && history.is_some_and(|history| !history.indices().is_empty())
     });
     let recorder = encoder(&desk).record.recorder();
     let line = recorder.lines().iter().find(|line| line.heading.contains("temperature")).unwrap();
     let history = recorder.history(line).unwrap();
-    assert_eq!(history.sample(line.column(), history.all().start).unwrap().value.to_f64(), 30.0);
+    assert_eq!(history.sample(line.column(), history.indices().start).unwrap().value.to_f64(), 30.0);
     command(&mut desk, DeviceCommand::Poll(None));
 }
 

@@ -68,7 +68,7 @@ fn a_wire_is_used_by_the_encoder_or_the_scope() {
     desk.signals(Signals::Source(SourceAction::StartAdapter));
     let why = |phase: &Phase| matches!(phase, Phase::Lost(why) if why.id() == "session.let_go_for_signals");
     assert!(why(&encoder(&desk).session.phase));
-    desk.until("it samples", |studio| studio.signals().source().streaming().is_some());
+    desk.until("it samples", |studio| studio.signals().source().streaming_adapter().is_some());
     assert!(desk.studio.signals().source().adapter_problem().is_none());
     command(&mut desk, DeviceCommand::Reconnect);
     let source = desk.studio.signals().source();

@@ -25,9 +25,9 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     let recorder = encoder.record.recorder();
     let line = &recorder.lines()[0];
     let history = recorder.history(line).unwrap();
-    let samples: Vec<_> = history.all().filter_map(|at| history.sample(line.column(), at)).collect();
+    let samples: Vec<_> = history.indices().filter_map(|at| history.sample(line.column(), at)).collect();
     let breaks = samples.iter().filter(|own| own.flags != Flags::NONE).count();
-    (samples.iter().map(|own| (own.time.nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
+    (samples.iter().map(|own| (own.time.as_nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
 }
 
 /// Checks that all are 50 µs apart and follow the shaft: 655 360 steps per second are 32.768 per frame. Between two

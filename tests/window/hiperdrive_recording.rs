@@ -21,7 +21,7 @@ fn recorder(desk: &Desk) -> &Recorder {
 /// Returns the number of positions in a line, by its heading; none if there is no such line.
 fn samples(recorder: &Recorder, is_it: impl Fn(&str) -> bool) -> u64 {
     let line = recorder.lines().iter().find(|line| is_it(&line.heading));
-    let all = line.and_then(|line| recorder.history(line)).map(|history| history.all());
+    let all = line.and_then(|line| recorder.history(line)).map(|history| history.indices());
     all.map_or(0, |all| all.end - all.start)
 }
 

@@ -36,7 +36,7 @@ fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
 fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     let line = line(recorder, name);
     let history = recorder.history(line).unwrap();
-    let statistics = history.statistics(line.column(), history.all()).unwrap();
+    let statistics = history.statistics(line.column(), history.indices()).unwrap();
     (statistics.min.to_f64() * line.factor(), statistics.max.to_f64() * line.factor())
 }
 
@@ -86,9 +86,9 @@ fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
     let recorder = recorder(&desk);
     let history = recorder.history(line(recorder, "position")).unwrap();
     let flags = |index| history.sample(0, index).unwrap().flags;
-    let breaks = history.all().filter(|index| flags(*index).contains(Flags::BREAK)).count();
+    let breaks = history.indices().filter(|index| flags(*index).contains(Flags::BREAK)).count();
     assert!(breaks >= 1, "the line is broken where the cable was out");
-    let times: Vec<_> = history.all().map(|index| history.time(index).unwrap()).collect();
+    let times: Vec<_> = history.indices().map(|index| history.time(index).unwrap()).collect();
     assert!(times.is_sorted());
 }
 
@@ -164,7 +164,7 @@ fn watched_values_are_recorded_with_the_position() {
     desk.command(FAST);
     desk.until("the counter has come", |studio| {
         let recorder = &studio.hiperface().unwrap().record().recorder();
-        recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
+        recorder.history(line(recorder, "counter")).is_some_and(|history| history.indices().end > 0)
     });
     let recording = recorder(&desk);
     assert_eq!(extent(recording, "temperature"), (37.0, 37.0));
@@ -189,7 +189,7 @@ fn reading_a_position_while_polling_disturbs_nothing() {
     desk.act(Action::Stop);
     let recording = recorder(&desk);
     let history = recording.history(line(recording, "position")).unwrap();
-    let times: Vec<_> = history.all().map(|index| history.time(index).unwrap()).collect();
+    let times: Vec<_> = history.indices().map(|index| history.time(index).unwrap()).collect();
     assert!(times.is_sorted_by(|one, other| one < other), "none stands at another's time");
     let (slowest, fastest) = extent(recording, "speed");
     assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");

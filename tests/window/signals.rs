@@ -24,7 +24,7 @@ impl Desk {
     /// Polls until no file is being read.
     #[track_caller]
     pub(crate) fn until_measured(&mut self) {
-        self.until("the capture is read", |studio| studio.signals().reading().is_none());
+        self.until("the capture is read", |studio| studio.signals().capture_reading().is_none());
     }
 
     fn file(&self, name: &str, text: &str) -> PathBuf {
@@ -206,7 +206,7 @@ fn data_without_an_ellipse_is_shown_and_refused_with_a_reason() {
         desk.open_capture(&path);
         let measurement = desk.studio.signals().measurement().unwrap();
         assert!(measurement.raw.is_some() && measurement.corrected.is_none(), "{name}");
-        assert_eq!(measurement.refusal(Language::English).map(|why| why.id()), Some(told), "{name}");
+        assert_eq!(measurement.failure_text(Language::English).map(|why| why.id()), Some(told), "{name}");
     }
 }
 
@@ -219,7 +219,12 @@ fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     desk.act(Action::Open(large.clone()));
     assert!(desk.studio.can_stop());
     desk.act(Action::Escape);
-    assert!(desk.studio.signals().reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
+    assert!(
+        desk.studio
+            .signals()
+            .capture_reading()
+            .is_some_and(encoder_studio::signals::state::CaptureReading::is_cancelled)
+    );
     desk.until_measured();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
     assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(ExampleCapture::Healthy));
@@ -242,7 +247,7 @@ fn periods_are_clamped_to_their_range() {
     let mut desk = Desk { studio: Outside::new("").studio(), outside: Outside::new("") };
     for (wanted, taken) in [(0, 1), (512, 512), (u32::MAX, 65_536)] {
         desk.signals(Signals::SetPeriods(wanted));
-        assert_eq!(desk.studio.signals().periods(), Some(taken));
+        assert_eq!(desk.studio.signals().signal_periods(), Some(taken));
     }
 }
 
@@ -250,13 +255,13 @@ fn periods_are_clamped_to_their_range() {
 fn a_kept_capture_stays_while_others_are_opened() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
-    assert!(desk.studio.signals().comparison().is_none(), "there is nothing to keep");
+    assert!(desk.studio.signals().compared_result().is_none(), "there is nothing to keep");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until_measured();
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until_measured();
-    let kept = |studio: &Studio| studio.signals().comparison().map(|own| own.origin.clone());
+    let kept = |studio: &Studio| studio.signals().compared_result().map(|own| own.origin.clone());
     assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(ExampleCapture::Healthy))));
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(ExampleCapture::WithErrors))));
     desk.signals(Signals::DropComparison);
@@ -287,7 +292,7 @@ fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Periods, 512.0));
     desk.source(SourceAction::Start);
-    assert_eq!(desk.studio.signals().periods(), Some(512));
+    assert_eq!(desk.studio.signals().signal_periods(), Some(512));
     assert!(desk.studio.can_stop());
     // 512 periods per revolution at one revolution per second, in 0.2 s at 100 kHz.
     desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
@@ -326,7 +331,7 @@ fn holding_freezes_the_measurement_and_stopping_ends_it() {
     assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals().measurement().unwrap()));
     desk.source(SourceAction::Hold(false));
     desk.until_live("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
-    assert_eq!(desk.studio.signals().source().lost(), 0);
+    assert_eq!(desk.studio.signals().source().lost_samples(), 0);
     desk.act(Action::Escape);
     assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
     let last = desk.studio.signals().measurement().unwrap().clone();
@@ -368,10 +373,10 @@ fn a_window_that_is_not_drawn_counts_lost_samples() {
     desk.source(SourceAction::Start);
     // At most 200 000 samples wait: a fifth of a second at 1 MHz.
     let began = std::time::Instant::now();
-    while desk.studio.signals().source().lost() == 0 && began.elapsed() < crate::support::LONG {
+    while desk.studio.signals().source().lost_samples() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    assert!(desk.studio.signals().source().lost() > 0);
+    assert!(desk.studio.signals().source().lost_samples() > 0);
     // A build for tests is too slow for that.
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
     desk.until_live("it goes on", |own| own.samples == 10_000);

@@ -25,7 +25,7 @@ fn recorded(studio: &Studio) -> (u64, usize) {
     let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
-    (history.all().end, history.all().filter(is_break).count())
+    (history.indices().end, history.indices().filter(is_break).count())
 }
 
 /// The virtual adapter samples an encoder with 0.5 V and 1024 periods; a revolution takes ten seconds.
@@ -46,9 +46,9 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
         "there are two signals, not four wires"
     );
     assert_eq!(desk.studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap().lines().len(), 3);
-    let streaming = signals.source().streaming().unwrap();
+    let streaming = signals.source().streaming_adapter().unwrap();
     assert_eq!((streaming.period_ns, streaming.full_scale_microvolt), (20_000, 1_250_000));
-    assert_eq!((signals.source().lost(), signals.source().kind()), (0, SourceKind::Adapter));
+    assert_eq!((signals.source().lost_samples(), signals.source().kind()), (0, SourceKind::Adapter));
     desk.signals(Signals::Source(SourceAction::Stop));
     assert!(!desk.studio.signals().source().is_running());
     assert!(desk.studio.signals().measurement().is_some(), "what was measured last stays");
@@ -62,7 +62,7 @@ fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
     for round in 1..=3 {
         begin(&mut desk, &served.link(), 20_000);
         desk.until("a second of it is there", |studio| recorded(studio).0 > 20_000);
-        assert_eq!((recorded(&desk.studio).1, desk.studio.signals().source().lost()), (0, 0), "{round}");
+        assert_eq!((recorded(&desk.studio).1, desk.studio.signals().source().lost_samples()), (0, 0), "{round}");
         desk.signals(Signals::Source(SourceAction::Stop));
         // The next start waits until this one has released the connection.
     }
@@ -141,14 +141,14 @@ fn the_encoder_is_supplied_only_as_chosen() {
     let amplitude = |studio: &Studio| {
         let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
         let vector = recorder.lines().iter().find(|line| line.name.id() == "scope.vector").unwrap();
-        let last = recorder.history(vector).unwrap().all().end.checked_sub(1)?;
+        let last = recorder.history(vector).unwrap().indices().end.checked_sub(1)?;
         Some(recorder.history(vector).unwrap().sample(vector.column(), last)?.value.to_f64())
     };
     for (supply, supplied, volts) in [(None, None, 0.0), (Some(Family::Hiperface), Some((8_000, 37)), 0.5)] {
         desk.signals(Signals::Source(SourceAction::SetSupply(supply)));
         begin(&mut desk, "sim:?supply=switched&rpm=6", 10_000);
         desk.until("samples come", |studio| recorded(studio).0 > 100);
-        assert_eq!(desk.studio.signals().source().streaming().unwrap().supplied, supplied);
+        assert_eq!(desk.studio.signals().source().streaming_adapter().unwrap().supplied, supplied);
         assert!((amplitude(&desk.studio).unwrap() - volts).abs() < 0.01, "{supply:?}");
     }
     begin(&mut desk, "sim:?rpm=6", 10_000);

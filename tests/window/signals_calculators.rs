@@ -97,7 +97,7 @@ fn both_positions_are_read_from_the_selected_encoder() {
     screen.click("page.synchronise");
     for count in [1, 2] {
         screen.click("synchronise.read");
-        screen.until("it is read", |studio| studio.signals().synchronise().readings() == count);
+        screen.until("it is read", |studio| studio.signals().synchronise().reading_count() == count);
     }
     let form = &screen.studio().signals().synchronise().form;
     assert_eq!((form.absolute.as_str(), form.periods.as_str(), form.turns.as_str()), ("0xC98", "128", "4096"));
@@ -107,7 +107,7 @@ fn both_positions_are_read_from_the_selected_encoder() {
     screen.click("synchronise.use");
     assert_eq!(screen.studio().signals().synchronise().form.offset, "0.02");
     screen.click("synchronise.forget");
-    assert_eq!(screen.studio().signals().synchronise().readings(), 0);
+    assert_eq!(screen.studio().signals().synchronise().reading_count(), 0);
 }
 
 #[test]
@@ -116,6 +116,6 @@ fn a_turning_shaft_yields_no_reading() {
     desk.ask(Hiperface::ReadRest);
     desk.until("it is told", |studio| studio.signals().synchronise().problem.is_some());
     let state = desk.studio.signals().synchronise();
-    assert_eq!((state.problem.as_ref().unwrap().id(), state.readings()), ("encoder.moving", 0));
+    assert_eq!((state.problem.as_ref().unwrap().id(), state.reading_count()), ("encoder.moving", 0));
     assert!(desk.encoder().commutation.problem.is_none(), "it was not asked there");
 }

@@ -15,7 +15,7 @@ fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
     let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
-    (history.all().end, history.all().filter(is_break).collect())
+    (history.indices().end, history.indices().filter(is_break).collect())
 }
 
 #[test]
@@ -41,24 +41,24 @@ fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
-        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+        studio.signals().capture_reading().is_none() && studio.signals().measurement().is_some()
     });
     let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
-    assert_eq!((desk.studio.signals().periods(), judged(&desk.studio)), (None, None));
+    assert_eq!((desk.studio.signals().signal_periods(), judged(&desk.studio)), (None, None));
     desk.signals(Signals::SetPeriods(512));
     desk.signals(Signals::Example(ExampleCapture::WithErrors));
     desk.until("it is measured", |studio| {
-        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+        studio.signals().capture_reading().is_none() && studio.signals().measurement().is_some()
     });
-    assert_eq!(desk.studio.signals().periods(), Some(512), "what was typed stays");
+    assert_eq!(desk.studio.signals().signal_periods(), Some(512), "what was typed stays");
     desk.signals(Signals::Source(SourceAction::Start));
-    assert!(desk.studio.signals().periods().is_some());
+    assert!(desk.studio.signals().signal_periods().is_some());
     desk.signals(Signals::Source(SourceAction::Stop));
     desk.signals(Signals::Example(ExampleCapture::Healthy));
     desk.until("it is measured", |studio| {
-        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+        studio.signals().capture_reading().is_none() && studio.signals().measurement().is_some()
     });
-    assert_eq!(desk.studio.signals().periods(), None);
+    assert_eq!(desk.studio.signals().signal_periods(), None);
 }
 
 #[test]
@@ -73,10 +73,10 @@ fn periods_of_a_stopped_source_apply_to_its_measurement() {
     desk.signals(Signals::SetPeriods(16));
     desk.until("it is judged again", |studio| judged(studio) == Some(16));
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, -1.0)));
-    assert_eq!(desk.studio.signals().periods(), Some(16), "what is refused changes nothing");
+    assert_eq!(desk.studio.signals().signal_periods(), Some(16), "what is refused changes nothing");
     desk.signals(Signals::Source(SourceAction::Reset));
     assert_eq!(desk.studio.signals().source().settings().periods, 1024.0);
-    assert_eq!(desk.studio.signals().periods(), Some(1024));
+    assert_eq!(desk.studio.signals().signal_periods(), Some(1024));
     desk.until("it is judged again", |studio| judged(studio) == Some(1024));
 }
 
@@ -86,14 +86,14 @@ fn lost_samples_are_shown_until_the_next_start() {
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
     let began = std::time::Instant::now();
-    while desk.studio.signals().source().lost() == 0 && began.elapsed() < crate::support::LONG {
+    while desk.studio.signals().source().lost_samples() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     desk.signals(Signals::Source(SourceAction::Stop));
-    assert!(desk.studio.signals().source().lost() > 0);
+    assert!(desk.studio.signals().source().lost_samples() > 0);
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
-    assert_eq!(desk.studio.signals().source().lost(), 0);
+    assert_eq!(desk.studio.signals().source().lost_samples(), 0);
 }
 
 #[test]
@@ -102,9 +102,9 @@ fn a_file_being_read_does_not_replace_a_newer_source() {
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(2_000)).unwrap();
     desk.act(Action::Open(path));
-    assert!(desk.studio.signals().reading().is_some());
+    assert!(desk.studio.signals().capture_reading().is_some());
     desk.signals(Signals::Source(SourceAction::Start));
-    assert!(desk.studio.signals().reading().is_none());
+    assert!(desk.studio.signals().capture_reading().is_none());
     let began = std::time::Instant::now();
     desk.until("a file would have been read", |studio| {
         assert!(studio.signals().source().is_running());
@@ -126,7 +126,7 @@ fn a_kept_capture_keeps_no_samples() {
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // A circle of 100 samples per period.
-    assert_eq!(desk.studio.signals().comparison().unwrap().analysis.as_ref().unwrap().samples, 150_001);
+    assert_eq!(desk.studio.signals().compared_result().unwrap().analysis.as_ref().unwrap().samples, 150_001);
 }
 
 #[test]

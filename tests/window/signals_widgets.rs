@@ -15,7 +15,7 @@ const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
 impl Screen {
     fn signals(&mut self, action: Signals) {
         self.act(Action::tool(action));
-        self.until("it is read", |studio| studio.signals().reading().is_none());
+        self.until("it is read", |studio| studio.signals().capture_reading().is_none());
     }
 
     #[track_caller]
@@ -136,12 +136,12 @@ fn invalid_periods_are_refused_with_a_message() {
         screen.key(Key::Enter);
     };
     type_in(&mut screen, "512");
-    assert_eq!(screen.studio().signals().periods(), Some(512));
+    assert_eq!(screen.studio().signals().signal_periods(), Some(512));
     type_in(&mut screen, "0");
-    assert_eq!(screen.studio().signals().periods(), Some(512));
+    assert_eq!(screen.studio().signals().signal_periods(), Some(512));
     assert!(screen.shows("\"0\" is not a whole number from 1 to 65536."));
     type_in(&mut screen, "64");
-    assert_eq!(screen.studio().signals().periods(), Some(64));
+    assert_eq!(screen.studio().signals().signal_periods(), Some(64));
     assert!(!screen.shows("is not a whole number"));
 }
 
@@ -161,7 +161,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
     screen.click("page.error");
     assert!(screen.shows(&screen.say("error.kept_raw")));
     screen.click("compare.drop");
-    assert!(screen.studio().signals().comparison().is_none());
+    assert!(screen.studio().signals().compared_result().is_none());
     assert!(!screen.shows(&screen.say("error.kept_raw")));
 }
 

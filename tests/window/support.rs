@@ -204,7 +204,7 @@ impl Desk {
     pub(crate) fn bad_positions(&self) -> u64 {
         let recorder = &self.encoder().record().recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
-        history.statistics(0, history.all()).map_or(0, |statistics| statistics.bad)
+        history.statistics(0, history.indices()).map_or(0, |statistics| statistics.bad)
     }
 
     /// Creates a studio that has not begun.

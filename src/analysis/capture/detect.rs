@@ -4,9 +4,9 @@
 use super::CaptureError;
 use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, column_unit, is_unit};
-use super::import::{Number, is_no_value, number, whole};
+use super::import::{CellNumber, is_no_value, parse_number, to_integer};
 
-pub const HEAD: usize = 64 << 10;
+pub const HEAD_BYTES: usize = 64 << 10;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
@@ -71,7 +71,7 @@ struct HeaderLine {
 }
 
 impl Layout {
-    /// Detects the layout from the first [`HEAD`] bytes of a table, or from all bytes of a shorter table.
+    /// Detects the layout from the first [`HEAD_BYTES`] bytes of a table, or from all bytes of a shorter table.
     ///
     /// # Errors
     /// Returns a [`CaptureError`] if the bytes contain no table with sine and cosine.
@@ -85,12 +85,12 @@ impl Layout {
             true => CaptureError::OneColumn,
             false => CaptureError::NoNumbers,
         })?;
-        let lines = lines(text, delimiter);
+        let lines = split_lines(text, delimiter);
         let decimal_comma = hints.decimal_comma.unwrap_or_else(|| decimal_comma(&lines));
         let usual = most_common_width(&lines, decimal_comma);
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
-        let width = data.first().map_or(0, |line| filled(&line.fields));
+        let width = data.first().map_or(0, |line| count_filled_fields(&line.fields));
         // Rows without a value may lie between the names and the first complete row.
         let gaps = before.iter().rev().take_while(|line| is_gap(line, width, decimal_comma)).count();
         let (before, rows) = lines.split_at(first - gaps);
@@ -98,11 +98,12 @@ impl Layout {
         let clock = sample_clock(before, decimal_comma)?;
         let header = header(before, width);
         let names = header.first().cloned().unwrap_or_default();
-        let named = Columns::named(&names).map(|columns| fitting(columns, data.first(), decimal_comma));
-        let named = named.map(|columns| if clock.is_some() { columns.counted() } else { columns });
+        let named =
+            Columns::find_by_name(&names).map(|columns| drop_unsuitable_columns(columns, data.first(), decimal_comma));
+        let named = named.map(|columns| if clock.is_some() { columns.with_sample_counter() } else { columns });
         let columns = match (hints.columns, named) {
             (Some(columns), _) | (None, Some(columns)) => columns,
-            (None, None) if width >= 3 => Columns::PLAIN,
+            (None, None) if width >= 3 => Columns::TIME_SINE_COSINE,
             (None, None) if width == 1 => return Err(CaptureError::OneColumn),
             (None, None) => return Err(CaptureError::TooFewColumns { columns: width }),
         };
@@ -128,21 +129,22 @@ impl Layout {
 
 /// Removes columns whose first value does not fit. A reference angle must be a number, and an absolute position must be
 /// a whole number.
-fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
+fn drop_unsuitable_columns(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
-        field.map_or(Number::Text, |field| number(field, decimal_comma))
+        field.map_or(CellNumber::Text, |field| parse_number(field, decimal_comma))
     };
-    let angle = columns.reference_angle.filter(|column| matches!(read(*column), Number::Finite(_)));
-    let absolute =
-        columns.absolute.filter(|column| matches!(read(*column), Number::Finite(value) if whole(value).is_some()));
+    let angle = columns.reference_angle.filter(|column| matches!(read(*column), CellNumber::Finite(_)));
+    let absolute = columns
+        .absolute
+        .filter(|column| matches!(read(*column), CellNumber::Finite(value) if to_integer(value).is_some()));
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
 /// Returns the head without a truncated last line; `read` is the number of bytes read.
 fn complete_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
-        Some(end) if read + 3 >= HEAD => head.get(..=end).unwrap_or(head),
+        Some(end) if read + 3 >= HEAD_BYTES => head.get(..=end).unwrap_or(head),
         _ => head,
     }
 }
@@ -155,9 +157,9 @@ fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<Sam
     let named = before.iter().enumerate().find_map(|(row, line)| Some((row, places(line)?)));
     let Some((row, (start, increment))) = named else { return Ok(None) };
     let below = before.get(row + 1);
-    let value = |column: usize| match number(below?.fields.get(column)?, decimal_comma) {
-        Number::Finite(value) => Some(value),
-        Number::NotFinite | Number::Text => None,
+    let value = |column: usize| match parse_number(below?.fields.get(column)?, decimal_comma) {
+        CellNumber::Finite(value) => Some(value),
+        CellNumber::NotFinite | CellNumber::Text => None,
     };
     match (value(start), value(increment)) {
         (Some(start_s), Some(increment_s)) if increment_s > 0.0 => Ok(Some(SampleClock { start_s, increment_s })),
@@ -173,10 +175,10 @@ fn delimiter(text: &[u8]) -> Option<Delimiter> {
 }
 
 fn has_numbers(text: &[u8]) -> bool {
-    text.split(|byte| *byte == b'\n').any(|line| !matches!(number(line.trim_ascii(), true), Number::Text))
+    text.split(|byte| *byte == b'\n').any(|line| !matches!(parse_number(line.trim_ascii(), true), CellNumber::Text))
 }
 
-fn lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
+fn split_lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
     let lines = text.split(|byte| *byte == b'\n').enumerate();
     lines
         .filter(|(_, line)| !line.trim_ascii().is_empty())
@@ -204,7 +206,7 @@ fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
 
 /// Returns whether at least one number has a decimal comma and none has a decimal point.
 fn decimal_comma(lines: &[HeaderLine]) -> bool {
-    let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
+    let numeric = |field: &&Vec<u8>| matches!(parse_number(field, true), CellNumber::Finite(_));
     let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
     has(b',') && !has(b'.')
 }
@@ -212,47 +214,50 @@ fn decimal_comma(lines: &[HeaderLine]) -> bool {
 /// Returns whether a line is a data row. In a data row all fields are numbers, or at least half of them if the row has
 /// the usual width. A malformed number in the first row is thus reported as an error and not taken for a header.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
-    let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
+    let (numbers, width) = (count_numbers(line, decimal_comma), count_filled_fields(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
 /// Returns whether a row contains at least one number and all its other fields are empty or have no value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
-    let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
+    let is_text = |field: &Vec<u8>| matches!(parse_number(field, decimal_comma), CellNumber::Text);
     line.fields.len() >= width
         && line.fields.iter().any(|field| !is_text(field))
         && line.fields.iter().all(|field| !is_text(field) || is_no_value(field))
 }
 
-fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
-    line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
+fn count_numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
+    line.fields.iter().filter(|field| !matches!(parse_number(field, decimal_comma), CellNumber::Text)).count()
 }
 
 /// Returns the most frequent width of the rows in which at least half the fields are numbers, or the larger width in a
 /// tie.
 fn most_common_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
-    for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
-        *counts.entry(filled(&line.fields)).or_default() += 1;
+    for line in lines.iter().filter(|line| 2 * count_numbers(line, decimal_comma) >= count_filled_fields(&line.fields))
+    {
+        *counts.entry(count_filled_fields(&line.fields)).or_default() += 1;
     }
     counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
 }
 
 /// Returns the number of fields up to the last non-empty one. Some programs end each line with a delimiter.
-fn filled(fields: &[Vec<u8>]) -> usize {
+fn count_filled_fields(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
 /// Returns the column names and, if present, the units. They are the last lines before the data that have as many
 /// columns as the data.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
-    let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
+    let wide = |line: &&HeaderLine| {
+        count_filled_fields(&line.fields) >= width.min(2) && count_filled_fields(&line.fields) + 1 >= width
+    };
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&normalise_header_field(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
     // The second of two lines has the units. Otherwise, the first line is no part of the header. A field in the second
     // line that is not a unit may be a count ("Sequence") or a number from the header.
-    let is_named = |line: &Vec<String>| Columns::named(line).is_some();
+    let is_named = |line: &Vec<String>| Columns::find_by_name(line).is_some();
     let units = |line: &Vec<String>| {
         !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
     };

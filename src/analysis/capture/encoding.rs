@@ -25,13 +25,13 @@ pub(super) struct Utf8Decoder {
 }
 
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
-    Utf8Decoder::of(head).decode(head)
+    Utf8Decoder::detect(head).decode(head)
 }
 
 impl Utf8Decoder {
     /// Detects the encoding from the beginning of a table. UTF-16 without a byte order mark is recognised by the zero
     /// bytes in the first two characters.
-    pub(super) fn of(head: &[u8]) -> Self {
+    pub(super) fn detect(head: &[u8]) -> Self {
         let (encoding, mark) = match head {
             [0xEF, 0xBB, 0xBF, ..] => (Encoding::Bytes, 3),
             [0xFF, 0xFE, ..] => (Encoding::Utf16Le, 2),
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     fn decoded(bytes: &[u8], pieces: usize) -> Vec<u8> {
-        let mut decoder = Utf8Decoder::of(bytes);
+        let mut decoder = Utf8Decoder::detect(bytes);
         let mut out = Vec::new();
         for piece in bytes.chunks(pieces) {
             out.extend_from_slice(&decoder.decode(piece));

@@ -35,7 +35,7 @@ pub enum VoltUnit {
 
 impl Columns {
     /// Columns for time, sine and cosine, in this order.
-    pub const PLAIN: Columns =
+    pub const TIME_SINE_COSINE: Columns =
         Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
     /// Returns the highest column number in use.
@@ -46,7 +46,7 @@ impl Columns {
     }
 
     /// Returns the same columns with the first column as the time, because it counts samples.
-    pub(super) fn counted(self) -> Columns {
+    pub(super) fn with_sample_counter(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();
         let is_taken = others.into_iter().chain([refsin, refcos]).any(|column| column == Some(1));
@@ -54,7 +54,7 @@ impl Columns {
     }
 
     /// Finds the columns by name. Returns `None` if sine or cosine is missing.
-    pub(super) fn named(names: &[String]) -> Option<Columns> {
+    pub(super) fn find_by_name(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
             let at = names.iter().position(|name| known.contains(&name_without_unit(name).as_str()));
             at.map(|at| at + 1)
@@ -154,19 +154,20 @@ mod tests {
     use super::*;
 
     fn named(names: &str) -> Option<Columns> {
-        Columns::named(&names.split('|').map(str::to_owned).collect::<Vec<_>>())
+        Columns::find_by_name(&names.split('|').map(str::to_owned).collect::<Vec<_>>())
     }
 
     #[test]
     fn columns_are_recognized_by_name() {
-        let plain = Some(Columns::PLAIN);
+        let plain = Some(Columns::TIME_SINE_COSINE);
         for names in ["time|sin|cos", "Time [ms]|Sine (V)|Cosine (V)", "t/s|SIN_mV|COS_mV", "Zeit|Sinus|Kosinus"] {
             assert_eq!(named(names), plain, "{names}");
         }
-        let expected = Columns { time: Some(5), sine: 1, cosine: 3, references: Some((2, 4)), ..Columns::PLAIN };
+        let expected =
+            Columns { time: Some(5), sine: 1, cosine: 3, references: Some((2, 4)), ..Columns::TIME_SINE_COSINE };
         assert_eq!(named("SIN|REFSIN|COS|REFCOS|t"), Some(expected));
         assert_eq!(expected.last(), 5);
-        let untimed = Columns { time: None, sine: 2, cosine: 1, ..Columns::PLAIN };
+        let untimed = Columns { time: None, sine: 2, cosine: 1, ..Columns::TIME_SINE_COSINE };
         assert_eq!(named("cos|sin"), Some(untimed));
         for names in ["a|b|c", "time|sin|x", ""] {
             assert_eq!(named(names), None, "{names}");

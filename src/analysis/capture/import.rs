@@ -3,13 +3,13 @@
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
-use super::detect::{HEAD, Layout, TableHints};
+use super::detect::{HEAD_BYTES, Layout, TableHints};
 use super::encoding::Utf8Decoder;
 use super::header::Columns;
 use super::{Capture, CaptureError, Wires};
 
 #[derive(Debug)]
-pub struct Import {
+pub struct TableImport {
     layout: Layout,
     reader: Reader,
     /// Fields of the current row, without delimiters and quotes. `ends` holds the end of each field.
@@ -36,7 +36,7 @@ struct ColumnChoice {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Number {
+pub(super) enum CellNumber {
     Finite(f64),
     NotFinite,
     Text,
@@ -45,23 +45,23 @@ pub(super) enum Number {
 /// Maximum length of a row in bytes. Input with a longer row is not a table.
 const LONGEST_ROW: usize = 1 << 20;
 /// Minimum number of rows in a measurement. A shorter table is rejected at its first missing value.
-const LEAST_ROWS: u64 = 6;
+const MIN_ROWS: u64 = 6;
 /// Maximum number of characters of an invalid field shown in a message.
-const SHOWN: usize = 24;
+const MAX_EXCERPT_CHARS: usize = 24;
 
-impl Import {
+impl TableImport {
     /// Begins an import with the first [`HEAD`] bytes of a table, or with all bytes of a shorter table. The bytes are
     /// only examined here. They must be [fed](Self::feed) as well.
     ///
     /// # Errors
     /// Returns the same errors as [`Layout::detect`].
-    pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
-        let head = head.get(..HEAD).unwrap_or(head);
-        let import = Import::with(Layout::detect(head, hints)?);
-        Ok(Import { decoder: Utf8Decoder::of(head), ..import })
+    pub fn from_head(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
+        let head = head.get(..HEAD_BYTES).unwrap_or(head);
+        let import = TableImport::with_layout(Layout::detect(head, hints)?);
+        Ok(TableImport { decoder: Utf8Decoder::detect(head), ..import })
     }
 
-    pub fn with(layout: Layout) -> Self {
+    pub fn with_layout(layout: Layout) -> Self {
         let taken = ColumnChoice {
             columns: layout.columns,
             seconds: match layout.clock {
@@ -78,7 +78,7 @@ impl Import {
             absolute: layout.columns.absolute.map(|_| Vec::new()),
             ..Capture::default()
         };
-        Import {
+        TableImport {
             reader: ReaderBuilder::new().delimiter(layout.delimiter.byte()).build(),
             layout,
             row: vec![0; 1024],
@@ -86,7 +86,7 @@ impl Import {
             ends: vec![0; 64],
             ended: 0,
             last: None,
-            decoder: Utf8Decoder::of(&[]),
+            decoder: Utf8Decoder::detect(&[]),
             first_left_out: None,
             taken,
             capture,
@@ -105,11 +105,11 @@ impl Import {
     ///
     /// # Errors
     /// Returns a [`CaptureError`] that names the row and the column.
-    pub fn feed(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
+    pub fn process(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
         let decoded = self.decoder.decode(bytes);
         let mut rest = &*decoded;
         while !rest.is_empty() {
-            let used = self.step(rest)?;
+            let used = self.split_next_row(rest)?;
             rest = rest.get(used..).unwrap_or_default();
         }
         Ok(())
@@ -125,12 +125,12 @@ impl Import {
             return Err(self.open_quote());
         }
         // End of the input: a row without a line end stops at this point and may be truncated.
-        if let Err(error) = self.step(&[]) {
+        if let Err(error) = self.split_next_row(&[]) {
             self.skip_row(self.reader.line(), error);
         }
         let (taken, left_out) = (self.capture.sine_v.len() as u64, self.capture.left_out);
         match self.first_left_out {
-            Some((_, error)) if taken < LEAST_ROWS => Err(error),
+            Some((_, error)) if taken < MIN_ROWS => Err(error),
             Some((row, _)) if left_out > taken => Err(CaptureError::NoValues { left_out, rows: taken + left_out, row }),
             _ if taken == 0 => Err(CaptureError::NoNumbers),
             _ => Ok((self.layout, self.capture)),
@@ -153,7 +153,7 @@ impl Import {
     }
 
     /// Calls the splitter once and returns the number of bytes used.
-    fn step(&mut self, bytes: &[u8]) -> Result<usize, CaptureError> {
+    fn split_next_row(&mut self, bytes: &[u8]) -> Result<usize, CaptureError> {
         let row = self.row.get_mut(self.written..).unwrap_or_default();
         let ends = self.ends.get_mut(self.ended..).unwrap_or_default();
         let (result, used, written, ended) = self.reader.read_record(bytes, row, ends);
@@ -174,7 +174,7 @@ impl Import {
                 // After a row that ended with a line break, the splitter is already on the next line.
                 let line = self.reader.line() - u64::from(self.last == Some(b'\n'));
                 if line >= self.layout.first_row
-                    && let Some(missing) = self.taken.take(&self.row, ends, line, &mut self.capture)?
+                    && let Some(missing) = self.taken.append_row(&self.row, ends, line, &mut self.capture)?
                 {
                     self.skip_row(line, missing);
                 }
@@ -188,7 +188,7 @@ impl Import {
 
 impl ColumnChoice {
     /// Adds a row to the capture. Returns the error for the missing value if the row is skipped.
-    fn take(
+    fn append_row(
         &self,
         row: &[u8],
         ends: &[usize],
@@ -219,7 +219,7 @@ impl ColumnChoice {
         let steps = match (steps, columns.absolute) {
             (Some(steps), Some(column)) => {
                 let not_whole = || CaptureError::NotWhole { row: line, column, text: steps.to_string() };
-                Some(whole(steps).ok_or_else(not_whole)?)
+                Some(to_integer(steps).ok_or_else(not_whole)?)
             }
             _ => None,
         };
@@ -247,13 +247,13 @@ impl ColumnChoice {
 
     fn time(&self, row: &[u8], ends: &[usize], line: u64, column: usize) -> Result<f64, CaptureError> {
         let field = self.field(row, ends, line, column)?;
-        match number(field, self.comma) {
-            Number::Finite(value) if self.counts && whole(value).is_none() => {
-                Err(CaptureError::NotASampleNumber { row: line, column, text: shown(field) })
+        match parse_number(field, self.comma) {
+            CellNumber::Finite(value) if self.counts && to_integer(value).is_none() => {
+                Err(CaptureError::NotASampleNumber { row: line, column, text: display_field(field) })
             }
-            Number::Finite(value) => Ok(value),
-            Number::NotFinite => Err(CaptureError::NotFinite { row: line, column, text: shown(field) }),
-            Number::Text => Err(CaptureError::NotANumber { row: line, column, text: shown(field) }),
+            CellNumber::Finite(value) => Ok(value),
+            CellNumber::NotFinite => Err(CaptureError::NotFinite { row: line, column, text: display_field(field) }),
+            CellNumber::Text => Err(CaptureError::NotANumber { row: line, column, text: display_field(field) }),
         }
     }
 
@@ -266,12 +266,12 @@ impl ColumnChoice {
         column: usize,
     ) -> Result<Result<f64, CaptureError>, CaptureError> {
         let field = self.field(row, ends, line, column)?;
-        let not_a_number = || CaptureError::NotANumber { row: line, column, text: shown(field) };
-        match number(field, self.comma) {
-            Number::Finite(value) => Ok(Ok(value)),
-            Number::NotFinite => Ok(Err(CaptureError::NotFinite { row: line, column, text: shown(field) })),
-            Number::Text if is_no_value(field) => Ok(Err(not_a_number())),
-            Number::Text => Err(not_a_number()),
+        let not_a_number = || CaptureError::NotANumber { row: line, column, text: display_field(field) };
+        match parse_number(field, self.comma) {
+            CellNumber::Finite(value) => Ok(Ok(value)),
+            CellNumber::NotFinite => Ok(Err(CaptureError::NotFinite { row: line, column, text: display_field(field) })),
+            CellNumber::Text if is_no_value(field) => Ok(Err(not_a_number())),
+            CellNumber::Text => Err(not_a_number()),
         }
     }
 
@@ -288,47 +288,47 @@ impl ColumnChoice {
 /// Returns whether a field means "no value" in an instrument's notation. Such a field is empty, has only dashes, or
 /// reports an overload.
 pub(super) fn is_no_value(field: &[u8]) -> bool {
-    const WORDS: [&str; 10] =
+    const KNOWN_WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
     let text = String::from_utf8_lossy(field).to_lowercase();
-    text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
+    text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || KNOWN_WORDS.contains(&text.as_str())
 }
 
 /// Returns the value as an integer. Returns `None` beyond 2⁵³, where an `f64` cannot hold every integer.
-pub(super) fn whole(value: f64) -> Option<i64> {
-    const MOST: f64 = (1_i64 << 53) as f64;
-    (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
+pub(super) fn to_integer(value: f64) -> Option<i64> {
+    const MAX_EXACT_INTEGER: f64 = (1_i64 << 53) as f64;
+    (value.fract() == 0.0 && value.abs() <= MAX_EXACT_INTEGER).then_some(value as i64)
 }
 
 /// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37). See SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
 /// Parses a field without surrounding spaces.
-pub(super) fn number(field: &[u8], comma: bool) -> Number {
+pub(super) fn parse_number(field: &[u8], comma: bool) -> CellNumber {
     let field = field.strip_prefix(b"+").filter(|rest| rest.first() != Some(&b'-')).unwrap_or(field);
     let parsed = match field.iter().position(|byte| *byte == b',') {
         Some(at) if comma => parse_with_decimal_comma(field, at),
         _ => fast_float2::parse::<f64, _>(field).ok(),
     };
     match parsed {
-        Some(value) if value.is_finite() && !NO_VALUE.contains(&value.abs()) => Number::Finite(value),
-        Some(_) => Number::NotFinite,
-        None => Number::Text,
+        Some(value) if value.is_finite() && !NO_VALUE.contains(&value.abs()) => CellNumber::Finite(value),
+        Some(_) => CellNumber::NotFinite,
+        None => CellNumber::Text,
     }
 }
 
 fn parse_with_decimal_comma(field: &[u8], comma: usize) -> Option<f64> {
     /// Maximum length of a number. No double with sign and exponent needs as many digits.
-    const LONGEST: usize = 64;
-    let mut copy = [0; LONGEST];
+    const MAX_NUMBER_LEN: usize = 64;
+    let mut copy = [0; MAX_NUMBER_LEN];
     let copy = copy.get_mut(..field.len())?;
     copy.copy_from_slice(field);
     *copy.get_mut(comma)? = b'.';
     fast_float2::parse(copy).ok()
 }
 
-fn shown(field: &[u8]) -> String {
+fn display_field(field: &[u8]) -> String {
     let text = String::from_utf8_lossy(field);
-    let short: String = text.chars().take(SHOWN).collect();
+    let short: String = text.chars().take(MAX_EXCERPT_CHARS).collect();
     if short.len() < text.len() { short + "…" } else { short }
 }

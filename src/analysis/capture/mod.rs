@@ -10,10 +10,10 @@ mod encoding;
 mod header;
 mod import;
 
-pub use detect::{Delimiter, HEAD, Layout, SampleClock, TableHints};
+pub use detect::{Delimiter, HEAD_BYTES, Layout, SampleClock, TableHints};
 pub use encoding::decode_head;
 pub use header::{Columns, TimeUnit, VoltUnit};
-pub use import::Import;
+pub use import::TableImport;
 
 use super::wiring::Wires;
 

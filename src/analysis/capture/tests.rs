@@ -1,13 +1,13 @@
 //! Tables as instruments write them, and tables that are none.
 
-use super::super::import::Import;
+use super::super::import::TableImport;
 use super::*;
 use crate::analysis::capture::Capture;
 
 fn read_in_pieces(pieces: usize, text: &[u8], wishes: &TableHints) -> Result<(Layout, Capture), CaptureError> {
-    let mut import = Import::begin(text, wishes)?;
+    let mut import = TableImport::from_head(text, wishes)?;
     for piece in text.chunks(pieces) {
-        import.feed(piece)?;
+        import.process(piece)?;
     }
     import.finish()
 }
@@ -68,14 +68,14 @@ fn the_detected_layout_is_returned_and_can_be_overridden() {
         decimal_comma: true,
         first_row: 2,
         names: ["Time (ms)", "A (mV)", "B (mV)"].map(str::to_owned).to_vec(),
-        columns: Columns::PLAIN,
+        columns: Columns::TIME_SINE_COSINE,
         time_unit: TimeUnit::Milliseconds,
         volts_per_unit: 1e-3,
         clock: None,
     };
     assert_eq!(layout, expected);
     let wishes = TableHints {
-        columns: Some(Columns { time: None, sine: 3, cosine: 2, ..Columns::PLAIN }),
+        columns: Some(Columns { time: None, sine: 3, cosine: 2, ..Columns::TIME_SINE_COSINE }),
         volts_per_unit: Some(2.0),
         ..TableHints::default()
     };
@@ -146,7 +146,7 @@ fn reference_and_absolute_position_columns_are_recognized() {
         assert_eq!(layout.columns.reference_angle.is_some(), expected.0.is_some(), "{text}");
     }
     let wishes = TableHints {
-        columns: Some(Columns { reference_angle: Some(4), absolute: Some(5), ..Columns::PLAIN }),
+        columns: Some(Columns { reference_angle: Some(4), absolute: Some(5), ..Columns::TIME_SINE_COSINE }),
         ..TableHints::default()
     };
     let (_, capture) = read_in_pieces(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", &wishes).unwrap();

@@ -4,7 +4,7 @@
 use std::mem::discriminant;
 
 use super::lines::Interference;
-use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, Severity, severity};
+use super::{Diagnosis, DiagnosisFinding, FindingKind, MIN_LINE, OutOfLimits, Severity, severity};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DiagnosisChanges {
@@ -25,11 +25,11 @@ pub enum ComparisonObstacle {
 }
 
 /// Factor above which a disturbance counts as increased.
-const MORE: f64 = 1.5;
+const DISTURBANCE_INCREASE: f64 = 1.5;
 /// Factor above which an ellipse parameter counts as further outside its limits.
-const FURTHER: f64 = 1.1;
+const LIMIT_EXCESS_INCREASE: f64 = 1.1;
 /// Minimum noise increase that is reported, as a fraction of the amplitude.
-const LEAST_NOISE: f64 = 0.001;
+const MIN_NOISE: f64 = 0.001;
 /// Relative difference from which an amplitude counts as changed.
 const AMPLITUDE: f64 = 0.02;
 
@@ -44,7 +44,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
                 let what = FindingKind::AmplitudeChanged { from_v, to_v };
                 changes.changed.push(DiagnosisFinding { severity: Severity::Notice, kind: what });
             }
-            disturbances(before, after, to_v, &mut changes);
+            compare_disturbances(before, after, to_v, &mut changes);
         }
         (None, _) => changes.untold.push(ComparisonObstacle::NoEllipseBefore),
         (Some(_), None) => changes.untold.push(ComparisonObstacle::NoEllipseAfter),
@@ -54,14 +54,14 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> DiagnosisChanges {
 }
 
 /// Compares noise and spectral lines by magnitude.
-fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut DiagnosisChanges) {
+fn compare_disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut DiagnosisChanges) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
         changes.untold.push(ComparisonObstacle::NoSpectrum);
         return;
     };
     if let (Some(from_v), Some(to_v)) = (before.noise_v, after.noise_v)
-        && to_v >= MORE * from_v
-        && to_v - from_v >= LEAST_NOISE * amplitude
+        && to_v >= DISTURBANCE_INCREASE * from_v
+        && to_v - from_v >= MIN_NOISE * amplitude
     {
         let what = FindingKind::NoiseRose { from_v, to_v };
         changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what });
@@ -87,22 +87,26 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         // In the first capture, another finding may have explained the residual.
         FindingKind::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
-                (Some(before), Some(after)) => after >= FURTHER * before,
+                (Some(before), Some(after)) => after >= LIMIT_EXCESS_INCREASE * before,
                 _ => false,
             };
         }
         _ => {}
     }
-    let same = |other: &&DiagnosisFinding| covers(&other.kind, &finding.kind);
+    let same = |other: &&DiagnosisFinding| is_same_or_worse(&other.kind, &finding.kind);
     let Some(earlier) = before.findings.iter().find(same) else { return true };
-    let factor = if matches!(finding.kind, FindingKind::Limit(_) | FindingKind::Level { .. }) { FURTHER } else { MORE };
+    let factor = if matches!(finding.kind, FindingKind::Limit(_) | FindingKind::Level { .. }) {
+        LIMIT_EXCESS_INCREASE
+    } else {
+        DISTURBANCE_INCREASE
+    };
     let comparable = discriminant(&earlier.kind) == discriminant(&finding.kind);
     finding.severity > earlier.severity
         || comparable && finding_magnitude(&finding.kind) >= factor * finding_magnitude(&earlier.kind)
 }
 
 /// Returns whether the earlier finding is of the same kind as the later one, or a worse form of it.
-fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
+fn is_same_or_worse(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),
         (FindingKind::Half { .. }, FindingKind::Limit(OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_)))
@@ -151,7 +155,7 @@ fn increase_finding(
     let same = earlier.iter().filter(|other| (other.frequency_hz - line.frequency_hz).abs() <= 2.0 * spacing_hz);
     let from_v = same.map(|other| other.volts).fold(0.0, f64::max);
     let to_v = line.volts;
-    if to_v < MORE * from_v || to_v - from_v < LEAST_LINE * amplitude {
+    if to_v < DISTURBANCE_INCREASE * from_v || to_v - from_v < MIN_LINE * amplitude {
         return None;
     }
     let (frequency_hz, common) = (line.frequency_hz, line.common);

@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::LEAST_LINE;
+use super::MIN_LINE;
 use crate::analysis::ellipse::EllipseCorrection;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
@@ -22,28 +22,28 @@ const MULTIPLES: f64 = 10.0;
 const MAINS_SPACING_HZ: f64 = 10.0;
 
 /// Preferred minimum length of the examined record in seconds. It is ten mains periods.
-const SECONDS: f64 = 0.2;
+const PREFERRED_SECONDS: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
 /// Minimum number of periods. With fewer, the signal's own line covers the whole spectrum.
-const LEAST_PERIODS: f64 = 8.0;
+const MIN_PERIODS: f64 = 8.0;
 /// Number of signal harmonics skipped, for even and for uneven motion. The wide harmonics of an uneven motion cover
 /// much of the spectrum and do not stand out as lines, so fewer are skipped.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
-const REACH: usize = 3;
+const HARMONIC_HALF_WIDTH: usize = 3;
 /// Fraction of the peak down to which lines count towards the width of the signal's line.
 const WIDTH: f64 = 0.01;
 /// Number of lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
 /// Factor above the median of the neighbouring lines from which a line does not count as noise.
-const ABOVE: f64 = 6.0;
+const LINE_TO_NOISE_RATIO: f64 = 6.0;
 /// Maximum number of lines reported.
-const MOST: usize = 8;
+const MAX_LINES: usize = 8;
 /// Permitted share of an interference line along the radius, which is the direction of the signal vector.
-const RADIAL: Range<f64> = 0.25..0.75;
+const RADIAL_SHARE: Range<f64> = 0.25..0.75;
 /// Phase difference in radians up to which both channels count as in phase.
-const IN_PHASE: f64 = TAU / 12.0;
+const IN_PHASE_RAD: f64 = TAU / 12.0;
 
 /// Spectral line that is not a harmonic of the signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,24 +76,24 @@ pub(super) struct SpectrumContent {
 
 /// Finds the interference lines. Returns `None` if the samples are not evenly spaced, are too few, or cover too few
 /// periods.
-pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
+pub(super) fn find_interference(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
-    let wanted = (SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
+    let wanted = (PREFERRED_SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
     let length = wanted.clamp(SAMPLES.0, SAMPLES.1).min(count);
     // The middle of the record, where a motion is steadiest.
     let start = (count - length) / 2;
     let rate_hz = sample_rate_hz(all.get(start..start + length)?).ok()?;
-    if analysis.coverage.periods * length as f64 / (count as f64) < LEAST_PERIODS {
+    if analysis.coverage.periods * length as f64 / (count as f64) < MIN_PERIODS {
         return None;
     }
     let without = |values: &[f64]| {
         let mut values = values.get(start..start + length).unwrap_or_default().to_vec();
-        hold(&mut values, start, analysis);
+        replace_outliers(&mut values, start, analysis);
         values
     };
     let (sine, cosine) = (without(samples.sine_v), without(samples.cosine_v));
-    let spectra = (Spectrum::of(&sine, rate_hz).ok()?, Spectrum::of(&cosine, rate_hz).ok()?);
+    let spectra = (Spectrum::from_samples(&sine, rate_hz).ok()?, Spectrum::from_samples(&cosine, rate_hz).ok()?);
     let both: Vec<f64> = spectra
         .0
         .amplitudes_v()
@@ -104,7 +104,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     let is_signal = signal(&both);
     let rest: Vec<f64> =
         both.iter().zip(&is_signal).filter(|(_, signal)| !**signal).map(|(height, _)| *height).collect();
-    let noise_v = noise(median(rest)?, length);
+    let noise_v = noise_from_median(median(rest)?, length);
     let projector =
         FrequencyProbe { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
     let spacing_hz = spectra.0.spacing_hz();
@@ -114,12 +114,12 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
             let louder =
                 |at: usize| magnitude_at(spectra.0.amplitudes_v(), at) > magnitude_at(spectra.1.amplitudes_v(), at);
             let spectrum = if louder(at) { &spectra.0 } else { &spectra.1 };
-            projector.line(spectrum.interpolate_peak(at).frequency_hz)
+            projector.strong_line_at(spectrum.interpolate_peak(at).frequency_hz)
         })
-        .filter(|found| found.line.volts >= LEAST_LINE * analysis.ellipse.amplitude_v)
+        .filter(|found| found.line.volts >= MIN_LINE * analysis.ellipse.amplitude_v)
         .collect();
     found.sort_by(|a, b| b.line.volts.total_cmp(&a.line.volts));
-    found.truncate(MOST);
+    found.truncate(MAX_LINES);
     let radial_v2 = found.iter().map(|found| found.radial_v2).sum();
     let mut lines: Vec<Interference> = found.into_iter().map(|found| found.line).collect();
     assign_mains_frequencies(&mut lines, spacing_hz);
@@ -127,7 +127,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
 }
 
 /// Replaces each outlier by the preceding value. A spike would raise every line.
-fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
+fn replace_outliers(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     for stretch in stretches.iter().filter(|stretch| stretch.start < end && stretch.end > start) {
@@ -147,7 +147,7 @@ fn magnitude_at(lines: &[f64], at: usize) -> f64 {
 /// harmonics aliased at half the sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
-    let first = REACH.min(both.len());
+    let first = HARMONIC_HALF_WIDTH.min(both.len());
     let peak =
         (first..both.len()).max_by(|a, b| magnitude_at(both, *a).total_cmp(&magnitude_at(both, *b))).unwrap_or(0);
     // An uneven motion widens a line, and each harmonic in proportion to its order.
@@ -156,11 +156,11 @@ fn signal(both: &[f64]) -> Vec<bool> {
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
     let width = up.max(down).saturating_sub(1);
     let whole = 2 * both.len().saturating_sub(1).max(1);
-    let even = width <= REACH;
+    let even = width <= HARMONIC_HALF_WIDTH;
     for order in 0..=if even { HARMONICS.0 } else { HARMONICS.1 } {
         let place = order * peak % whole;
         let place = place.min(whole - place);
-        let reach = if even { REACH + order / 2 } else { width * order.max(1) };
+        let reach = if even { HARMONIC_HALF_WIDTH + order / 2 } else { width * order.max(1) };
         let (from, to) = (place.saturating_sub(reach), (place + reach + 1).min(both.len()));
         belongs.get_mut(from..to).unwrap_or_default().fill(true);
     }
@@ -173,17 +173,19 @@ fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usiz
         .filter(|at| {
             let own = magnitude_at(both, *at);
             let peak = own >= magnitude_at(both, at - 1) && own > magnitude_at(both, at + 1);
-            free(*at) && peak && own >= LEAST_LINE / 2.0 * amplitude
+            free(*at) && peak && own >= MIN_LINE / 2.0 * amplitude
         })
         .collect();
     found.sort_by(|a, b| magnitude_at(both, *b).total_cmp(&magnitude_at(both, *a)));
     let mut taken: Vec<usize> = Vec::new();
     // Lines at noise level are never reported, no matter how many exist.
-    for at in found.into_iter().take(4 * MOST) {
-        let near =
-            (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS).filter(|other| free(*other) && other.abs_diff(at) > REACH);
+    for at in found.into_iter().take(4 * MAX_LINES) {
+        let near = (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS)
+            .filter(|other| free(*other) && other.abs_diff(at) > HARMONIC_HALF_WIDTH);
         let floor = median(near.map(|other| magnitude_at(both, other)).collect()).unwrap_or(0.0);
-        if magnitude_at(both, at) >= ABOVE * floor && taken.iter().all(|other| other.abs_diff(at) > REACH) {
+        if magnitude_at(both, at) >= LINE_TO_NOISE_RATIO * floor
+            && taken.iter().all(|other| other.abs_diff(at) > HARMONIC_HALF_WIDTH)
+        {
             taken.push(at);
         }
     }
@@ -192,7 +194,7 @@ fn peak_candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usiz
 
 /// Returns the white noise of one channel from the median line of both channels combined. The power of such a line is
 /// a sum of four squared normal variables, whose median is 3.3567 times their variance.
-fn noise(median: f64, samples: usize) -> f64 {
+fn noise_from_median(median: f64, samples: usize) -> f64 {
     const MEDIAN: f64 = 3.356_694;
     // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, Σw² = 3n/8.
     median * samples as f64 / 4.0 / (MEDIAN * 3.0 * samples as f64 / 16.0).sqrt()
@@ -228,7 +230,7 @@ struct Complex {
 }
 
 impl Complex {
-    fn times(self, factor: f64) -> Self {
+    fn scaled(self, factor: f64) -> Self {
         Complex { re: self.re * factor, im: self.im * factor }
     }
 
@@ -240,7 +242,7 @@ impl Complex {
         Complex { re: self.re * by.re - self.im * by.im, im: self.re * by.im + self.im * by.re }
     }
 
-    fn square(self) -> f64 {
+    fn magnitude_squared(self) -> f64 {
         self.re * self.re + self.im * self.im
     }
 }
@@ -256,27 +258,28 @@ struct FrequencyProbe<'a> {
 
 impl FrequencyProbe<'_> {
     /// Returns the line at a frequency. Returns `None` if it is not interference.
-    fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
-        let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
-        let stretch = self.correction.stretch();
+    fn strong_line_at(&self, frequency_hz: f64) -> Option<StrongLine> {
+        let [sine, cosine, along_sine, along_cosine] = self.amplitudes_at(frequency_hz);
+        let stretch = self.correction.correction_factors();
         // The correction is linear, so it can be applied to the line instead of the samples.
-        let corrected = sine.times(stretch.1).plus(cosine.times(stretch.0)).square() + cosine.square();
-        let radial = (along_sine.square() + along_cosine.square()) / corrected;
-        if !RADIAL.contains(&radial.sqrt()) {
+        let corrected =
+            sine.scaled(stretch.1).plus(cosine.scaled(stretch.0)).magnitude_squared() + cosine.magnitude_squared();
+        let radial = (along_sine.magnitude_squared() + along_cosine.magnitude_squared()) / corrected;
+        if !RADIAL_SHARE.contains(&radial.sqrt()) {
             return None;
         }
-        let (sine_v, cosine_v) = (sine.square().sqrt(), cosine.square().sqrt());
+        let (sine_v, cosine_v) = (sine.magnitude_squared().sqrt(), cosine.magnitude_squared().sqrt());
         let apart = (sine.im * cosine.re - sine.re * cosine.im).atan2(sine.re * cosine.re + sine.im * cosine.im);
         let equal = (0.5..2.0).contains(&(sine_v / cosine_v));
-        let common = equal && apart.abs() < IN_PHASE;
+        let common = equal && apart.abs() < IN_PHASE_RAD;
         let line = Interference { frequency_hz, volts: sine_v.max(cosine_v), common, mains_hz: None };
         // Half of the sum of both channels' mean squares is radial.
-        Some(StrongLine { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
+        Some(StrongLine { line, radial_v2: (sine.magnitude_squared() + cosine.magnitude_squared()) / 4.0 })
     }
 
     /// Returns the amplitude and phase, in a Hann window, of sine, cosine and the radial component of the corrected
     /// values.
-    fn at(&self, frequency_hz: f64) -> [Complex; 4] {
+    fn amplitudes_at(&self, frequency_hz: f64) -> [Complex; 4] {
         let count = self.sine.len() as f64;
         let turn = |angle: f64| Complex { re: angle.cos(), im: angle.sin() };
         let (step, window_step) = (turn(TAU * frequency_hz / self.rate_hz), turn(TAU / count));
@@ -291,11 +294,11 @@ impl FrequencyProbe<'_> {
             let x = x - self.analysis.ellipse.offset_cosine_v;
             let weight = 1.0 - window.re;
             for (sum, value) in sums.iter_mut().zip([y, x, off * own_y, off * own_x]) {
-                *sum = sum.plus(phasor.times(weight * value));
+                *sum = sum.plus(phasor.scaled(weight * value));
             }
             (phasor, window) = (phasor.multiply(step), window.multiply(window_step));
         }
         // The weights have a mean of 1, and a sine contributes half its amplitude at its frequency.
-        sums.map(|sum| sum.times(2.0 / count))
+        sums.map(|sum| sum.scaled(2.0 / count))
     }
 }

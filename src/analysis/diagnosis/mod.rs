@@ -17,17 +17,17 @@ pub use lines::Interference;
 
 use super::ellipse::{FitError, SignalChannel};
 use super::position_error::Samples;
-use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, within};
+use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, is_within};
 use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
 /// Fraction of the amplitude below which hum and interference are not reported.
-pub const LEAST_LINE: f64 = 0.002;
+pub const MIN_LINE: f64 = 0.002;
 /// Fraction of the amplitude from which a disturbance is a warning and not a notice. It corresponds to an error of 0.6
 /// electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
 /// Range of the ratio of both amplitudes in which the weaker channel has lost one of its two wires.
-const HALF: (f64, f64) = (0.4, 0.6);
+const HALF_AMPLITUDE_RATIO: (f64, f64) = (0.4, 0.6);
 /// Voltage difference up to which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
 /// Levels in volts below and above which a wire counts as shorted to ground or to a supply.
@@ -35,12 +35,12 @@ const RAILS_V: (f64, f64) = (0.5, 4.5);
 /// Fraction of samples excluded from the fit from which spikes are a warning.
 const MANY_SPIKES: f64 = 1e-3;
 /// Number of consecutive outliers from which the cause is an intermittent contact and not a spike.
-const LETS_GO: usize = 16;
+const INTERMITTENT_SAMPLES: usize = 16;
 /// Amplitude modulation over a revolution from which it is reported, and from which it is a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// Fraction of the residual's mean square that other findings must explain.
-const EXPLAINED: f64 = 0.7;
+const EXPLAINED_FRACTION: f64 = 0.7;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
@@ -73,21 +73,21 @@ pub struct Diagnosis {
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
     let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
-    levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
+    check_mean_levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
     match analysis {
         Err(error) => diagnose_without_ellipse(record, error, &mut say),
         Ok(analysis) => {
             let amplitude = analysis.ellipse.amplitude_v;
             parameters(analysis, limits, &mut say);
-            let seen = lines::look(&record.samples, analysis);
+            let seen = lines::find_interference(&record.samples, analysis);
             let noise_v = seen.as_ref().map_or(analysis.coverage.residual_rms * amplitude, |seen| seen.noise_v);
-            disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
-            let harmonics = shape::harmonics(&record.samples, analysis);
+            report_disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
+            let harmonics = shape::strongest_harmonic(&record.samples, analysis);
             let modulation =
                 record.periods.and_then(|periods| shape::amplitude_modulation(&record.samples, analysis, periods));
-            shapes(record, analysis, harmonics, modulation, &mut say);
-            trust::times(analysis, &mut say);
-            trust::correction(analysis, &mut say);
+            report_shape(record, analysis, harmonics, modulation, &mut say);
+            trust::check_times(analysis, &mut say);
+            trust::check_correction(analysis, &mut say);
             if let Some(what) = trust::uncertainty_finding(&diagnosis.findings) {
                 diagnosis.findings.push(DiagnosisFinding { severity: Severity::Warning, kind: what });
             }
@@ -95,7 +95,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
                 seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
             let by_shape = [harmonics.map(|(_, share)| share), modulation].into_iter().flatten();
             let explained = by_lines + by_shape.map(|share| share * share / 2.0).sum::<f64>();
-            diagnosis.explained = explained >= EXPLAINED * analysis.coverage.residual_rms.powi(2);
+            diagnosis.explained = explained >= EXPLAINED_FRACTION * analysis.coverage.residual_rms.powi(2);
             diagnosis.remove_explained_findings();
             diagnosis.residual = Some(analysis.coverage.residual_rms);
             diagnosis.amplitude_v = Some(amplitude);
@@ -131,7 +131,7 @@ impl Diagnosis {
         };
         diagnosis.findings.retain(|finding| !depends(&finding.kind));
         let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
-        levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
+        check_mean_levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
         if let Ok(analysis) = analysis {
             parameters(analysis, limits, &mut say);
         }
@@ -152,12 +152,16 @@ fn severity(share: f64) -> Severity {
 }
 
 /// Reports mean levels of REFSIN and REFCOS, in volts, that are outside their limits.
-fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
+fn check_mean_levels(
+    levels_v: Option<(Option<f64>, Option<f64>)>,
+    limits: &Limits,
+    say: &mut dyn FnMut(Severity, FindingKind),
+) {
     let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;
     for (wire, level) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
         if let Some(volts) = level
-            && !within(volts, ok_v)
+            && !is_within(volts, ok_v)
         {
             say(Severity::Warning, FindingKind::Level { wire, volts, ok_v });
         }
@@ -171,13 +175,13 @@ fn diagnose_without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mu
         AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, FindingKind::Still),
         AnalysisError::Fit(FitError::Line) => say(Severity::Fault, FindingKind::Same),
         AnalysisError::Fit(FitError::Dead(channel)) => {
-            say(Severity::Fault, FindingKind::Dead { channel: *channel, stuck: stuck(record, *channel) });
+            say(Severity::Fault, FindingKind::Dead { channel: *channel, stuck: stuck_level(record, *channel) });
         }
         _ => {}
     }
 }
 
-fn stuck(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
+fn stuck_level(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
     let references = record.references_v.unwrap_or_default();
     let (values, reference, wires) = match channel {
         SignalChannel::Sine => (record.samples.sine_v, references.0, (Wire::Sin, Wire::Refsin)),
@@ -200,9 +204,9 @@ fn stuck(record: &Record<'_>, channel: SignalChannel) -> StuckLevel {
 /// has one.
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
-    let half = if within(1.0 / ratio, HALF) {
+    let half = if is_within(1.0 / ratio, HALF_AMPLITUDE_RATIO) {
         Some((SignalChannel::Sine, 1.0 / ratio))
-    } else if within(ratio, HALF) {
+    } else if is_within(ratio, HALF_AMPLITUDE_RATIO) {
         Some((SignalChannel::Cosine, ratio))
     } else {
         None
@@ -214,7 +218,7 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
     if let Some(what) = single {
         say(Severity::Fault, what);
     }
-    for found in limits.judge(&analysis.ellipse, analysis.coverage.residual_rms) {
+    for found in limits.check_ellipse(&analysis.ellipse, analysis.coverage.residual_rms) {
         if single.is_some() && trust::is_caused_by_single_ended(&found) {
             continue;
         }
@@ -229,7 +233,7 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
     }
 }
 
-fn disturbances(
+fn report_disturbances(
     amplitude: f64,
     noise_v: f64,
     seen: Option<&lines::SpectrumContent>,
@@ -255,7 +259,7 @@ fn disturbances(
     }
 }
 
-fn shapes(
+fn report_shape(
     record: &Record<'_>,
     analysis: &Analysis,
     harmonics: Option<(usize, f64)>,
@@ -267,7 +271,7 @@ fn shapes(
     {
         say(Severity::Warning, FindingKind::Harmonics { order, share });
     }
-    for (channel, volts, samples) in shape::clipping(&record.samples, analysis) {
+    for (channel, volts, samples) in shape::find_clipping(&record.samples, analysis) {
         say(Severity::Warning, FindingKind::Clipping { channel, volts, samples });
     }
     if let Some(share) = modulation
@@ -279,7 +283,7 @@ fn shapes(
     if let Some(outliers) = &analysis.outliers {
         let many = outliers.count as f64 > MANY_SPIKES * analysis.samples as f64;
         let severity = if many { Severity::Warning } else { Severity::Notice };
-        if outliers.longest >= LETS_GO {
+        if outliers.longest >= INTERMITTENT_SAMPLES {
             let (count, longest) = (outliers.count, outliers.longest);
             say(Severity::Fault, FindingKind::LetsGo { count, longest });
         } else {

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use crate::analysis::ellipse::SignalChannel;
-use crate::analysis::outliers::kept;
+use crate::analysis::outliers::remaining_ranges;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
 
@@ -17,26 +17,26 @@ const SAMPLES: usize = 1 << 18;
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 const OF_REVOLUTION: usize = 36;
 /// Number of samples per period that suffices to follow the angle.
-const FOLLOWED: f64 = 16.0;
+const SAMPLES_PER_PERIOD: f64 = 16.0;
 
 /// Distance from the end of the range within which a sample counts as at the end, as a fraction of the amplitude.
-const AT_END: f64 = 0.002;
+const END_DISTANCE: f64 = 0.002;
 /// Fraction of samples at the end of the range from which a channel counts as clipped. An unclipped sine has a third of
 /// it: √(2·0.002)/π = 2 %.
-const CUT_OFF: f64 = 3.0 * 0.0201;
+const CLIPPED_FRACTION: f64 = 3.0 * 0.0201;
 /// Minimum number of periods. All samples of a shaft at rest are at one level, which looks like clipping.
-const LEAST_PERIODS: f64 = 2.0;
+const MIN_PERIODS: f64 = 2.0;
 /// Minimum RMS distance of a clipped sine from its ellipse, as a fraction of the amplitude.
-const LEAST_RESIDUAL: f64 = 0.002;
+const MIN_RESIDUAL: f64 = 0.002;
 
 /// Returns the strongest order of the distance from the ellipse over the period, and its peak as a fraction of the
 /// amplitude. Returns `None` if part of the period has no samples.
-pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
+pub(super) fn strongest_harmonic(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); SECTORS];
     // An odd stride does not fall in step with a period of 2ⁿ samples.
     let stride = (analysis.samples / SAMPLES) | 1;
-    for (y, x) in good(samples, analysis).step_by(stride) {
+    for (y, x) in included_samples(samples, analysis).step_by(stride) {
         let (y, x) = correction.apply(y, x);
         let share = (y.atan2(x) / TAU).rem_euclid(1.0);
         if let Some((sum, count)) = sectors.get_mut((share * SECTORS as f64) as usize) {
@@ -62,27 +62,27 @@ pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(u
 }
 
 /// Returns the clipped channels, each with its clipping voltage and the fraction of samples at that voltage.
-pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(SignalChannel, f64, f64)> {
-    if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
+pub(super) fn find_clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(SignalChannel, f64, f64)> {
+    if analysis.coverage.periods < MIN_PERIODS || analysis.coverage.residual_rms < MIN_RESIDUAL {
         return Vec::new();
     }
     let ellipse = &analysis.ellipse;
     let channels = [
         (
             SignalChannel::Sine,
-            good(samples, analysis).map(|(y, _)| y).collect::<Vec<f64>>(),
+            included_samples(samples, analysis).map(|(y, _)| y).collect::<Vec<f64>>(),
             ellipse.amplitude_sine_v(),
         ),
-        (SignalChannel::Cosine, good(samples, analysis).map(|(_, x)| x).collect(), ellipse.amplitude_v),
+        (SignalChannel::Cosine, included_samples(samples, analysis).map(|(_, x)| x).collect(), ellipse.amplitude_v),
     ];
     let mut found = Vec::new();
     for (channel, values, amplitude) in channels {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for end in [least, most] {
-            let standing = values.iter().filter(|value| (*value - end).abs() <= AT_END * amplitude).count();
+            let standing = values.iter().filter(|value| (*value - end).abs() <= END_DISTANCE * amplitude).count();
             let share = standing as f64 / values.len().max(1) as f64;
-            if share >= CUT_OFF {
+            if share >= CLIPPED_FRACTION {
                 found.push((channel, end, share));
             }
         }
@@ -99,9 +99,9 @@ pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, p
     }
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); OF_REVOLUTION];
-    let stride = ((analysis.samples as f64 / analysis.coverage.periods / FOLLOWED) as usize).max(1);
+    let stride = ((analysis.samples as f64 / analysis.coverage.periods / SAMPLES_PER_PERIOD) as usize).max(1);
     let (mut place, mut last) = (0.0, None);
-    for (y, x) in good(samples, analysis).step_by(stride) {
+    for (y, x) in included_samples(samples, analysis).step_by(stride) {
         let (y, x) = correction.apply(y, x);
         let phase = y.atan2(x) / TAU;
         let step: f64 = phase - last.unwrap_or(phase);
@@ -123,10 +123,10 @@ pub(super) fn amplitude_modulation(samples: &Samples<'_>, analysis: &Analysis, p
 }
 
 /// Returns the sine and cosine of the samples that were not excluded.
-fn good<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
+fn included_samples<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
     let (sine, cosine) = (samples.sine_v, samples.cosine_v);
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
-    kept(sine.len().min(cosine.len()), left_out).flat_map(move |part| {
+    remaining_ranges(sine.len().min(cosine.len()), left_out).flat_map(move |part| {
         let values = |values: &'a [f64]| values.get(part.clone()).unwrap_or_default().iter().copied();
         values(sine).zip(values(cosine))
     })

@@ -59,7 +59,7 @@ impl Made {
 
     fn diagnosed(&self) -> Diagnosis {
         let record = self.record();
-        diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::HIPERFACE)
+        diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::HIPERFACE)
     }
 
     /// Returns the only finding, apart from uncertain parameters if it is a disturbance.
@@ -263,7 +263,7 @@ fn levels_of_the_references_are_judged_by_the_family() {
     };
     near(volts, 3.2, 1e-9);
     let record = capture.record();
-    let narrow = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::TTK70);
+    let narrow = diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::TTK70);
     assert_eq!(narrow.findings.len(), 2);
 }
 
@@ -292,7 +292,7 @@ fn the_worst_finding_comes_first_and_limits_are_the_familys() {
     let severities: Vec<Severity> = capture.diagnosed().findings.iter().map(|finding| finding.severity).collect();
     assert_eq!(severities, [Severity::Warning, Severity::Warning, Severity::Notice]);
     let record = capture.record();
-    let wide = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::AFS_AFM60);
+    let wide = diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::AFS_AFM60);
     assert_eq!(wide.findings.len(), 2, "0.84 V is good there: {wide:?}");
 }
 
@@ -421,7 +421,7 @@ fn other_limits_apply_without_the_samples() {
     let mut capture = ellipse(0.84, 0.03, 0.0);
     capture.references = Some((vec![2.25; COUNT], vec![2.5; COUNT]));
     let record = capture.record();
-    let analysis = Analysis::of(record.samples);
+    let analysis = Analysis::from_samples(record.samples);
     let by = |limits| diagnose(&record, analysis.as_ref(), limits);
     let again = by(&Limits::HIPERFACE).with_new_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::TTK70);
     assert_eq!(again, by(&Limits::TTK70));
@@ -437,7 +437,7 @@ fn empty_captures_are_diagnosed_without_a_panic() {
             references_v: Some((&[], &[])),
             periods: Some(0),
         };
-        let told = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::HIPERFACE);
+        let told = diagnose(&record, Analysis::from_samples(record.samples).as_ref(), &Limits::HIPERFACE);
         assert_eq!(told, Diagnosis::default());
     }
     let mut capture = made(steady, |_, _, signal| signal);

@@ -11,10 +11,10 @@ use crate::analysis::signal_analysis::Analysis;
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
 /// Factor by which a harmful correction increases the error. The increase must also exceed `LARGER_DEG`.
-const LARGER: f64 = 1.1;
-const LARGER_DEG: f64 = 0.2;
+const HARMFUL_FACTOR: f64 = 1.1;
+const HARMFUL_EXCESS_DEG: f64 = 0.2;
 
-pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
+pub(super) fn check_times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     if let Some(sample) = analysis.continuity.back {
         say(Severity::Warning, FindingKind::TimeBack { sample });
     }
@@ -31,10 +31,10 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
 
 /// Checks for an ellipse that mistakes harmonics for gain or phase errors, which doubles them. Only the error from a
 /// motion reveals this, because the distance from the ellipse contains noise.
-pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
+pub(super) fn check_correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ErrorBasis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_peak_to_peak_deg(), analysis.error.corrected_pp_deg);
-    if corrected_deg > LARGER * raw_deg && corrected_deg - raw_deg > LARGER_DEG.max(noise_deg) {
+    if corrected_deg > HARMFUL_FACTOR * raw_deg && corrected_deg - raw_deg > HARMFUL_EXCESS_DEG.max(noise_deg) {
         say(Severity::Warning, FindingKind::CorrectionHarms { raw_deg, corrected_deg });
     }
 }

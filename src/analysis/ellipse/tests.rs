@@ -14,7 +14,7 @@ const REFERENCE: Ellipse = Ellipse {
 
 /// Returns the samples of the model at evenly spread angles from `start` periods on.
 fn signals(ellipse: &Ellipse, count: usize, start: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
-    (0..count).map(|i| ellipse.at(TAU * (start + periods * i as f64 / count as f64))).unzip()
+    (0..count).map(|i| ellipse.point_at(TAU * (start + periods * i as f64 / count as f64))).unzip()
 }
 
 #[track_caller]
@@ -28,8 +28,9 @@ fn assert_close(found: &Ellipse, expected: &Ellipse, tolerance: f64) {
 /// Section 7, `Test`: the coefficients were computed with Python.
 #[test]
 fn the_reference_coefficients_yield_the_reference_ellipse() {
-    let conic = Conic { a: 4.032_438_057, b: 4.445_762_958, c: 0.443_187_154, d: -0.148_001_908, e: 0.257_882_034 };
-    assert_close(&conic.ellipse().unwrap(), &REFERENCE, 1e-9);
+    let conic =
+        ConicCoefficients { a: 4.032_438_057, b: 4.445_762_958, c: 0.443_187_154, d: -0.148_001_908, e: 0.257_882_034 };
+    assert_close(&conic.to_ellipse().unwrap(), &REFERENCE, 1e-9);
 }
 
 #[test]
@@ -42,7 +43,7 @@ fn the_model_yields_the_voltages_of_section_7() {
         (270.0, 0.02, -0.505_538),
     ];
     for (degrees, x, y) in rows {
-        let (sine, cosine) = REFERENCE.at(f64::to_radians(degrees));
+        let (sine, cosine) = REFERENCE.point_at(f64::to_radians(degrees));
         assert!((cosine - x).abs() < 5e-7 && (sine - y).abs() < 5e-7, "{degrees}: {cosine} {sine}");
     }
 }
@@ -105,7 +106,7 @@ fn a_fit_in_chunks_equals_a_fit_in_one() {
     let (sine, cosine) = signals(&REFERENCE, 20_000, 0.1, 12.3);
     let mut moments = Moments::new(super::super::moments::Scale::new(0.0, 0.0, 0.5));
     for (sine, cosine) in sine.chunks(333).zip(cosine.chunks(333)) {
-        moments.add(sine, cosine).unwrap();
+        moments.add_samples(sine, cosine).unwrap();
     }
     assert_eq!(moments.count(), 20_000);
     assert_close(&Ellipse::from_moments(&moments).unwrap(), &REFERENCE, 1e-12);

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use super::flags::{FlagBlock, Flags};
 use super::number::Number;
-use super::spread::{RunningStatistics, combine_spreads, extremes, extremes_of_eight};
-use super::{BLOCK, FAN};
+use super::spread::{RunningStatistics, combine_spreads, extremes_of_eight, min_and_max};
+use super::{BLOCK, PYRAMID_FACTOR};
 
 #[derive(Clone, Copy)]
 struct BucketLevel {
@@ -18,12 +18,13 @@ struct BucketLevel {
 
 /// Levels between the samples and the whole block, coarsest first, as they are stored.
 const LEVELS: [BucketLevel; 3] = [
-    BucketLevel { size: FAN * FAN * FAN, start: 0 },
-    BucketLevel { size: FAN * FAN, start: FAN },
-    BucketLevel { size: FAN, start: FAN + FAN * FAN },
+    BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR * PYRAMID_FACTOR, start: 0 },
+    BucketLevel { size: PYRAMID_FACTOR * PYRAMID_FACTOR, start: PYRAMID_FACTOR },
+    BucketLevel { size: PYRAMID_FACTOR, start: PYRAMID_FACTOR + PYRAMID_FACTOR * PYRAMID_FACTOR },
 ];
 
-const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
+const BUCKETS: usize =
+    PYRAMID_FACTOR + PYRAMID_FACTOR * PYRAMID_FACTOR + PYRAMID_FACTOR * PYRAMID_FACTOR * PYRAMID_FACTOR;
 
 /// Minimum and maximum of several samples, as distances from the block's base, rounded outward. An empty bucket is (∞,
 /// −∞).
@@ -36,15 +37,16 @@ struct Bucket {
 impl Bucket {
     const EMPTY: Bucket = Bucket { low: f32::INFINITY, high: f32::NEG_INFINITY };
 
-    fn of(buckets: &[Bucket]) -> Bucket {
-        buckets.iter().fold(Bucket::EMPTY, |all, bucket| all.with(*bucket))
+    fn merge_all(buckets: &[Bucket]) -> Bucket {
+        buckets.iter().fold(Bucket::EMPTY, |all, bucket| all.merge(*bucket))
     }
 
-    fn around<T: Number>(extremes: Option<(T, T)>, base: T) -> Bucket {
-        extremes.map_or(Bucket::EMPTY, |(min, max)| Bucket { low: min.down(base), high: max.up(base) })
+    fn from_extremes<T: Number>(extremes: Option<(T, T)>, base: T) -> Bucket {
+        extremes
+            .map_or(Bucket::EMPTY, |(min, max)| Bucket { low: min.distance_down(base), high: max.distance_up(base) })
     }
 
-    fn with(self, other: Bucket) -> Bucket {
+    fn merge(self, other: Bucket) -> Bucket {
         Bucket {
             low: if other.low < self.low { other.low } else { self.low },
             high: if other.high > self.high { other.high } else { self.high },
@@ -75,7 +77,7 @@ pub(super) struct ValueRange {
 impl ValueRange {
     pub(super) const EMPTY: ValueRange = ValueRange { min: f64::INFINITY, max: f64::NEG_INFINITY };
 
-    pub(super) fn with(self, other: ValueRange) -> ValueRange {
+    pub(super) fn union(self, other: ValueRange) -> ValueRange {
         ValueRange {
             min: if other.min < self.min { other.min } else { self.min },
             max: if other.max > self.max { other.max } else { self.max },
@@ -126,12 +128,12 @@ impl<T: Number> SampleBlock<T> {
         self.values.extend_from_slice(values);
         if flags.iter().any(|flags| *flags != Flags::NONE) {
             for (at, flags) in flags.iter().enumerate().take(values.len()) {
-                self.flags.mark(start + at, *flags);
+                self.flags.add_flags(start + at, *flags);
             }
         }
         if !values.iter().fold(true, |all, value| all & value.is_number()) {
             for (at, _) in values.iter().enumerate().filter(|(_, value)| !value.is_number()) {
-                self.flags.mark(start + at, Flags::BAD);
+                self.flags.add_flags(start + at, Flags::BAD);
             }
         }
         self.fill_complete_buckets(start);
@@ -139,7 +141,7 @@ impl<T: Number> SampleBlock<T> {
 
     /// Breaks the line before the sample `at`.
     pub(super) fn break_before(&mut self, at: usize) {
-        self.flags.mark(at, Flags::BREAK);
+        self.flags.add_flags(at, Flags::BREAK);
     }
 
     pub(super) fn value(&self, at: usize) -> Option<T> {
@@ -152,9 +154,9 @@ impl<T: Number> SampleBlock<T> {
 
     /// Returns `known`, widened to include the values in `range`. Values from samples are exact, and values from
     /// buckets are rounded outward. Only parts that can widen the result are examined.
-    pub(super) fn widen(&self, known: ValueRange, range: Range<usize>) -> ValueRange {
-        let Some(base) = self.base else { return known.with(self.scan(range)) };
-        let mut search = Search {
+    pub(super) fn widen_range(&self, known: ValueRange, range: Range<usize>) -> ValueRange {
+        let Some(base) = self.base else { return known.union(self.scan_range(range)) };
+        let mut search = BucketSearch {
             samples: ValueRange::EMPTY,
             found: Bucket::EMPTY,
             enough: Bucket { low: base.distance_rounded_up(known.min), high: base.distance_rounded_down(known.max) },
@@ -165,13 +167,13 @@ impl<T: Number> SampleBlock<T> {
             self.search(&LEVELS, range.clone(), &mut search);
         }
         if search.found.is_beyond() {
-            return known.with(self.scan(range));
+            return known.union(self.scan_range(range));
         }
-        let known = known.with(search.samples);
+        let known = known.union(search.samples);
         if search.found.is_empty() {
             return known;
         }
-        known.with(ValueRange { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
+        known.union(ValueRange { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
     /// Returns the count, mean and deviation of the samples in `range`, calculated from the samples themselves.
@@ -224,34 +226,34 @@ impl<T: Number> SampleBlock<T> {
 
     /// Fills the buckets that have become complete since the block held `before` samples.
     fn fill_complete_buckets(&mut self, before: usize) {
-        let first = before / FAN;
-        let (groups, _) = self.values.get(first * FAN..).unwrap_or_default().as_chunks::<FAN>();
+        let first = before / PYRAMID_FACTOR;
+        let (groups, _) = self.values.get(first * PYRAMID_FACTOR..).unwrap_or_default().as_chunks::<PYRAMID_FACTOR>();
         let (values, flags) = (self.values.as_slice(), &self.flags);
-        let ranges = (first..first + groups.len()).map(|group| group * FAN..(group + 1) * FAN);
+        let ranges = (first..first + groups.len()).map(|group| group * PYRAMID_FACTOR..(group + 1) * PYRAMID_FACTOR);
         if self.base.is_none() {
-            self.base = ranges
-                .clone()
-                .find_map(|range| median(flags.good(range).filter_map(|good| values.get(good)).flatten().copied()));
+            self.base = ranges.clone().find_map(|range| {
+                median(flags.valid_ranges(range).filter_map(|good| values.get(good)).flatten().copied())
+            });
         }
         let [third, second, finest] = LEVELS;
         let buckets = self.buckets.iter_mut().skip(finest.start + first);
         match self.base {
             None => buckets.zip(groups).for_each(|(bucket, _)| *bucket = Bucket::EMPTY),
-            Some(base) if flags.any().contains(Flags::BAD) => {
+            Some(base) if flags.all_flags().contains(Flags::BAD) => {
                 for (bucket, range) in buckets.zip(ranges) {
-                    *bucket = Bucket::around(extremes_within(values, flags, range), base);
+                    *bucket = Bucket::from_extremes(extremes_within(values, flags, range), base);
                 }
             }
             Some(base) => {
                 for (bucket, group) in buckets.zip(groups) {
-                    *bucket = Bucket::around(Some(extremes_of_eight(group)), base);
+                    *bucket = Bucket::from_extremes(Some(extremes_of_eight(group)), base);
                 }
             }
         }
         self.fill_level(finest, second, before);
         self.fill_level(second, third, before);
         if self.values.len() == BLOCK {
-            self.top = Bucket::of(self.buckets.get(..FAN).unwrap_or_default());
+            self.top = Bucket::merge_all(self.buckets.get(..PYRAMID_FACTOR).unwrap_or_default());
             self.spread = self.spread_of(0..BLOCK).map(Box::new);
         }
     }
@@ -260,14 +262,15 @@ impl<T: Number> SampleBlock<T> {
     fn fill_level(&mut self, lower: BucketLevel, upper: BucketLevel, before: usize) {
         let (first, end) = (before / upper.size, self.values.len() / upper.size);
         let (uppers, lowers) = self.buckets.split_at_mut(lower.start);
-        let (groups, _) = lowers.get(first * FAN..end * FAN).unwrap_or_default().as_chunks::<FAN>();
+        let (groups, _) =
+            lowers.get(first * PYRAMID_FACTOR..end * PYRAMID_FACTOR).unwrap_or_default().as_chunks::<PYRAMID_FACTOR>();
         for (bucket, group) in uppers.iter_mut().skip(upper.start + first).zip(groups) {
-            *bucket = Bucket::of(group);
+            *bucket = Bucket::merge_all(group);
         }
     }
 
     /// Returns the bucket of a level that contains the sample `at`. Returns `None` if the bucket is incomplete.
-    fn bucket(&self, level: BucketLevel, at: usize) -> Option<Bucket> {
+    fn bucket_containing(&self, level: BucketLevel, at: usize) -> Option<Bucket> {
         let number = at / level.size;
         let complete = (number + 1) * level.size <= self.len();
         self.buckets.get(level.start + number).copied().filter(|_| complete)
@@ -275,31 +278,34 @@ impl<T: Number> SampleBlock<T> {
 
     /// Searches `range` for values that widen the result. Buckets of the coarsest level inside the range are searched
     /// first. The remainder on each side follows, which a single bucket may rule out.
-    fn search(&self, levels: &[BucketLevel], range: Range<usize>, search: &mut Search) {
+    fn search(&self, levels: &[BucketLevel], range: Range<usize>, search: &mut BucketSearch) {
         let Some((level, finer)) = levels.split_first() else {
-            search.samples = search.samples.with(self.scan(range));
+            search.samples = search.samples.union(self.scan_range(range));
             return;
         };
         let (from, to) = (range.start.div_ceil(level.size), range.end / level.size);
         if from < to {
-            search.find(Bucket::of(self.buckets.get(level.start + from..level.start + to).unwrap_or_default()));
+            search.find(Bucket::merge_all(self.buckets.get(level.start + from..level.start + to).unwrap_or_default()));
         }
         let sides =
             if from > to { [range, 0..0] } else { [range.start..from * level.size, to * level.size..range.end] };
         for side in sides.into_iter().filter(|side| !side.is_empty()) {
-            if self.bucket(*level, side.start).is_none_or(|bucket| !search.enough.contains(bucket)) {
+            if self.bucket_containing(*level, side.start).is_none_or(|bucket| !search.enough.contains(bucket)) {
                 self.search(finer, side, search);
             }
         }
     }
 
     fn spread_of(&self, range: Range<usize>) -> Option<RunningStatistics<T>> {
-        self.flags.good(range).map(|good| RunningStatistics::of(self.values.get(good)?)).fold(None, combine_spreads)
+        self.flags
+            .valid_ranges(range)
+            .map(|good| RunningStatistics::from_values(self.values.get(good)?))
+            .fold(None, combine_spreads)
     }
 
-    fn scan(&self, range: Range<usize>) -> ValueRange {
+    fn scan_range(&self, range: Range<usize>) -> ValueRange {
         let extremes = extremes_within(&self.values, &self.flags, range);
-        extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.below(), max: max.above() })
+        extremes.map_or(ValueRange::EMPTY, |(min, max)| ValueRange { min: min.to_f64_floor(), max: max.to_f64_ceil() })
     }
 
     /// Returns the length of a run of samples without a value that begins at `at` and ends by `end`. The run is
@@ -307,7 +313,7 @@ impl<T: Number> SampleBlock<T> {
     fn gap_length(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
-            inside && self.bucket(**level, at).is_some_and(Bucket::is_empty)
+            inside && self.bucket_containing(**level, at).is_some_and(Bucket::is_empty)
         };
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
@@ -317,30 +323,30 @@ impl<T: Number> SampleBlock<T> {
     fn previous_gap(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&BucketLevel| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
-            inside && self.bucket(**level, end - level.size).is_some_and(Bucket::is_empty)
+            inside && self.bucket_containing(**level, end - level.size).is_some_and(Bucket::is_empty)
         };
         let last = end.saturating_sub(1);
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(last).contains(Flags::BAD)), |level| level.size)
     }
 }
 
-struct Search {
+struct BucketSearch {
     samples: ValueRange,
     found: Bucket,
     /// Bucket whose values need not be searched, because they do not widen the result.
     enough: Bucket,
 }
 
-impl Search {
+impl BucketSearch {
     fn find(&mut self, bucket: Bucket) {
-        self.found = self.found.with(bucket);
-        self.enough = self.enough.with(bucket);
+        self.found = self.found.merge(bucket);
+        self.enough = self.enough.merge(bucket);
     }
 }
 
 /// Returns the minimum and maximum of the valid samples in `range`. Returns `None` if no sample is valid.
 fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
-    flags.good(range).filter_map(|good| extremes(values.get(good)?)).reduce(|one, other| {
+    flags.valid_ranges(range).filter_map(|good| min_and_max(values.get(good)?)).reduce(|one, other| {
         (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })
     })
 }

@@ -61,12 +61,12 @@ impl FlagBlock {
         *self = FlagBlock::default();
     }
 
-    pub(super) fn any(&self) -> Flags {
+    pub(super) fn all_flags(&self) -> Flags {
         self.any
     }
 
     /// Adds flags to the sample `at`, which must be below `BLOCK`.
-    pub(super) fn mark(&mut self, at: usize, flags: Flags) {
+    pub(super) fn add_flags(&mut self, at: usize, flags: Flags) {
         if flags == Flags::NONE {
             return;
         }
@@ -92,7 +92,7 @@ impl FlagBlock {
         }
     }
 
-    pub(super) fn within(&self, range: Range<usize>) -> Flags {
+    pub(super) fn flags_in(&self, range: Range<usize>) -> Flags {
         if self.any == Flags::NONE || range.is_empty() {
             return Flags::NONE;
         }
@@ -103,7 +103,7 @@ impl FlagBlock {
             // The edge is part of a group and may add no new flags.
             let group = edge.start / GROUP;
             if !found.contains(self.flags_in_groups(group..group + 1)) {
-                found |= union(self.samples(edge));
+                found |= union_of(self.samples(edge));
             }
         }
         found
@@ -115,7 +115,7 @@ impl FlagBlock {
     }
 
     /// Returns the ranges within `range` whose samples have a valid value.
-    pub(super) fn good(&self, range: Range<usize>) -> ValidRanges<'_> {
+    pub(super) fn valid_ranges(&self, range: Range<usize>) -> ValidRanges<'_> {
         let bad = self.flags_in_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
         let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());
         ValidRanges { samples, range }
@@ -136,11 +136,11 @@ impl FlagBlock {
     }
 }
 
-fn union(flags: &[Flags]) -> Flags {
+fn union_of(flags: &[Flags]) -> Flags {
     flags.iter().fold(Flags::NONE, |all, flags| all | *flags)
 }
 
-/// Iterator over ranges of valid samples; see [`FlagBlock::good`].
+/// Iterator over ranges of valid samples; see [`FlagBlock::valid_ranges`].
 pub(super) struct ValidRanges<'a> {
     /// Flags of the samples. Empty if all samples are valid.
     samples: &'a [Flags],
@@ -179,20 +179,20 @@ mod tests {
     fn a_bad_sample_breaks_the_line() {
         let mut block = FlagBlock::default();
         assert_eq!(block.memory(), 0);
-        block.mark(5, Flags::NONE);
+        block.add_flags(5, Flags::NONE);
         assert_eq!(block.memory(), 0);
-        block.mark(5, Flags::BAD);
+        block.add_flags(5, Flags::BAD);
         assert!(block.get(5).contains(Flags::BREAK));
         block.clear();
-        assert_eq!((block.any(), block.get(5)), (Flags::NONE, Flags::NONE));
+        assert_eq!((block.all_flags(), block.get(5)), (Flags::NONE, Flags::NONE));
     }
 
     #[test]
     fn a_range_has_exactly_the_flags_of_its_samples() {
         let mut block = FlagBlock::default();
-        block.mark(63, Flags::WARNING);
-        block.mark(64, Flags::BREAK);
-        block.mark(BLOCK - 1, Flags::BAD);
+        block.add_flags(63, Flags::WARNING);
+        block.add_flags(64, Flags::BREAK);
+        block.add_flags(BLOCK - 1, Flags::BAD);
         let cases = [
             (0..63, Flags::NONE),
             (0..64, Flags::WARNING),
@@ -203,7 +203,7 @@ mod tests {
             (63..63, Flags::NONE),
         ];
         for (range, flags) in cases {
-            assert_eq!(block.within(range.clone()), flags, "{range:?}");
+            assert_eq!(block.flags_in(range.clone()), flags, "{range:?}");
         }
     }
 
@@ -215,7 +215,7 @@ mod tests {
             let mut plain = vec![Flags::NONE; BLOCK];
             for _ in 0..flagged {
                 let (at, flags) = (random.usize(..BLOCK), KINDS[random.usize(..3)]);
-                block.mark(at, flags);
+                block.add_flags(at, flags);
                 plain[at] |= flags.with_implied_flags();
             }
             for _ in 0..2_000 {
@@ -223,28 +223,28 @@ mod tests {
                 // Covers short ranges as well as long ones.
                 let other = if random.bool() { other } else { (one + other % 70).min(BLOCK) };
                 let range = one.min(other)..one.max(other);
-                assert_eq!(block.within(range.clone()), union(&plain[range.clone()]), "{range:?}");
-                let good: usize = block.good(range.clone()).map(|stretch| stretch.len()).sum();
+                assert_eq!(block.flags_in(range.clone()), union_of(&plain[range.clone()]), "{range:?}");
+                let good: usize = block.valid_ranges(range.clone()).map(|stretch| stretch.len()).sum();
                 assert_eq!(good, plain[range].iter().filter(|flags| !flags.contains(Flags::BAD)).count());
             }
             for (at, flags) in plain.iter().enumerate() {
                 assert_eq!(block.get(at), *flags);
                 assert!(!block.is_known_valid(at) || !flags.contains(Flags::BAD));
             }
-            assert_eq!(block.any(), union(&plain));
+            assert_eq!(block.all_flags(), union_of(&plain));
         }
     }
 
     #[test]
     fn good_stretches_exclude_bad_samples() {
         let mut block = FlagBlock::default();
-        block.mark(1, Flags::WARNING);
-        assert!(block.good(0..9).eq(std::iter::once(0..9)));
+        block.add_flags(1, Flags::WARNING);
+        assert!(block.valid_ranges(0..9).eq(std::iter::once(0..9)));
         for at in [0, 3, 4, 8] {
-            block.mark(at, Flags::BAD);
+            block.add_flags(at, Flags::BAD);
         }
-        assert_eq!(block.good(0..9).collect::<Vec<_>>(), [1..3, 5..8]);
-        assert_eq!(block.good(3..5).count(), 0);
-        assert_eq!(block.good(2..2).count(), 0);
+        assert_eq!(block.valid_ranges(0..9).collect::<Vec<_>>(), [1..3, 5..8]);
+        assert_eq!(block.valid_ranges(3..5).count(), 0);
+        assert_eq!(block.valid_ranges(2..2).count(), 0);
     }
 }

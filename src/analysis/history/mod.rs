@@ -20,7 +20,7 @@ use std::ops::Range;
 
 pub use flags::Flags;
 pub use number::Value;
-pub use picture::{Grid, GridColumns, Picture, Pixel, Reduced};
+pub use picture::{Grid, GridColumns, HistoryPicture, Pixel, ReducedSamples};
 pub use statistics::Statistics;
 
 use number::Number;
@@ -33,7 +33,7 @@ use super::SampleTime;
 const BLOCK: usize = 4096;
 
 /// Number of samples in a bucket of the lowest pyramid level, and number of such buckets in a bucket of the next level.
-const FAN: usize = 8;
+const PYRAMID_FACTOR: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -44,7 +44,7 @@ pub enum Kind {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
+pub struct ColumnPart<'a> {
     values: Values<'a>,
     flags: &'a [Flags],
 }
@@ -55,21 +55,21 @@ enum Values<'a> {
     Whole(&'a [i64]),
 }
 
-impl<'a> Part<'a> {
+impl<'a> ColumnPart<'a> {
     /// Creates values for a [`Kind::Real`] column. An infinite or NaN value is kept and counts as [bad](Flags::BAD).
-    pub fn real(values: &'a [f64]) -> Self {
-        Part { values: Values::Real(values), flags: &[] }
+    pub fn from_reals(values: &'a [f64]) -> Self {
+        ColumnPart { values: Values::Real(values), flags: &[] }
     }
 
     /// Creates values for a [`Kind::Whole`] column.
-    pub fn whole(values: &'a [i64]) -> Self {
-        Part { values: Values::Whole(values), flags: &[] }
+    pub fn from_integers(values: &'a [i64]) -> Self {
+        ColumnPart { values: Values::Whole(values), flags: &[] }
     }
 
     /// Adds flags, one entry per value.
     #[must_use]
     pub fn with_flags(self, flags: &'a [Flags]) -> Self {
-        Part { flags, ..self }
+        ColumnPart { flags, ..self }
     }
 
     fn kind(&self) -> Kind {
@@ -79,7 +79,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    fn fits(&self, length: usize) -> bool {
+    fn matches_length(&self, length: usize) -> bool {
         let values = match self.values {
             Values::Real(values) => values.len(),
             Values::Whole(values) => values.len(),
@@ -90,7 +90,7 @@ impl<'a> Part<'a> {
 
 /// Reason why a batch was refused as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refused {
+pub enum BatchError {
     /// The number of columns, values or flags does not match, or a column has values of the wrong kind.
     #[error("the batch does not have the history's columns")]
     Shape,
@@ -153,24 +153,26 @@ impl History {
     }
 
     /// Appends samples. Times must not decrease, and each column has one part with as many values as there are times.
-    pub fn append(&mut self, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
-        let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
+    pub fn append(&mut self, times: &[SampleTime], parts: &[ColumnPart<'_>]) -> Result<(), BatchError> {
+        let fits = |(column, part): (&Column, &ColumnPart<'_>)| {
+            column.kind() == part.kind() && part.matches_length(times.len())
+        };
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
-            return Err(Refused::Shape);
+            return Err(BatchError::Shape);
         }
         let Some(first) = times.first() else { return Ok(()) };
         let last = self.times.last();
         if last.is_some_and(|last| *first < last) {
-            return Err(Refused::TimeGoesBack { at: 0 });
+            return Err(BatchError::TimeGoesBack { at: 0 });
         }
         if !times.is_sorted() {
             let at = times.iter().zip(times.iter().skip(1)).position(|(before, after)| after < before);
-            return Err(Refused::TimeGoesBack { at: at.map_or(0, |at| at + 1) });
+            return Err(BatchError::TimeGoesBack { at: at.map_or(0, |at| at + 1) });
         }
         let index = self.times.end();
         let mut from = 0;
         while from < times.len() {
-            let room = if self.times.room() == 0 { BLOCK } else { self.times.room() };
+            let room = if self.times.remaining_capacity() == 0 { BLOCK } else { self.times.remaining_capacity() };
             let range = from..(from + room).min(times.len());
             for (column, part) in self.columns.iter_mut().zip(parts) {
                 column.append(part, range.clone(), self.keep);
@@ -182,7 +184,7 @@ impl History {
         Ok(())
     }
 
-    pub fn all(&self) -> Range<u64> {
+    pub fn indices(&self) -> Range<u64> {
         self.times.first()..self.times.end()
     }
 
@@ -195,7 +197,7 @@ impl History {
     }
 
     /// Returns the index range of the samples from `from` up to but not including `to`.
-    pub fn indices(&self, from: SampleTime, to: SampleTime) -> Range<u64> {
+    pub fn indices_between(&self, from: SampleTime, to: SampleTime) -> Range<u64> {
         let from = self.times.search(from);
         from..self.times.search(to).max(from)
     }
@@ -217,7 +219,7 @@ impl History {
 
     /// Returns the index of the sample nearest to `time`, or of the earlier sample if two are equally near. Returns
     /// `None` if there are no samples.
-    pub fn nearest(&self, time: SampleTime) -> Option<u64> {
+    pub fn nearest_index(&self, time: SampleTime) -> Option<u64> {
         let after = self.times.search(time);
         let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
         let after = self.times.get(after).map(|at| (after, at));
@@ -263,7 +265,7 @@ impl Column {
 
     /// Appends the values of `part` in `range`. Values of the wrong kind are ignored, because `History::append` has
     /// rejected them before.
-    fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
+    fn append(&mut self, part: &ColumnPart<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {
             (Column::Real(series), Values::Real(values)) => {

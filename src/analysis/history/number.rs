@@ -21,13 +21,13 @@ impl Value {
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns a distance from `base` that is rounded down. [`at_most`](Number::at_most) turns it into a value at or
+    /// Returns a distance from `base` that is rounded down. [`at_most`](CellNumber::at_most) turns it into a value at or
     /// slightly below the number. Returns −∞ if the distance exceeds the range of `f32`.
-    fn down(self, base: Self) -> f32;
+    fn distance_down(self, base: Self) -> f32;
 
-    /// Returns a distance from `base` that is rounded up. [`at_least`](Number::at_least) turns it into a value not
+    /// Returns a distance from `base` that is rounded up. [`at_least`](CellNumber::at_least) turns it into a value not
     /// below the number. Returns +∞ if the distance exceeds the range of `f32`.
-    fn up(self, base: Self) -> f32;
+    fn distance_up(self, base: Self) -> f32;
 
     /// Returns `self + distance`, rounded down if rounding is necessary.
     fn at_most(self, distance: f32) -> f64;
@@ -54,13 +54,13 @@ pub(super) trait Number: Copy + PartialOrd {
     }
 
     /// Returns `self − base`, rounded to nearest.
-    fn minus(self, base: Self) -> f64;
+    fn difference(self, base: Self) -> f64;
 
     /// Returns the greatest `f64` not above the number.
-    fn below(self) -> f64;
+    fn to_f64_floor(self) -> f64;
 
     /// Returns the least `f64` not below the number.
-    fn above(self) -> f64;
+    fn to_f64_ceil(self) -> f64;
 
     fn value(self) -> Value;
 }
@@ -70,25 +70,25 @@ impl Number for f64 {
         self.is_finite()
     }
 
-    fn down(self, base: f64) -> f32 {
+    fn distance_down(self, base: f64) -> f32 {
         let mut distance = (self - base) as f32;
         if distance.is_infinite() {
             return f32::NEG_INFINITY;
         }
         // Half of the numbers are rounded to the wrong side. No processor can predict which, so there is no branch.
-        distance = moved(distance, -i32::from(base.at_most(distance) > self));
+        distance = step_f32(distance, -i32::from(base.at_most(distance) > self));
         while base.at_most(distance) > self {
             distance = distance.next_down();
         }
         distance
     }
 
-    fn up(self, base: f64) -> f32 {
+    fn distance_up(self, base: f64) -> f32 {
         let mut distance = (self - base) as f32;
         if distance.is_infinite() {
             return f32::INFINITY;
         }
-        distance = moved(distance, i32::from(base.at_least(distance) < self));
+        distance = step_f32(distance, i32::from(base.at_least(distance) < self));
         while base.at_least(distance) < self {
             distance = distance.next_up();
         }
@@ -104,15 +104,15 @@ impl Number for f64 {
         self + f64::from(distance)
     }
 
-    fn minus(self, base: f64) -> f64 {
+    fn difference(self, base: f64) -> f64 {
         self - base
     }
 
-    fn below(self) -> f64 {
+    fn to_f64_floor(self) -> f64 {
         self
     }
 
-    fn above(self) -> f64 {
+    fn to_f64_ceil(self) -> f64 {
         self
     }
 
@@ -122,7 +122,7 @@ impl Number for f64 {
 }
 
 /// Moves a finite `f32` up by the given number of representable values. −0 is one step below 0.
-fn moved(distance: f32, steps: i32) -> f32 {
+fn step_f32(distance: f32, steps: i32) -> f32 {
     // With the bits of negative numbers inverted, the bit patterns are in numerical order.
     let ordered = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
     let place = ordered(distance.to_bits().cast_signed()).wrapping_add(steps);
@@ -133,14 +133,14 @@ fn moved(distance: f32, steps: i32) -> f32 {
 const EXACT_F32: u64 = 1 << 24;
 
 /// Limit up to which `f64` holds the sum of two numbers exactly.
-const EXACT: f64 = (1_i64 << 52) as f64;
+const EXACT_SUM_LIMIT: f64 = (1_i64 << 52) as f64;
 
 impl Number for i64 {
     fn is_number(self) -> bool {
         true
     }
 
-    fn down(self, base: i64) -> f32 {
+    fn distance_down(self, base: i64) -> f32 {
         if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= EXACT_F32) {
             return near as f32;
         }
@@ -152,7 +152,7 @@ impl Number for i64 {
         distance
     }
 
-    fn up(self, base: i64) -> f32 {
+    fn distance_up(self, base: i64) -> f32 {
         if let Some(near) = self.checked_sub(base).filter(|near| near.unsigned_abs() <= EXACT_F32) {
             return near as f32;
         }
@@ -166,33 +166,33 @@ impl Number for i64 {
 
     fn at_most(self, distance: f32) -> f64 {
         let (base, distance) = (self as f64, f64::from(distance));
-        if base.abs() <= EXACT && distance.abs() <= EXACT {
+        if base.abs() <= EXACT_SUM_LIMIT && distance.abs() <= EXACT_SUM_LIMIT {
             return base + distance;
         }
-        below(i128::from(self) + distance as i128)
+        i128_to_f64_floor(i128::from(self) + distance as i128)
     }
 
     fn at_least(self, distance: f32) -> f64 {
         let (base, distance) = (self as f64, f64::from(distance));
-        if base.abs() <= EXACT && distance.abs() <= EXACT {
+        if base.abs() <= EXACT_SUM_LIMIT && distance.abs() <= EXACT_SUM_LIMIT {
             return base + distance;
         }
-        above(i128::from(self) + distance as i128)
+        i128_to_f64_ceil(i128::from(self) + distance as i128)
     }
 
-    fn minus(self, base: i64) -> f64 {
+    fn difference(self, base: i64) -> f64 {
         match self.checked_sub(base) {
             Some(difference) => difference as f64,
             None => (i128::from(self) - i128::from(base)) as f64,
         }
     }
 
-    fn below(self) -> f64 {
-        below(i128::from(self))
+    fn to_f64_floor(self) -> f64 {
+        i128_to_f64_floor(i128::from(self))
     }
 
-    fn above(self) -> f64 {
-        above(i128::from(self))
+    fn to_f64_ceil(self) -> f64 {
+        i128_to_f64_ceil(i128::from(self))
     }
 
     fn value(self) -> Value {
@@ -200,12 +200,12 @@ impl Number for i64 {
     }
 }
 
-fn below(exact: i128) -> f64 {
+fn i128_to_f64_floor(exact: i128) -> f64 {
     let nearest = exact as f64;
     if nearest as i128 > exact { nearest.next_down() } else { nearest }
 }
 
-fn above(exact: i128) -> f64 {
+fn i128_to_f64_ceil(exact: i128) -> f64 {
     let nearest = exact as f64;
     if (nearest as i128) < exact { nearest.next_up() } else { nearest }
 }
@@ -220,19 +220,19 @@ mod tests {
         let base = 1 << 60;
         for step in [0, 1, -1, 12_345_677, -(1 << 24)] {
             let position: i64 = base + step;
-            assert_eq!((position.down(base), position.up(base)), (step as f32, step as f32));
+            assert_eq!((position.distance_down(base), position.distance_up(base)), (step as f32, step as f32));
         }
         let far = (1_i64 << 24) + 1;
-        assert_eq!((far.down(0), far.up(0)), (16_777_216.0, 16_777_218.0));
-        assert_eq!(i64::MAX.up(i64::MIN), 18_446_744_073_709_551_616.0);
+        assert_eq!((far.distance_down(0), far.distance_up(0)), (16_777_216.0, 16_777_218.0));
+        assert_eq!(i64::MAX.distance_up(i64::MIN), 18_446_744_073_709_551_616.0);
     }
 
     #[test]
     fn values_beyond_f32_are_infinite() {
-        assert_eq!((1e300).down(0.0), f32::NEG_INFINITY);
-        assert_eq!((1e300).up(0.0), f32::INFINITY);
-        assert_eq!(f64::MAX.down(f64::MIN), f32::NEG_INFINITY);
-        assert_eq!((1e300).down(1e300), 0.0);
+        assert_eq!((1e300).distance_down(0.0), f32::NEG_INFINITY);
+        assert_eq!((1e300).distance_up(0.0), f32::INFINITY);
+        assert_eq!(f64::MAX.distance_down(f64::MIN), f32::NEG_INFINITY);
+        assert_eq!((1e300).distance_down(1e300), 0.0);
     }
 
     proptest! {
@@ -241,7 +241,7 @@ mod tests {
             let value = base.saturating_add(value >> shift);
             let distance = (i128::from(value) - i128::from(base)).unsigned_abs() as f64;
             let loss = distance / f64::from(1 << 23) + (value as f64).abs() * f64::EPSILON * 2.0;
-            let (low, high) = (base.at_most(value.down(base)), base.at_least(value.up(base)));
+            let (low, high) = (base.at_most(value.distance_down(base)), base.at_least(value.distance_up(base)));
             prop_assert!(low as i128 <= i128::from(value) && i128::from(value) <= high as i128);
             prop_assert!(high - low <= 2.0 * loss, "{low} {value} {high}");
         }
@@ -250,7 +250,7 @@ mod tests {
         fn reals_are_rounded_outward(value in any::<f64>(), base in any::<f64>(), close in any::<f64>()) {
             prop_assume!(value.is_finite() && base.is_finite());
             for value in [value, base + base * (close % 1.0), base.next_up(), base.next_down(), 0.0] {
-                let (low, high) = (value.down(base), value.up(base));
+                let (low, high) = (value.distance_down(base), value.distance_up(base));
                 prop_assert_eq!(low.is_infinite(), high.is_infinite());
                 if low.is_finite() && value.is_finite() {
                     let (low, high) = (base.at_most(low), base.at_least(high));

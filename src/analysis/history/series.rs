@@ -33,37 +33,37 @@ impl<T: Number> Series<T> {
     }
 
     pub(super) fn break_before(&mut self, index: u64) {
-        let (block, at) = self.place(index);
+        let (block, at) = self.locate(index);
         if let Some(block) = self.blocks.get_mut(block) {
             block.break_before(at);
         }
     }
 
     pub(super) fn get(&self, index: u64) -> Option<(T, Flags)> {
-        let (block, at) = self.place(index);
+        let (block, at) = self.locate(index);
         let block = self.blocks.get(block).filter(|_| index >= self.first)?;
         Some((block.value(at)?, block.flags().get(at)))
     }
 
     /// Returns the values of the first and last samples in `range`, as appended. Returns `None` if either is not
     /// stored.
-    pub(super) fn ends(&self, range: Range<u64>) -> Option<(T, T)> {
+    pub(super) fn first_and_last(&self, range: Range<u64>) -> Option<(T, T)> {
         if range.start < self.first || range.is_empty() {
             return None;
         }
         let value = |index| {
-            let (block, at) = self.place(index);
+            let (block, at) = self.locate(index);
             self.blocks.get(block)?.value(at)
         };
         Some((value(range.start)?, value(range.end - 1)?))
     }
 
     /// Returns `known`, widened by the values of the samples in `range`, which must all be stored. Whole blocks are
-    /// processed first, because they save most of the work on the rest. See [`SampleBlock::widen`].
-    pub(super) fn widen(&self, known: ValueRange, range: Range<u64>) -> ValueRange {
-        let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
+    /// processed first, because they save most of the work on the rest. See [`SampleBlock::widen_range`].
+    pub(super) fn widen_range(&self, known: ValueRange, range: Range<u64>) -> ValueRange {
+        let ((first, from), (last, to)) = (self.locate(range.start), self.locate(range.end - 1));
         let widen = |known: ValueRange, block: usize, range: Range<usize>| {
-            self.blocks.get(block).map_or(known, |block| block.widen(known, range))
+            self.blocks.get(block).map_or(known, |block| block.widen_range(known, range))
         };
         if first == last {
             return widen(known, first, from..to + 1);
@@ -75,22 +75,23 @@ impl<T: Number> Series<T> {
     /// Returns whether no sample near `range` has a flag. This is a quick check: false does not prove that a sample in
     /// `range` has a flag.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
-        let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
-        let flagged = |block: usize| self.blocks.get(block).is_some_and(|block| block.flags().any() != Flags::NONE);
+        let ((first, _), (last, _)) = (self.locate(range.start), self.locate(range.end.saturating_sub(1)));
+        let flagged =
+            |block: usize| self.blocks.get(block).is_some_and(|block| block.flags().all_flags() != Flags::NONE);
         !(first..=last).any(flagged)
     }
 
-    pub(super) fn flags(&self, range: Range<u64>) -> Flags {
-        let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
+    pub(super) fn flags_in(&self, range: Range<u64>) -> Flags {
+        let ((first, from), (last, to)) = (self.locate(range.start), self.locate(range.end.saturating_sub(1)));
         // The range is usually a single sample, or several samples of one block.
         if first == last && range.start >= self.first && !range.is_empty() {
-            return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().within(from..to + 1));
+            return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().flags_in(from..to + 1));
         }
-        self.parts(range).fold(Flags::NONE, |all, (_, block, range)| all | block.flags().within(range))
+        self.blocks_in(range).fold(Flags::NONE, |all, (_, block, range)| all | block.flags().flags_in(range))
     }
 
     pub(super) fn spread(&self, range: Range<u64>) -> Option<RunningStatistics<T>> {
-        self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, combine_spreads)
+        self.blocks_in(range).map(|(_, block, range)| block.spread(range)).fold(None, combine_spreads)
     }
 
     /// Returns the first sample in `range` that has a valid value.
@@ -98,7 +99,7 @@ impl<T: Number> Series<T> {
         if !range.is_empty() && self.is_known_valid(range.start) {
             return Some(range.start);
         }
-        self.parts(range).find_map(|(start, block, range)| Some(start + block.first_valid(range)? as u64))
+        self.blocks_in(range).find_map(|(start, block, range)| Some(start + block.first_valid(range)? as u64))
     }
 
     /// Returns the last sample in `range` that has a valid value.
@@ -106,13 +107,13 @@ impl<T: Number> Series<T> {
         if !range.is_empty() && self.is_known_valid(range.end - 1) {
             return Some(range.end - 1);
         }
-        self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
+        self.blocks_in(range).rev().find_map(|(start, block, range)| Some(start + block.last_valid(range)? as u64))
     }
 
     /// Returns whether sample `index` is stored and has a valid value. This is a quick check: false does not prove that
     /// the value is invalid.
     fn is_known_valid(&self, index: u64) -> bool {
-        let (block, at) = self.place(index);
+        let (block, at) = self.locate(index);
         let has_it = |block: &&SampleBlock<T>| index >= self.first && at < block.len();
         self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_known_valid(at))
     }
@@ -136,14 +137,14 @@ impl<T: Number> Series<T> {
     }
 
     /// Returns the position of the block that contains sample `index`, and the sample's index within that block.
-    fn place(&self, index: u64) -> (usize, usize) {
+    fn locate(&self, index: u64) -> (usize, usize) {
         let at = index.saturating_sub(self.first) as usize;
         (at / BLOCK, at % BLOCK)
     }
 
     /// Returns the blocks that overlap the stored part of `range`. Each comes with the index of its first sample and
     /// the range within the block.
-    fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
+    fn blocks_in(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &SampleBlock<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;
         let blocks = (from / BLOCK).min(self.blocks.len())..to.div_ceil(BLOCK).min(self.blocks.len());

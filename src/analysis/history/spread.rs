@@ -16,23 +16,23 @@ pub(super) struct RunningStatistics<T> {
 
 impl<T: Number> RunningStatistics<T> {
     /// Returns the statistics of `values`, which must all be finite. Returns `None` if `values` is empty.
-    pub(super) fn of(values: &[T]) -> Option<Self> {
+    pub(super) fn from_values(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
-        let (min, max) = extremes(values)?;
+        let (min, max) = min_and_max(values)?;
         let count = values.len() as f64;
-        let mean = sum(values, |value| value.minus(base)) / count;
+        let mean = sum(values, |value| value.difference(base)) / count;
         let squares = sum(values, |value| {
-            let deviation = value.minus(base) - mean;
+            let deviation = value.difference(base) - mean;
             deviation * deviation
         });
         Some(RunningStatistics { count: values.len() as u64, base, mean, squares, min, max })
     }
 
     /// Returns the combined statistics of both sets of samples.
-    pub(super) fn with(self, other: Self) -> Self {
+    pub(super) fn merge(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
-        let apart = other.base.minus(self.base) + other.mean - self.mean;
+        let apart = other.base.difference(self.base) + other.mean - self.mean;
         RunningStatistics {
             count: self.count + other.count,
             base: self.base,
@@ -49,13 +49,13 @@ pub(super) fn combine_spreads<T: Number>(
     other: Option<RunningStatistics<T>>,
 ) -> Option<RunningStatistics<T>> {
     match (one, other) {
-        (Some(one), Some(other)) => Some(one.with(other)),
+        (Some(one), Some(other)) => Some(one.merge(other)),
         (one, other) => one.or(other),
     }
 }
 
 /// Returns the minimum and maximum of `values`, which must all be finite. Eight values are compared in parallel.
-pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
+pub(super) fn min_and_max<T: Number>(values: &[T]) -> Option<(T, T)> {
     let (groups, rest) = values.as_chunks::<8>();
     let of_groups = groups.split_first().map(|(first, others)| {
         let (mut least, mut most) = (*first, *first);

@@ -26,16 +26,16 @@ pub struct Statistics {
 impl History {
     /// Returns the statistics of a column over the samples `indices`. Returns `None` if no sample has a valid value.
     pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
-        let all = self.all();
+        let all = self.indices();
         let indices = indices.start.max(all.start)..indices.end.min(all.end);
         match self.columns.get(column)? {
-            Column::Real(series) => of(series, indices),
-            Column::Whole(series) => of(series, indices),
+            Column::Real(series) => series_statistics(series, indices),
+            Column::Whole(series) => series_statistics(series, indices),
         }
     }
 }
 
-fn of<T: Number>(series: &Series<T>, indices: Range<u64>) -> Option<Statistics> {
+fn series_statistics<T: Number>(series: &Series<T>, indices: Range<u64>) -> Option<Statistics> {
     let asked = indices.end.saturating_sub(indices.start);
     let spread = series.spread(indices)?;
     Some(Statistics {

@@ -31,7 +31,7 @@ impl Times {
     }
 
     /// Returns the number of samples that fit before a new block is needed.
-    pub(super) fn room(&self) -> usize {
+    pub(super) fn remaining_capacity(&self) -> usize {
         self.blocks.back().map_or(0, |block| BLOCK - block.len())
     }
 
@@ -47,7 +47,7 @@ impl Times {
     /// Appends `times`, which must fit into the newest block or start a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, times: &[SampleTime], keep: usize) {
         let Some(start) = times.first() else { return };
-        if self.room() == 0 {
+        if self.remaining_capacity() == 0 {
             let used = if self.blocks.len() >= keep { self.blocks.pop_front() } else { None };
             let block = match used {
                 Some(mut block) => {
@@ -84,12 +84,12 @@ impl Times {
 /// Returns the index of the first time at or after `time`. The expected index is tried first, because samples are
 /// usually evenly spaced.
 fn search_times(times: &[SampleTime], time: SampleTime) -> usize {
-    const NEAR: usize = 4;
+    const NEARBY_SAMPLES: usize = 4;
     let before = |other: &SampleTime| *other < time;
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0 };
     let share = time.nanoseconds_since(*first) as f64 / last.nanoseconds_since(*first).max(1) as f64;
     let guess = (share * (times.len() - 1) as f64) as usize;
-    let (from, to) = (guess.saturating_sub(NEAR), guess.saturating_add(NEAR).min(times.len()));
+    let (from, to) = (guess.saturating_sub(NEARBY_SAMPLES), guess.saturating_add(NEARBY_SAMPLES).min(times.len()));
     let near = times.get(from..to).unwrap_or_default();
     if near.first().is_some_and(before) && !near.last().is_none_or(before) {
         return from + near.partition_point(before);

@@ -19,7 +19,7 @@ fn made(count: usize, periods: f64, noise_v: f64) -> Made {
     let mut random = fastrand::Rng::with_seed(7);
     let mut noise = || noise_v * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
     let (sine, cosine) = (0..count)
-        .map(|at| ELLIPSE.at(TAU * periods * at as f64 / count as f64))
+        .map(|at| ELLIPSE.point_at(TAU * periods * at as f64 / count as f64))
         .map(|(sine, cosine)| (sine + noise(), cosine + noise()))
         .unzip();
     Made { sine, cosine }
@@ -27,7 +27,7 @@ fn made(count: usize, periods: f64, noise_v: f64) -> Made {
 
 impl Made {
     fn analysed(&self) -> Result<Analysis, AnalysisError> {
-        Analysis::of(Samples { time_s: &[], sine_v: &self.sine, cosine_v: &self.cosine })
+        Analysis::from_samples(Samples { time_s: &[], sine_v: &self.sine, cosine_v: &self.cosine })
     }
 
     #[track_caller]
@@ -148,7 +148,8 @@ fn kept_ranges_complement_the_excluded_ranges() {
     ];
     for (length, left_out, expected) in cases {
         let left_out: Vec<Range<usize>> = left_out.iter().map(|(start, end)| *start..*end).collect();
-        let found: Vec<(usize, usize)> = kept(length, &left_out).map(|part| (part.start, part.end)).collect();
+        let found: Vec<(usize, usize)> =
+            remaining_ranges(length, &left_out).map(|part| (part.start, part.end)).collect();
         assert_eq!(found, expected);
     }
 }

@@ -26,7 +26,7 @@ struct Made {
 fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64) -> f64) -> Made {
     let time: Vec<f64> = (0..count).map(|at| at as f64 / count as f64).collect();
     let angle = |t: &f64| TAU * motion(*t);
-    let (sine, cosine) = time.iter().map(|t| ellipse.at(angle(t) + disturbed(angle(t)))).unzip();
+    let (sine, cosine) = time.iter().map(|t| ellipse.point_at(angle(t) + disturbed(angle(t)))).unzip();
     Made { time, sine, cosine }
 }
 
@@ -41,7 +41,7 @@ impl Made {
     }
 
     fn analysed(&self) -> Result<Analysis, AnalysisError> {
-        Analysis::of(Samples { time_s: &self.time, sine_v: &self.sine, cosine_v: &self.cosine })
+        Analysis::from_samples(Samples { time_s: &self.time, sine_v: &self.sine, cosine_v: &self.cosine })
     }
 }
 
@@ -69,7 +69,7 @@ fn raw_errors_match_section_6() {
         }
     }
     let offset = made(&rows[0].1, 1000, |t| t, |_| 0.0).analysed().unwrap();
-    let [first, second, ..] = harmonics(&offset.error.raw_deg);
+    let [first, second, ..] = harmonic_amplitudes(&offset.error.raw_deg);
     assert!((first - 0.573).abs() < 1e-4 && second < 0.003, "{first} {second}");
 }
 
@@ -109,7 +109,7 @@ fn harmonics_are_not_corrected() {
         let motion = |t: f64| periods * t + if periods > 2.0 { 0.1 * t * t } else { 0.0 };
         let capture = made(&REFERENCE, count, motion, |angle| amplitude * (4.0 * angle).sin()).add_noise(1e-3, 3);
         let told = capture.analysed().unwrap();
-        let left = harmonics(&told.error.corrected_deg);
+        let left = harmonic_amplitudes(&told.error.corrected_deg);
         assert!((left[3] - 0.3).abs() < 0.03, "{count}: {left:?}");
         assert!(left.iter().enumerate().all(|(at, value)| at == 3 || *value < 0.05), "{count}: {left:?}");
         assert!((told.error.corrected_pp_deg - 0.6).abs() < 0.1, "{count}: {}", told.error.corrected_pp_deg);

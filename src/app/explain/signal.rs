@@ -5,11 +5,11 @@ use std::path::Path;
 use super::file;
 use crate::analysis::capture::CaptureError;
 use crate::analysis::diagnosis::{ComparisonObstacle, DiagnosisFinding, FindingKind, StuckLevel};
-use crate::analysis::ellipse::{FitError, LEAST_POINTS, SignalChannel};
+use crate::analysis::ellipse::{FitError, MIN_POINTS, SignalChannel};
 use crate::analysis::nonlinearity::NonlinearityError;
 use crate::analysis::quality::{QualityFinding as Parameter, Verdict};
 use crate::analysis::revolution::RevolutionError;
-use crate::analysis::signal_analysis::{AnalysisError, LEAST_OCTANTS};
+use crate::analysis::signal_analysis::{AnalysisError, MIN_OCTANTS};
 use crate::analysis::spectrum::SpectrumError;
 use crate::app::Text;
 use crate::app::number::decimals;
@@ -60,7 +60,7 @@ pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     match error {
         AnalysisError::Fit(error) => fit(path, error),
         AnalysisError::Coverage { octants } => {
-            text("signal.coverage").with("octants", octants).with("least", LEAST_OCTANTS)
+            text("signal.coverage").with("octants", octants).with("least", MIN_OCTANTS)
         }
         AnalysisError::AtRest => text("signal.at_rest"),
         AnalysisError::NoSignal { share } => text("signal.no_signal").with_number("percent", share * 100.0, 0),
@@ -70,7 +70,7 @@ pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
 fn fit(path: &Path, error: &FitError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
-        FitError::TooFew { points } => text("signal.few_points").with("points", points).with("least", LEAST_POINTS),
+        FitError::TooFew { points } => text("signal.few_points").with("points", points).with("least", MIN_POINTS),
         FitError::NotFinite { index } => text("signal.sample").with("number", index + 1),
         FitError::Constant => text("signal.constant"),
         FitError::Dead(SignalChannel::Sine) => text("signal.dead_sine"),

@@ -77,7 +77,7 @@ impl Recorder {
 
     fn between(&self, line: &Series, from: SampleTime, to: SampleTime) -> Option<CursorStatistics> {
         let history = self.history(line)?;
-        let statistics = history.statistics(line.column, history.indices(from, to.plus(1)))?;
+        let statistics = history.statistics(line.column, history.indices_between(from, to.saturating_add_ns(1)))?;
         let factor = line.factor();
         let ends = (statistics.min.to_f64() * factor, statistics.max.to_f64() * factor);
         Some(CursorStatistics {
@@ -96,10 +96,12 @@ impl Recorder {
         /// Divisor of the visible range. The result is the maximum distance of a cursor from the first or last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
-        let all = history.all();
+        let all = history.indices();
         let (first, last) = (history.time(all.start)?, history.time(all.end.checked_sub(1)?)?);
         let beside = self.span() / BESIDE;
-        (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
+        (time >= first.saturating_add_ns(-beside) && time <= last.saturating_add_ns(beside))
+            .then(|| self.nearest(line, time))
+            .flatten()
     }
 
     /// Moves a cursor to the nearest sample. If nothing was recorded at that time, the cursor is set to the time
@@ -130,7 +132,7 @@ impl Recorder {
             (from, to) = (first.max(from), last.min(to));
         }
         let third = to.nanoseconds_since(from) / 3;
-        self.set_cursor(Cursor::A, Some(from.plus(third)));
-        self.set_cursor(Cursor::B, Some(from.plus(2 * third)));
+        self.set_cursor(Cursor::A, Some(from.saturating_add_ns(third)));
+        self.set_cursor(Cursor::B, Some(from.saturating_add_ns(2 * third)));
     }
 }

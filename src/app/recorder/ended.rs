@@ -67,6 +67,6 @@ impl Recorder {
     }
 
     pub(in crate::app) fn has_samples(&self, id: SeriesId) -> bool {
-        self.line(id).and_then(|line| self.history(line)).is_some_and(|history| !history.all().is_empty())
+        self.line(id).and_then(|line| self.history(line)).is_some_and(|history| !history.indices().is_empty())
     }
 }

@@ -137,7 +137,8 @@ impl Recorder {
         for line in self.selected_series().filter(|line| !visible || self.visible_series().any(|own| own.id == line.id))
         {
             let history = self.history(line)?;
-            let range = if visible { history.indices(from, to.plus(1)) } else { history.all() };
+            let range =
+                if visible { history.indices_between(from, to.saturating_add_ns(1)) } else { history.indices() };
             let head = heads.iter().position(|head| head.group == line.group).unwrap_or(heads.len());
             if head == heads.len() {
                 heads.push(Head { group: line.group, next: range.start, end: range.end });
@@ -228,7 +229,7 @@ impl Recorder {
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
         for (head, history) in heads.iter_mut().zip(&histories) {
             // Samples that were removed in the meantime are lost.
-            let start = history.map_or(head.end, |history| history.all().start.min(head.end));
+            let start = history.map_or(head.end, |history| history.indices().start.min(head.end));
             *lost += start.saturating_sub(head.next);
             head.next = head.next.max(start);
         }
@@ -322,7 +323,7 @@ impl Rows {
     fn text(&self, columns: usize, counts: bool, text: &mut String) {
         use std::fmt::Write as _;
         for (time, cells) in self.times.iter().zip(self.cells.chunks(columns.max(1))) {
-            let nanoseconds = time.nanoseconds();
+            let nanoseconds = time.as_nanoseconds();
             let sign = if nanoseconds < 0 { "-" } else { "" };
             let whole = nanoseconds.unsigned_abs();
             // Writing to a string cannot fail.

@@ -23,7 +23,7 @@ pub use view::TimeWindow;
 use trigger::Watch;
 
 use crate::analysis::SampleTime;
-use crate::analysis::history::{History, Kind, Part, Refused, Sample};
+use crate::analysis::history::{BatchError, ColumnPart, History, Kind, Sample};
 use crate::app::Text;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +91,7 @@ impl Group {
 
     /// Marks a gap before the next sample. Nothing happens if there are no samples yet.
     fn break_before_next(&mut self) {
-        if !self.history.all().is_empty() {
+        if !self.history.indices().is_empty() {
             self.history.break_before_next();
         }
     }
@@ -178,13 +178,13 @@ impl Recorder {
     /// # Errors
     /// Returns an error if the samples do not have the columns of the group, or if a time is earlier than the previous
     /// one.
-    pub fn append(&mut self, group: GroupId, times: &[SampleTime], parts: &[Part<'_>]) -> Result<(), Refused> {
+    pub fn append(&mut self, group: GroupId, times: &[SampleTime], parts: &[ColumnPart<'_>]) -> Result<(), BatchError> {
         if self.would_evict_held_view(group, times.len()) {
             self.break_before_next(group);
             return Ok(());
         }
-        let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(Refused::Shape) };
-        let before = history.all().end;
+        let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(BatchError::Shape) };
+        let before = history.indices().end;
         history.append(times, parts)?;
         self.find_trigger(group, before);
         Ok(())
@@ -244,7 +244,10 @@ impl Recorder {
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
         let is_visible = move |line: &&Series| {
-            !line.ended || self.history(line).is_some_and(|history| !history.indices(from, to.plus(1)).is_empty())
+            !line.ended
+                || self
+                    .history(line)
+                    .is_some_and(|history| !history.indices_between(from, to.saturating_add_ns(1)).is_empty())
         };
         self.selected_series().filter(is_visible)
     }
@@ -266,13 +269,13 @@ impl Recorder {
     }
 
     pub fn is_empty(&self) -> bool {
-        self.groups.values().all(|group| group.history.all().is_empty())
+        self.groups.values().all(|group| group.history.indices().is_empty())
     }
 
     /// Returns the sample of a line that is nearest to a point in time.
     pub fn nearest(&self, line: &Series, time: SampleTime) -> Option<Sample> {
         let history = self.history(line)?;
-        history.sample(line.column, history.nearest(time)?)
+        history.sample(line.column, history.nearest_index(time)?)
     }
 
     /// Returns the memory used by the samples in bytes.
@@ -283,7 +286,7 @@ impl Recorder {
     /// Returns the times of the first and last samples of all groups.
     pub fn recorded(&self) -> Option<(SampleTime, SampleTime)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
-            let all = history.all();
+            let all = history.indices();
             Some((history.time(all.start)?, history.time(all.end.checked_sub(1)?)?))
         });
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))

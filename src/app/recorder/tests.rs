@@ -24,7 +24,8 @@ fn recorder(span: i64) -> (Recorder, GroupId, [SeriesId; 2]) {
 
 fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f64, flags: Flags) {
     let (count, volts, flags) = ([count], [volts], [flags]);
-    let parts = [Part::whole(&count).with_flags(&flags), Part::real(&volts).with_flags(&flags)];
+    let parts =
+        [ColumnPart::from_integers(&count).with_flags(&flags), ColumnPart::from_reals(&volts).with_flags(&flags)];
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 
@@ -114,7 +115,7 @@ fn a_cursor_outside_the_recording_reads_nothing() {
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
     let late = recorder.add_line(Series::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
     ramp(&mut recorder, group, 0, 1000);
-    recorder.append(slow, &[at(700), at(900)], &[Part::whole(&[7, 9])]).unwrap();
+    recorder.append(slow, &[at(700), at(900)], &[ColumnPart::from_integers(&[7, 9])]).unwrap();
     recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(500))));
     recorder.act(RecorderAction::SetCursor(Cursor::B, Some(at(5_000))));
     assert_eq!(recorder.cursor(Cursor::B), Some(at(5_000)), "it stands where it was put");
@@ -136,7 +137,7 @@ fn a_held_view_is_not_evicted_by_newer_samples() {
     let feed = |recorder: &mut Recorder, from: i64, to: i64| {
         let times: Vec<SampleTime> = (from..to).map(at).collect();
         let values: Vec<i64> = (from..to).collect();
-        recorder.append(group, &times, &[Part::whole(&values)]).unwrap();
+        recorder.append(group, &times, &[ColumnPart::from_integers(&values)]).unwrap();
     };
     arm(&mut recorder, line, TriggerCondition::Rising, 5_000.0, false);
     (0..100).for_each(|portion| feed(&mut recorder, portion * 1000, (portion + 1) * 1000));
@@ -253,7 +254,7 @@ fn removing_the_last_line_removes_its_samples() {
     assert!(recorder.trigger().is_none() && !recorder.is_empty());
     recorder.remove_line(volts);
     assert!(recorder.is_empty() && recorder.recorded().is_none());
-    assert_eq!(recorder.append(group, &[at(20)], &[]), Err(Refused::Shape));
+    assert_eq!(recorder.append(group, &[at(20)], &[]), Err(BatchError::Shape));
 }
 
 #[test]
@@ -296,7 +297,7 @@ fn a_table_has_a_row_per_time_and_blanks_for_bad_samples() {
     add(&mut recorder, group, -1, 4096, 0.5, Flags::NONE);
     add(&mut recorder, group, 2, 1024, f64::NAN, Flags::NONE);
     add(&mut recorder, group, 3, 7, 0.25, Flags::BAD);
-    recorder.append(slow, &[at(2), at(1_000)], &[Part::real(&[21.5, 22.0])]).unwrap();
+    recorder.append(slow, &[at(2), at(1_000)], &[ColumnPart::from_reals(&[21.5, 22.0])]).unwrap();
     recorder.act(RecorderAction::SetScale(counts, 1));
     let expected = "time [s],position [°],sine [steps],temperature   inside  [°],remark\n\
                     -0.001000000,360,0.5,,\n\
@@ -326,7 +327,7 @@ fn samples_without_times_are_counted() {
         vec![Scale::new("unit.steps", 1.0, 0)],
     ));
     let times: Vec<SampleTime> = (0..3).map(|sample| SampleTime::from_nanoseconds(sample * SAMPLE)).collect();
-    recorder.append(group, &times, &[Part::real(&[0.5, 1.5, 2.5])]).unwrap();
+    recorder.append(group, &times, &[ColumnPart::from_reals(&[0.5, 1.5, 2.5])]).unwrap();
     assert_eq!(recorder.span(), 100 * SAMPLE);
     assert_eq!(exported(&mut recorder, false).unwrap(), "sample,sine [steps],remark\n0,0.5,\n1,1.5,\n2,2.5,\n");
 }

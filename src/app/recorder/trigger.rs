@@ -74,8 +74,8 @@ impl Watch {
     }
 
     fn window(&self, at: SampleTime) -> (SampleTime, SampleTime) {
-        let from = at.plus(-((self.span as f64 * self.trigger.before) as i64));
-        (from, from.plus(self.span))
+        let from = at.saturating_add_ns(-((self.span as f64 * self.trigger.before) as i64));
+        (from, from.saturating_add_ns(self.span))
     }
 
     /// Checks the next sample, and returns whether the event has occurred.
@@ -132,7 +132,7 @@ impl Recorder {
         let Some(mut watch) = self.watch else { return };
         let Some(line) = self.line(watch.trigger.line) else { return };
         let (Some(history), column) = (self.history(line), line.column) else { return };
-        let found = history.all().find_map(|index| {
+        let found = history.indices().find_map(|index| {
             let sample = history.sample(column, index)?;
             watch.check_trigger(&sample).then_some(sample.time)
         });
@@ -149,7 +149,7 @@ impl Recorder {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;
-        let Some(oldest) = history.time(history.all().start) else { return false };
+        let Some(oldest) = history.time(history.indices().start) else { return false };
         // Samples before the view may be displaced.
         let remains = history.oldest_remaining_time(more);
         remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
@@ -165,7 +165,7 @@ impl Recorder {
         let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };
         let (Some(history), column) = (self.history(line), line.column) else { return };
         let mut shown = None;
-        for index in from..history.all().end {
+        for index in from..history.indices().end {
             let Some(sample) = history.sample(column, index) else { continue };
             if let TriggerState::Fired(at) = watch.state
                 && sample.time >= watch.window(at).1

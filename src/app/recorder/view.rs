@@ -40,9 +40,9 @@ impl Recorder {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),
             TimeWindow::Follow { span } => match self.recorded() {
-                Some((first, last)) if last.nanoseconds_since(first) >= span => (last.plus(-span), last),
-                Some((first, _)) => (first, first.plus(span)),
-                None => (SampleTime::ORIGIN, SampleTime::ORIGIN.plus(span)),
+                Some((first, last)) if last.nanoseconds_since(first) >= span => (last.saturating_add_ns(-span), last),
+                Some((first, _)) => (first, first.saturating_add_ns(span)),
+                None => (SampleTime::ORIGIN, SampleTime::ORIGIN.saturating_add_ns(span)),
             },
         }
     }
@@ -68,20 +68,20 @@ impl Recorder {
         let Some((first, last)) = self.recorded() else { return };
         // The view ends slightly later, so the last sample is visible.
         let span = last.nanoseconds_since(first).max(SHORTEST);
-        self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
+        self.view = TimeWindow::Fixed { from: first, to: last.saturating_add_ns(span / 200 + 1) };
     }
 
     pub(super) fn zoom_to(&mut self, from: SampleTime, to: SampleTime) {
         let (from, to) = (from.min(to), from.max(to));
         let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
-        self.view = TimeWindow::Fixed { from, to: from.plus(span) };
+        self.view = TimeWindow::Fixed { from, to: from.saturating_add_ns(span) };
     }
 
     pub(super) fn set_span(&mut self, span: i64) {
         let span = span.clamp(SHORTEST, LONGEST);
         self.view = match self.view {
             TimeWindow::Follow { .. } => TimeWindow::Follow { span },
-            TimeWindow::Fixed { to, .. } => TimeWindow::Fixed { from: to.plus(-span), to },
+            TimeWindow::Fixed { to, .. } => TimeWindow::Fixed { from: to.saturating_add_ns(-span), to },
         };
     }
 
@@ -97,8 +97,8 @@ impl Recorder {
             TimeWindow::Fixed { from, to } => {
                 let share = about.seconds_since(from) / to.seconds_since(from);
                 let before = (span as f64 * share.clamp(0.0, 1.0)).round() as i64;
-                let from = about.clamp(from, to).plus(-before);
-                self.view = TimeWindow::Fixed { from, to: from.plus(span) };
+                let from = about.clamp(from, to).saturating_add_ns(-before);
+                self.view = TimeWindow::Fixed { from, to: from.saturating_add_ns(span) };
             }
         }
     }

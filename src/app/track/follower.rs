@@ -23,7 +23,14 @@ pub(super) struct PositionTracker {
 impl PositionTracker {
     pub(super) fn new(meaning: Meaning) -> Self {
         let unwrap = meaning.range.and_then(PositionUnwrapper::rotary).unwrap_or_else(PositionUnwrapper::without_wrap);
-        PositionTracker { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
+        PositionTracker {
+            meaning,
+            unwrap,
+            motion: Motion::with_window(WINDOW),
+            last: None,
+            pace: None,
+            has_missed: false,
+        }
     }
 
     /// Returns whether the next position is joined to the last one.
@@ -65,7 +72,7 @@ impl PositionTracker {
     }
 
     pub(super) fn reset_tracking(&mut self) {
-        self.unwrap.gap();
+        self.unwrap.mark_gap();
         self.motion.reset();
         (self.last, self.pace, self.has_missed) = (None, None, false);
     }

@@ -32,7 +32,7 @@ fn samples(track: &DeviceRecorder<Nothing>, line: usize) -> Vec<(i64, f64, Flags
     let line = &track.recorder.lines()[line];
     let history = track.recorder.history(line).unwrap();
     let sample = |at| history.sample(line.column(), at).unwrap();
-    history.all().map(sample).map(|own| (own.time.nanoseconds(), own.value.to_f64(), own.flags)).collect()
+    history.indices().map(sample).map(|own| (own.time.as_nanoseconds(), own.value.to_f64(), own.flags)).collect()
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let factor = |at: usize| track.recorder.lines()[at].factor();
     assert_eq!((factor(3), factor(0)), (360.0 / 1000.0, 360.0 / 400.0));
     assert_eq!(
-        track.recorder.recorded().map(|(from, to)| (from.nanoseconds(), to.nanoseconds())),
+        track.recorder.recorded().map(|(from, to)| (from.as_nanoseconds(), to.as_nanoseconds())),
         Some((0, 4_000_000_000))
     );
     // They are drawn where they are, and nowhere else.

@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use self::args::AnalyseArgs;
 use crate::analysis::capture::{Capture, Layout, TableHints};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
-use crate::analysis::position_error::{ErrorBasis, Samples, harmonics};
+use crate::analysis::position_error::{ErrorBasis, Samples, harmonic_amplitudes};
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::analysis::signal_analysis::Analysis;
@@ -33,11 +33,11 @@ impl CliCommand for AnalyseCommand {
     }
 
     fn run(&self, _: &CommonArgs, output: &Output, matches: &ArgMatches) -> Result {
-        analyse(output, &parse(matches)?)
+        analyse_capture(output, &parse(matches)?)
     }
 }
 
-fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
+fn analyse_capture(output: &Output, arguments: &AnalyseArgs) -> Result {
     let path = &arguments.file;
     let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
@@ -47,12 +47,12 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
     let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
-    remarks(output, &layout, &capture);
+    print_remarks(output, &layout, &capture);
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
     let record = Record { samples, references_v, periods: arguments.periods };
     let family = arguments.limits.family();
-    let analysis = Analysis::of(samples);
+    let analysis = Analysis::from_samples(samples);
     let diagnosis = diagnose(&record, analysis.as_ref(), &family.limits());
     let findings: Vec<String> =
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal_text()).collect();
@@ -62,7 +62,7 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
-    let revolution = revolution(output, &capture, &analysis, arguments.periods);
+    let revolution = analyse_revolution(output, &capture, &analysis, arguments.periods);
     let report = CaptureReport {
         family,
         analysis: &analysis,
@@ -76,7 +76,7 @@ fn analyse(output: &Output, arguments: &AnalyseArgs) -> Result {
     Ok(Done::Well)
 }
 
-fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
+fn print_remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
         output.remark(&text.terminal_text());
@@ -88,7 +88,12 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
 
 /// Calculates DNL and INL against the reference angle. If the number of periods is missing, a remark explains how to
 /// give it.
-fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
+fn analyse_revolution(
+    output: &Output,
+    capture: &Capture,
+    analysis: &Analysis,
+    periods: Option<u32>,
+) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {
         output.remark("The table contains the angle of a reference encoder. Add --periods N to get DNL and INL.");
@@ -96,7 +101,7 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
     };
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     let revolution =
-        Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+        Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
     revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal_text())).ok()
 }
 
@@ -139,9 +144,9 @@ impl CaptureReport<'_> {
             "vector_max_v": most,
             "error_pp_deg_raw": error.raw_peak_to_peak_deg(),
             "error_pp_deg_corrected": error.corrected_pp_deg,
-            "error_basis": basis(error.basis),
-            "harmonics_deg_raw": harmonics(&error.raw_deg),
-            "harmonics_deg_corrected": harmonics(&error.corrected_deg),
+            "error_basis": basis_keyword(error.basis),
+            "harmonics_deg_raw": harmonic_amplitudes(&error.raw_deg),
+            "harmonics_deg_corrected": harmonic_amplitudes(&error.corrected_deg),
             "noise_rms_v": self.diagnosis.noise_v,
             "interference": lines,
             "limits": self.family.name(),
@@ -215,7 +220,7 @@ impl CaptureReport<'_> {
     }
 }
 
-fn basis(basis: ErrorBasis) -> &'static str {
+fn basis_keyword(basis: ErrorBasis) -> &'static str {
     match basis {
         ErrorBasis::Motion { .. } => "motion",
         ErrorBasis::Ellipse => "ellipse",

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::reading::{self, Reading};
+use super::reading::{self, CaptureReading};
 use super::synchronise::SynchroniseState;
 use super::{
-    DiagnosisSettings, Done, FailedTask, Measurement, MeasurementResult, Read, Scope, SignalsAction, Source,
-    SourceAction, Table, TableSource, task_guard,
+    DiagnosisSettings, FailedTask, Measurement, MeasurementResult, ReadCapture, Scope, SignalsAction, Source,
+    SourceAction, Table, TableSource, TaskResult, task_guard,
 };
 use crate::analysis::capture::TableHints;
 use crate::analysis::diagnosis::{DiagnosisChanges, DiagnosisFinding, compare};
@@ -32,7 +32,7 @@ pub struct Signals {
     comparison: Option<Arc<MeasurementResult>>,
     table: Option<Table>,
     problem: Option<Text>,
-    reading: Option<Reading>,
+    reading: Option<CaptureReading>,
     attempts: u32,
     judgements: u32,
 }
@@ -61,18 +61,18 @@ impl Tool for Signals {
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError> {
         match action.open()? {
             SignalsAction::Source(SourceAction::StartAdapter) => self.start_adapter_when_free(context),
-            action => Signals::act(self, action, context.services()),
+            action => Signals::handle_action(self, action, context.services()),
         }
         Ok(())
     }
 
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
-        Signals::done(self, done.open()?, services);
+        Signals::handle_result(self, done.open()?, services);
         Ok(())
     }
 
     fn pump(&mut self, services: &mut Services) {
-        Signals::pump(self, services);
+        Signals::process_samples(self, services);
     }
 
     fn can_stop(&self) -> bool {
@@ -81,7 +81,7 @@ impl Tool for Signals {
 
     fn stop(&mut self, services: &mut Services) {
         self.source.stop(services);
-        self.give_up();
+        self.cancel_reading();
     }
 
     fn recorder(&self) -> &Recorder {
@@ -93,7 +93,7 @@ impl Tool for Signals {
     }
 
     fn follow(&mut self, source: &mut dyn SineCosineSource) {
-        self.synchronise.follow(source);
+        self.synchronise.follow_source(source);
     }
 
     fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
@@ -105,14 +105,14 @@ impl Tool for Signals {
     }
 
     fn open(&mut self, path: PathBuf, services: &mut Services) {
-        Signals::act(self, SignalsAction::Open(path), services);
+        Signals::handle_action(self, SignalsAction::Open(path), services);
     }
 }
 
 impl Signals {
     /// Creates the state from the links of previously used adapters, most recent first.
-    pub(crate) fn at(links: &[String]) -> Self {
-        Signals { source: Source::at(links.first()), ..Signals::default() }
+    pub(crate) fn with_links(links: &[String]) -> Self {
+        Signals { source: Source::with_link(links.first()), ..Signals::default() }
     }
 
     /// Starts the adapter after other users have released its connection. The link is stored in the settings.
@@ -123,7 +123,7 @@ impl Signals {
         };
         match earlier {
             Ok(earlier) => self.start_adapter(earlier, context.services()),
-            Err(why) => self.source.refuse(why),
+            Err(why) => self.source.show_rejection(why),
         }
         if self.source.adapter_problem().is_none() {
             context.use_link(self.source.link());
@@ -136,7 +136,7 @@ impl Signals {
 
     /// Returns the signal periods per revolution, at least 1. Without them, the results that depend on them are
     /// omitted.
-    pub fn periods(&self) -> Option<u32> {
+    pub fn signal_periods(&self) -> Option<u32> {
         self.periods
     }
 
@@ -153,7 +153,7 @@ impl Signals {
     }
 
     /// Returns the results of the capture that was kept for comparison.
-    pub fn comparison(&self) -> Option<&Arc<MeasurementResult>> {
+    pub fn compared_result(&self) -> Option<&Arc<MeasurementResult>> {
         self.comparison.as_ref()
     }
 
@@ -167,7 +167,7 @@ impl Signals {
         self.problem.as_ref()
     }
 
-    pub fn reading(&self) -> Option<&Reading> {
+    pub fn capture_reading(&self) -> Option<&CaptureReading> {
         self.reading.as_ref()
     }
 
@@ -190,7 +190,7 @@ impl Signals {
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
-        if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
+        if self.measurement.as_ref().is_some_and(|own| own.judge != self.diagnosis_settings()) {
             self.update_verdicts(services);
         }
     }
@@ -202,13 +202,13 @@ impl Signals {
         }
     }
 
-    fn give_up(&self) {
+    fn cancel_reading(&self) {
         if let Some(reading) = &self.reading {
             reading.cancel();
         }
     }
 
-    pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
+    pub(crate) fn handle_action(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
             SignalsAction::Open(path) => self.open_table_source(TableSource::File(path), services),
             SignalsAction::Example(example) => self.open_table_source(TableSource::Example(example), services),
@@ -225,12 +225,12 @@ impl Signals {
             SignalsAction::SetVolts(_) => {}
             SignalsAction::Detect => self.reread_with_hints(services, |hints| *hints = TableHints::default()),
             SignalsAction::SetColumn(column, number) => {
-                let settled = self.settled();
-                if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
-                    self.reread(settled, services);
+                let settled = self.displayed_table();
+                if self.table.as_mut().is_some_and(|table| table.select_column(column, number)) {
+                    self.read_again(settled, services);
                 }
             }
-            SignalsAction::Cancel => self.give_up(),
+            SignalsAction::Cancel => self.cancel_reading(),
             SignalsAction::Source(action) => self.handle_source_action(action, services),
             SignalsAction::SetFamily(family) => {
                 self.family = family;
@@ -241,31 +241,31 @@ impl Signals {
                 self.comparison = shown.or(self.comparison.take());
             }
             SignalsAction::DropComparison => self.comparison = None,
-            SignalsAction::Synchronise(action) => self.synchronise.act(action),
+            SignalsAction::Synchronise(action) => self.synchronise.handle_action(action),
             SignalsAction::SetPeriods(periods) => self.set_periods(periods, false, services),
         }
     }
 
-    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
+    pub(crate) fn handle_result(&mut self, done: TaskResult, services: &mut Services) {
         match done {
-            Done::Read { number, read } => {
+            TaskResult::Read { number, read } => {
                 if let Some(reading) = self.reading.take_if(|reading| reading.number == number) {
-                    self.take(*read, &reading, services);
+                    self.adopt_capture(*read, &reading, services);
                 }
             }
-            Done::Judged { number, measurement } => {
+            TaskResult::Judged { number, measurement } => {
                 let same = |own: &Arc<Measurement>| Arc::ptr_eq(&own.capture, &measurement.capture);
                 if self.judgements == number && self.measurement.as_ref().is_some_and(same) {
                     self.measurement = Some(Arc::new(*measurement));
                 }
             }
-            Done::Measured { number, measurement } => self.measured(number, *measurement, services),
-            Done::Failed(failed) => self.failed(failed, services),
-            Done::LetGo => {}
+            TaskResult::Measured { number, measurement } => self.handle_measurement(number, *measurement, services),
+            TaskResult::Failed(failed) => self.handle_failed_task(failed, services),
+            TaskResult::LetGo => {}
         }
     }
 
-    fn failed(&mut self, failed: FailedTask, services: &mut Services) {
+    fn handle_failed_task(&mut self, failed: FailedTask, services: &mut Services) {
         let what = match failed {
             FailedTask::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
                 self.abort_reading();
@@ -283,17 +283,17 @@ impl Signals {
     /// Replaces the displayed samples. This cancels an export of the previous samples.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::RecorderAction::CancelExport);
-        task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
+        task_guard::drop_in_background(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
         /// Number of samples above which memory is released on another thread. For fewer samples, starting the thread
         /// takes longer than releasing them.
-        const LARGE: usize = 100_000;
+        const LARGE_CAPTURE_SAMPLES: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
-            && before.capture.sine_v.len() > LARGE
+            && before.capture.sine_v.len() > LARGE_CAPTURE_SAMPLES
         {
-            task_guard::let_go(&services.tasks, before);
+            task_guard::drop_in_background(&services.tasks, before);
         }
     }
 
@@ -304,8 +304,8 @@ impl Signals {
         self.table = None;
     }
 
-    fn take(&mut self, read: Read, reading: &Reading, services: &mut Services) {
-        let Read { table, result } = read;
+    fn adopt_capture(&mut self, read: ReadCapture, reading: &CaptureReading, services: &mut Services) {
+        let ReadCapture { table, result } = read;
         let path = table.place.path();
         match result {
             Ok((measurement, scope)) => {
@@ -313,7 +313,7 @@ impl Signals {
                 self.replace_scope(scope, services);
                 let judge = measurement.judge;
                 self.show(measurement, services);
-                if judge != self.judge() {
+                if judge != self.diagnosis_settings() {
                     self.update_verdicts(services);
                 }
                 self.problem = None;
@@ -333,43 +333,43 @@ impl Signals {
     }
 
     /// Returns the table of the displayed capture. A table that is still being read does not count.
-    fn settled(&self) -> Option<Table> {
+    fn displayed_table(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
 
     fn reread_with_hints(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
-        let settled = self.settled();
+        let settled = self.displayed_table();
         if let Some(table) = &mut self.table {
             change(&mut table.hints);
-            self.reread(settled, services);
+            self.read_again(settled, services);
         }
     }
 
-    fn reread(&mut self, settled: Option<Table>, services: &mut Services) {
+    fn read_again(&mut self, settled: Option<Table>, services: &mut Services) {
         if let Some(table) = &self.table {
             self.read(table.place.clone(), table.hints.clone(), settled, services);
         }
     }
 
     fn open_table_source(&mut self, place: TableSource, services: &mut Services) {
-        let settled = self.settled();
+        let settled = self.displayed_table();
         if std::mem::take(&mut self.periods_of_source) {
             self.periods = None;
         }
         self.read(place, TableHints::default(), settled, services);
     }
 
-    pub(super) fn judge(&self) -> DiagnosisSettings {
+    pub(super) fn diagnosis_settings(&self) -> DiagnosisSettings {
         DiagnosisSettings { family: self.family, periods: self.periods }
     }
 
     pub(super) fn update_verdicts(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
-        let (number, judge) = (self.judgements, self.judge());
-        task_guard::run(&services.tasks, "judge", Done::Failed(FailedTask::Judge), move || Done::Judged {
+        let (number, judge) = (self.judgements, self.diagnosis_settings());
+        task_guard::run(&services.tasks, "judge", TaskResult::Failed(FailedTask::Judge), move || TaskResult::Judged {
             number,
-            measurement: Box::new(measurement.judged(judge)),
+            measurement: Box::new(measurement.with_settings(judge)),
         });
     }
 
@@ -377,12 +377,11 @@ impl Signals {
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;
-        let (reading, progress) = Reading::new(number, place.clone(), settled);
+        let (reading, progress) = CaptureReading::new(number, place.clone(), settled);
         self.reading = Some(reading);
-        let judge = self.judge();
-        task_guard::run(&services.tasks, "capture", Done::Failed(FailedTask::Read(number)), move || Done::Read {
-            number,
-            read: Box::new(reading::read(place, hints, judge, &progress)),
+        let judge = self.diagnosis_settings();
+        task_guard::run(&services.tasks, "capture", TaskResult::Failed(FailedTask::Read(number)), move || {
+            TaskResult::Read { number, read: Box::new(reading::read(place, hints, judge, &progress)) }
         });
     }
 }

@@ -33,12 +33,12 @@ pub enum SignalsAction {
     Synchronise(synchronise::SynchroniseAction),
 }
 
-pub enum Done {
+pub enum TaskResult {
     /// A capture was read, or reading failed.
     Read {
         /// Number of the attempt. Results of earlier attempts are ignored.
         number: u32,
-        read: Box<Read>,
+        read: Box<ReadCapture>,
     },
     /// The displayed capture was judged again.
     Judged {
@@ -64,7 +64,7 @@ pub enum FailedTask {
     Measure(u32),
 }
 
-pub struct Read {
+pub struct ReadCapture {
     /// First lines of the table, with the detected format.
     pub(super) table: Table,
     pub(super) result: Result<(Measurement, Scope), ReadCaptureError>,

@@ -35,7 +35,7 @@ impl ChannelSamples {
     }
 
     /// Returns the samples of a wire, or an empty slice if they are unknown.
-    pub(super) fn wire(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
+    pub(super) fn wire_samples(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
         self.wires.as_ref().map_or(&[], |wires| of(wires))
     }
 }
@@ -79,7 +79,8 @@ impl AdapterLink {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-        let (margin, open) = open_adapter(&url, clock.clone(), attachable_kinds()).map_err(|error| refused(&error))?;
+        let (margin, open) =
+            open_adapter(&url, clock.clone(), attachable_kinds()).map_err(|error| open_error_text(&error))?;
         Ok(AdapterLink { url, clock, margin, open })
     }
 
@@ -110,12 +111,12 @@ impl AdapterLink {
         });
         let bridge = Bridge::new(SineCosine { sample_hz }, supply, margin, open);
         let streaming = bridge.streaming();
-        Ok(SignalFeed::Adapter { stream: spawn(bridge, clock, services)?, streaming, url })
+        Ok(SignalFeed::Adapter { stream: spawn_stream(bridge, clock, services)?, streaming, url })
     }
 }
 
 /// Maximum number of samples that wait for the window: two seconds at 100 kHz.
-const WAITING: usize = 200_000;
+const MAX_WAITING_SAMPLES: usize = 200_000;
 
 impl SignalFeed {
     /// Starts sampling the virtual encoder.
@@ -125,18 +126,18 @@ impl SignalFeed {
     pub(super) fn start_virtual(checked: Checked, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let producer = AnalogueSource::new(checked, clock.now());
-        Ok(SignalFeed::Virtual(spawn(producer, clock, services)?))
+        Ok(SignalFeed::Virtual(spawn_stream(producer, clock, services)?))
     }
 
     /// Returns the batches received since the last call.
-    pub(super) fn take(&self) -> Vec<Batch<ChannelSamples>> {
+    pub(super) fn take_batches(&self) -> Vec<Batch<ChannelSamples>> {
         match self {
-            SignalFeed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
-            SignalFeed::Adapter { stream, .. } => stream.take().into_iter().map(channels).collect(),
+            SignalFeed::Virtual(stream) => stream.take().into_iter().map(to_channels).collect(),
+            SignalFeed::Adapter { stream, .. } => stream.take().into_iter().map(to_channels).collect(),
         }
     }
 
-    pub(super) fn lost(&self) -> u64 {
+    pub(super) fn lost_samples(&self) -> u64 {
         match self {
             SignalFeed::Virtual(stream) => stream.lost(),
             SignalFeed::Adapter { stream, .. } => stream.lost(),
@@ -155,14 +156,14 @@ impl SignalFeed {
             SignalFeed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
             SignalFeed::Virtual(_) => TEXTS.text("virtual.ended"),
             SignalFeed::Adapter { stream, .. } => match stream.take_error() {
-                Some(error) => failed(&error),
+                Some(error) => bridge_error_text(&error),
                 None => TEXTS.text("virtual.ended"),
             },
         }
     }
 
     /// Returns the identity and actual sampling of the adapter. The virtual encoder has none.
-    pub(super) fn streaming(&self) -> Option<&Streaming> {
+    pub(super) fn streaming_adapter(&self) -> Option<&Streaming> {
         match self {
             SignalFeed::Virtual(_) => None,
             SignalFeed::Adapter { streaming, .. } => streaming.get(),
@@ -176,7 +177,7 @@ impl SignalFeed {
         }
     }
 
-    pub(super) fn change(&self, checked: Checked) {
+    pub(super) fn change_settings(&self, checked: Checked) {
         if let SignalFeed::Virtual(stream) = self {
             stream.change(checked);
         }
@@ -192,7 +193,7 @@ impl SignalFeed {
     }
 
     /// Releases the feed. The adapter ends its stream in the background.
-    pub(super) fn let_go(self, services: &mut Services) {
+    pub(super) fn release(self, services: &mut Services) {
         if let SignalFeed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();
             drop(stream);
@@ -201,26 +202,26 @@ impl SignalFeed {
     }
 }
 
-fn spawn<P: Producer>(producer: P, clock: Arc<dyn Clock>, services: &Services) -> Result<Stream<P>, Text> {
+fn spawn_stream<P: Producer>(producer: P, clock: Arc<dyn Clock>, services: &Services) -> Result<Stream<P>, Text> {
     let refused = |error| Text::new("session.no_thread").with("why", error);
-    Stream::spawn(producer, WAITING, clock, services.tasks.wake()).map_err(refused)
+    Stream::spawn(producer, MAX_WAITING_SAMPLES, clock, services.tasks.wake()).map_err(refused)
 }
 
-fn channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples> {
+fn to_channels<S: Into<ChannelSamples>>(batch: Batch<S>) -> Batch<ChannelSamples> {
     let Batch { first, time, period_ns, lost, samples } = batch;
     Batch { first, time, period_ns, lost, samples: samples.into() }
 }
 
-fn failed(error: &BridgeError) -> Text {
+fn bridge_error_text(error: &BridgeError) -> Text {
     match error {
-        BridgeError::Open(error) => refused(error),
+        BridgeError::Open(error) => open_error_text(error),
         BridgeError::Tap(AdapterStreamError::Link(error)) => explain::link(error),
         BridgeError::Tap(AdapterStreamError::Adapter(error)) => bridge::adapter(error),
         BridgeError::Tap(AdapterStreamError::Cancelled) => TEXTS.text("virtual.ended"),
     }
 }
 
-fn refused(error: &OpenError) -> Text {
+fn open_error_text(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),
         OpenError::Sim(why) => TEXTS.text("adapter.link").with_text("why", explain::setting(why)),

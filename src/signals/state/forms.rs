@@ -8,7 +8,7 @@ use crate::signals::state::TEXTS;
 ///
 /// # Errors
 /// Returns an error if the entry is invalid.
-pub fn periods(text: &str) -> Result<u32, Text> {
+pub fn parse_periods(text: &str) -> Result<u32, Text> {
     whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
 }
 
@@ -16,7 +16,7 @@ pub fn periods(text: &str) -> Result<u32, Text> {
 ///
 /// # Errors
 /// Returns an error if the entry is invalid.
-pub fn number(text: &str) -> Result<f64, Text> {
+pub fn parse_number(text: &str) -> Result<f64, Text> {
     crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
@@ -26,7 +26,7 @@ pub fn number(text: &str) -> Result<f64, Text> {
 /// Returns an error if the entry is invalid.
 pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
     let refused = || TEXTS.text("signals.bad_volts").with("entry", text);
-    number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)
+    parse_number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)
 }
 
 #[cfg(test)]
@@ -36,10 +36,10 @@ mod tests {
     #[test]
     fn entries_accept_common_number_notations() {
         for (text, value) in [("1", 1.0), (" 0,5 ", 0.5), ("-2.5", -2.5), ("1e-3", 0.001), ("+7", 7.0)] {
-            assert_eq!(number(text), Ok(value), "{text}");
+            assert_eq!(parse_number(text), Ok(value), "{text}");
         }
         for text in ["", " ", "NaN", "inf", "1e999", "1,2,3", "0x10", "five", "--1", "."] {
-            assert!(number(text).is_err(), "{text}");
+            assert!(parse_number(text).is_err(), "{text}");
         }
         assert_eq!(volts_per_unit("0,001"), Ok(0.001));
         for text in ["0", "-0.0", "1e-999", "x"] {
@@ -50,10 +50,10 @@ mod tests {
     #[test]
     fn periods_are_integers_in_range() {
         for (text, value) in [("1", 1), (" 1024 ", 1024), ("65536", 65_536)] {
-            assert_eq!(periods(text), Ok(value), "{text}");
+            assert_eq!(parse_periods(text), Ok(value), "{text}");
         }
         for text in ["", "0", "-5", "+5", "65537", "99999999999", "10.0", "1e3", "x"] {
-            assert!(periods(text).is_err(), "{text}");
+            assert!(parse_periods(text).is_err(), "{text}");
         }
     }
 }

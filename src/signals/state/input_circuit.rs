@@ -39,7 +39,7 @@ pub struct InputCircuitResult {
 }
 
 /// Highest speed that can be entered, in revolutions per minute.
-const MOST_RPM: f64 = 1_000_000.0;
+const MAX_RPM: f64 = 1_000_000.0;
 
 impl Default for Form {
     fn default() -> Self {
@@ -55,14 +55,20 @@ impl Form {
     /// Returns the reason why the first invalid entry was refused.
     pub fn calculate_circuit(&self) -> Result<InputCircuitResult, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
-        let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
+        let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MAX_RPM)?;
         let ohms = parse_quantity(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
         let farads =
             parse_quantity(TEXTS.text("input.capacitance"), &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
         let filter = InputFilter { resistance_ohm: ohms, capacitance_f: farads };
-        let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MOST_RPM);
+        let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MAX_RPM);
         let corner_hz = 1.0 / (std::f64::consts::TAU * ohms * farads);
-        Ok(InputCircuitResult { here: point(periods, filter, speed_rpm), most_rpm, corner_hz, periods, filter })
+        Ok(InputCircuitResult {
+            here: operating_point(periods, filter, speed_rpm),
+            most_rpm,
+            corner_hz,
+            periods,
+            filter,
+        })
     }
 }
 
@@ -73,9 +79,9 @@ impl InputCircuitResult {
 
     /// Returns the operating points at `count` evenly spaced speeds. The last speed is the highest within the encoder's
     /// bandwidth.
-    pub fn course(&self, count: u32) -> Vec<OperatingPoint> {
+    pub fn operating_points(&self, count: u32) -> Vec<OperatingPoint> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
-        (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
+        (1..=count).map(|at| operating_point(self.periods, self.filter, speed(at))).collect()
     }
 
     /// Returns the angle error per microsecond between the sampling of both channels. The error is in electrical
@@ -85,9 +91,9 @@ impl InputCircuitResult {
     }
 }
 
-fn point(periods: u32, filter: InputFilter, speed_rpm: f64) -> OperatingPoint {
+fn operating_point(periods: u32, filter: InputFilter, speed_rpm: f64) -> OperatingPoint {
     let frequency_hz = signal_frequency_hz(periods, speed_rpm);
-    let response = filter.at(frequency_hz);
+    let response = filter.response_at(frequency_hz);
     OperatingPoint { speed_rpm, frequency_hz, response, shaft_deg: response.phase_deg / f64::from(periods.max(1)) }
 }
 
@@ -133,7 +139,7 @@ mod tests {
     fn the_curve_ends_at_the_bandwidth() {
         let circuit = form("1024", "9000", "10k", "47p").calculate_circuit().unwrap();
         assert!(!circuit.is_within_bandwidth(), "153.6 kHz");
-        let course = circuit.course(10);
+        let course = circuit.operating_points(10);
         assert_eq!(course.len(), 10);
         assert!((course[0].frequency_hz - 15e3).abs() < 1e-6 && (course[9].frequency_hz - 150e3).abs() < 1e-6);
         // arctan(2π · 150 kHz · 10 kΩ · 47 pF) = 23.8916°

@@ -37,14 +37,14 @@ pub fn table_errors() -> &'static [OctantTableError] {
 
 /// Determines the largest error of a table with the given number of intervals.
 fn table_error(intervals: usize) -> OctantTableError {
-    const PLACES: usize = 64;
+    const POINTS_PER_INTERVAL: usize = 64;
     let table = OctantTable::new(intervals);
     let error = |place: usize| {
-        let t = place as f64 / (intervals * PLACES) as f64;
-        let both = table.phase(t, 1.0).zip(arctan::exact(t, 1.0));
-        both.map_or(0.0, |(table, exact)| (table.degrees() - exact.degrees()).abs())
+        let t = place as f64 / (intervals * POINTS_PER_INTERVAL) as f64;
+        let both = table.phase(t, 1.0).zip(arctan::from_voltages(t, 1.0));
+        both.map_or(0.0, |(table, exact)| (table.to_degrees() - exact.to_degrees()).abs())
     };
-    let largest_deg = (0..=intervals * PLACES).map(error).fold(0.0, f64::max);
+    let largest_deg = (0..=intervals * POINTS_PER_INTERVAL).map(error).fold(0.0, f64::max);
     let parts = DEGREES / largest_deg;
     OctantTableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
@@ -55,10 +55,10 @@ fn table_error(intervals: usize) -> OctantTableError {
 /// # Errors
 /// Returns an error if an entry is not a number or both voltages are zero.
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<InterpolatedPhase, Text> {
-    let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
-    let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
+    let (sine, cosine) = (forms::parse_number(sine)?, forms::parse_number(cosine)?);
+    let both = arctan::from_voltages(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
     let (exact, table) = both.ok_or_else(|| TEXTS.text("octant.no_signal"))?;
-    let apart = table.degrees() - exact.degrees();
+    let apart = table.to_degrees() - exact.to_degrees();
     let difference_deg = apart - DEGREES * (apart / DEGREES).round();
     Ok(InterpolatedPhase { exact, table, difference_deg })
 }
@@ -90,8 +90,8 @@ mod tests {
             ("-0.2", "0.45825757", 336.421_82, 336.422_38),
         ] {
             let found = interpolate(sine, cosine, 32).unwrap();
-            assert!((found.exact.degrees() - exact).abs() < 2e-5, "{sine} {cosine}: {found:?}");
-            assert!((found.table.degrees() - table).abs() < 2e-5, "{sine} {cosine}: {found:?}");
+            assert!((found.exact.to_degrees() - exact).abs() < 2e-5, "{sine} {cosine}: {found:?}");
+            assert!((found.table.to_degrees() - table).abs() < 2e-5, "{sine} {cosine}: {found:?}");
             assert!((found.difference_deg - (table - exact)).abs() < 2e-5, "{sine} {cosine}: {found:?}");
         }
         for (sine, cosine) in [("0", "0"), ("", "1"), ("1", "x"), ("NaN", "1"), ("1e999", "1")] {

@@ -8,8 +8,8 @@ use crate::signals::state::TEXTS;
 use crossbeam_channel::Receiver;
 
 use super::feed::{AdapterLink, SignalFeed};
-use super::recent::{MOST, RecentSamples};
-use super::{Done, FailedTask, Measurement, Origin, Scope, Signals, task_guard};
+use super::recent::{MAX_SAMPLES, RecentSamples};
+use super::{FailedTask, Measurement, Origin, Scope, Signals, TaskResult, task_guard};
 use crate::analysis::SampleTime;
 use crate::analysis::quality::Family;
 use crate::analysis::wiring::Wire;
@@ -69,10 +69,10 @@ pub struct Source {
     runs: u32,
     /// Number of lost samples, without those that a running stream counts.
     lost: u64,
-    live: Option<Live>,
+    live: Option<LiveSource>,
 }
 
-struct Live {
+struct LiveSource {
     feed: SignalFeed,
     recent: RecentSamples,
     held: bool,
@@ -106,7 +106,7 @@ impl Default for Source {
 
 impl Source {
     /// Creates the state from the link of the adapter that was used last.
-    pub(super) fn at(link: Option<&String>) -> Self {
+    pub(super) fn with_link(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
     }
@@ -130,7 +130,7 @@ impl Source {
     }
 
     /// Returns the family of the encoder that the adapter supplies, or `None` if it supplies none.
-    pub fn supply(&self) -> Option<Family> {
+    pub fn supplied_family(&self) -> Option<Family> {
         self.supply
     }
 
@@ -144,8 +144,8 @@ impl Source {
     }
 
     /// Returns the identity and sampling of the running adapter, or `None` until they are known.
-    pub fn streaming(&self) -> Option<&Streaming> {
-        self.live.as_ref().and_then(|live| live.feed.streaming())
+    pub fn streaming_adapter(&self) -> Option<&Streaming> {
+        self.live.as_ref().and_then(|live| live.feed.streaming_adapter())
     }
 
     /// Returns whether the running source is virtual.
@@ -170,32 +170,32 @@ impl Source {
     pub fn limited_window_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
-            SourceKind::Adapter => self.streaming()?.period_ns,
+            SourceKind::Adapter => self.streaming_adapter()?.period_ns,
         };
-        let longest_ms = MOST as f64 * period_ns as f64 / 1e6;
+        let longest_ms = MAX_SAMPLES as f64 * period_ns as f64 / 1e6;
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
     /// Returns the number of samples lost since the last start. A sample is lost if it did not arrive, was not read in
     /// time, or could not be displayed.
-    pub fn lost(&self) -> u64 {
-        self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
+    pub fn lost_samples(&self) -> u64 {
+        self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost_samples())
     }
 
     pub(super) fn stop(&mut self, services: &mut Services) {
-        self.lost = self.lost();
+        self.lost = self.lost_samples();
         if let Some(live) = self.live.take() {
-            live.feed.let_go(services);
+            live.feed.release(services);
         }
     }
 
-    fn change(&mut self, settings: Settings) -> bool {
+    fn change_settings(&mut self, settings: Settings) -> bool {
         match settings.checked() {
             Ok(checked) => {
                 self.settings = checked.settings().clone();
                 self.problem = None;
                 if let Some(live) = &self.live {
-                    live.feed.change(checked);
+                    live.feed.change_settings(checked);
                 }
                 true
             }
@@ -231,17 +231,16 @@ impl Source {
         self.link.parse().ok()
     }
 
-    pub(crate) fn refuse(&mut self, why: Text) {
+    pub(crate) fn show_rejection(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
 
     /// Stops the adapter if it uses the connection of the given link, because an encoder search needs it.
     pub(crate) fn release_connection(&mut self, url: &LinkUrl, services: &mut Services) {
-        let holds =
-            |live: &Live| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
+        let holds = |live: &LiveSource| matches!(&live.feed, SignalFeed::Adapter { url: own, .. } if is_same_connection(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
-            self.refuse(TEXTS.text("adapter.let_go"));
+            self.show_rejection(TEXTS.text("adapter.let_go"));
         }
     }
 
@@ -256,7 +255,7 @@ impl Source {
         };
         // A running source must release its connection first.
         self.stop(services);
-        match link.start(self.sample_hz, self.supply.map(Family::supply), earlier, services) {
+        match link.start(self.sample_hz, self.supply.map(Family::supply_voltage), earlier, services) {
             Ok(feed) => {
                 self.adapter_problem = None;
                 self.run(SourceKind::Adapter, feed, services);
@@ -275,16 +274,16 @@ impl Source {
         self.runs = self.runs.wrapping_add(1);
         self.lost = 0;
         self.live =
-            Some(Live { feed, recent: RecentSamples::default(), held: false, measuring: false, measured: None });
+            Some(LiveSource { feed, recent: RecentSamples::default(), held: false, measuring: false, measured: None });
     }
 }
 
-impl Live {
+impl LiveSource {
     fn origin(&self) -> Option<Origin> {
         match &self.feed {
             SignalFeed::Virtual(_) => Some(Origin::Virtual),
             SignalFeed::Adapter { .. } => {
-                let name = self.feed.streaming()?.hello.name.clone();
+                let name = self.feed.streaming_adapter()?.hello.name.clone();
                 Some(Origin::Adapter { name, is_virtual: self.feed.is_virtual() })
             }
         }
@@ -318,7 +317,7 @@ impl Signals {
                 if let Some(live) = &mut self.source.live {
                     live.held = held;
                     // Samples that arrived while the display was frozen are missing, so the trace has a gap.
-                    self.scope.interrupt();
+                    self.scope.mark_gap();
                 }
             }
             SourceAction::Set(quantity, value) => {
@@ -352,41 +351,41 @@ impl Signals {
     /// displayed capture.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
-        if self.source.change(settings) && with_periods && own {
+        if self.source.change_settings(settings) && with_periods && own {
             self.set_periods(self.source.settings().periods as u32, true, services);
         }
     }
 
     /// Takes the received samples, and starts a measurement if one is due.
-    pub(crate) fn pump(&mut self, services: &mut Services) {
+    pub(crate) fn process_samples(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
-        let judge = self.judge();
+        let judge = self.diagnosis_settings();
         let Some(live) = &mut self.source.live else { return };
         // This is checked first, since the last samples before the end must still be taken.
         let ended = live.feed.is_finished();
-        for batch in live.feed.take() {
+        for batch in live.feed.take_batches() {
             if !live.held {
-                self.source.lost += self.scope.add(&batch);
+                self.source.lost += self.scope.add_batch(&batch);
             }
-            live.recent.add(batch);
+            live.recent.add_batch(batch);
         }
         if ended {
-            self.ended(services);
+            self.handle_source_end(services);
             return;
         }
         if live.held || live.measuring || !live.recent.is_due(live.measured) {
             return;
         }
-        let Some((window, origin)) = live.recent.window(window_ms).zip(live.origin()) else { return };
+        let Some((window, origin)) = live.recent.latest_window(window_ms).zip(live.origin()) else { return };
         live.measuring = true;
-        live.measured = live.recent.newest();
-        task_guard::run(&services.tasks, "measure", Done::Failed(FailedTask::Measure(number)), move || {
-            let measurement = Measurement::of(origin, Arc::new(window.capture()), judge);
-            Done::Measured { number, measurement: Box::new(measurement) }
+        live.measured = live.recent.latest_time();
+        task_guard::run(&services.tasks, "measure", TaskResult::Failed(FailedTask::Measure(number)), move || {
+            let measurement = Measurement::from_capture(origin, Arc::new(window.to_capture()), judge);
+            TaskResult::Measured { number, measurement: Box::new(measurement) }
         });
     }
 
-    fn ended(&mut self, services: &mut Services) {
+    fn handle_source_end(&mut self, services: &mut Services) {
         let Some(why) = self.source.live.as_ref().map(|live| live.feed.end_reason()) else { return };
         self.source.stop(services);
         if self.source.kind == SourceKind::Adapter {
@@ -395,7 +394,7 @@ impl Signals {
         services.notify(Severity::Error, vec![why], None);
     }
 
-    pub(super) fn measured(&mut self, number: u32, measurement: Measurement, services: &mut Services) {
+    pub(super) fn handle_measurement(&mut self, number: u32, measurement: Measurement, services: &mut Services) {
         let current = self.source.runs == number;
         let Some(live) = self.source.live.as_mut().filter(|_| current) else { return };
         live.measuring = false;
@@ -405,7 +404,7 @@ impl Signals {
         let judge = measurement.judge;
         self.show_live_measurement(measurement, services);
         // The settings have changed during the measurement.
-        if judge != self.judge() {
+        if judge != self.diagnosis_settings() {
             self.update_verdicts(services);
         }
     }

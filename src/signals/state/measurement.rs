@@ -97,24 +97,24 @@ pub struct DiagnosisSettings {
 
 /// Cells per side of an image with many samples.
 const CELLS: usize = 240;
-const CELLS_OF_FEW: usize = 120;
+const FEW_SAMPLES_CELLS: usize = 120;
 /// Number of samples up to which the cells are larger, since single samples would be invisible in small ones.
-const FEW: usize = 2_000;
+const FEW_SAMPLES: usize = 2_000;
 /// Minimum voltage from the centre of an image to its edge. It is large enough for all rings.
-const LEAST_HALF_V: f64 = 0.75;
+const MIN_HALF_V: f64 = 0.75;
 
 impl Measurement {
     /// Measures a capture. This takes about 100 ms for a million samples.
-    pub fn of(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
-        let samples = samples(&capture);
-        let analysis = Analysis::of(samples);
+    pub fn from_capture(origin: Origin, capture: Arc<Capture>, judge: DiagnosisSettings) -> Self {
+        let samples = capture_samples(&capture);
+        let analysis = Analysis::from_samples(samples);
         let mean = |column: &[f64]| column.iter().sum::<f64>() / column.len().max(1) as f64;
         let results = MeasurementResult {
-            diagnosis: diagnosis(&capture, &analysis, judge),
+            diagnosis: diagnose_capture(&capture, &analysis, judge),
             judge,
             rows_left_out: capture.left_out,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
-            spectra: Spectra::of(samples),
+            spectra: Spectra::from_samples(samples),
             nonlinearities: compare_with_reference(&capture, &analysis, judge),
             absolute_offset: reference_comparison::absolute_offset(&capture, analysis.as_ref().ok()),
             raw: sample_density(samples, None),
@@ -130,9 +130,9 @@ impl Measurement {
     }
 
     #[must_use]
-    pub fn judged(&self, judge: DiagnosisSettings) -> Self {
+    pub fn with_settings(&self, judge: DiagnosisSettings) -> Self {
         let results = MeasurementResult {
-            diagnosis: diagnosis(&self.capture, &self.analysis, judge),
+            diagnosis: diagnose_capture(&self.capture, &self.analysis, judge),
             nonlinearities: compare_with_reference(&self.capture, &self.analysis, judge),
             judge,
             ..(*self.results).clone()
@@ -151,19 +151,23 @@ impl Deref for Measurement {
 
 impl MeasurementResult {
     /// Returns the reason why the capture could not be analysed, if any.
-    pub fn refusal(&self, language: Language) -> Option<Text> {
+    pub fn failure_text(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
     }
 }
 
-fn samples(capture: &Capture) -> Samples<'_> {
+fn capture_samples(capture: &Capture) -> Samples<'_> {
     Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v }
 }
 
-fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: DiagnosisSettings) -> Diagnosis {
+fn diagnose_capture(
+    capture: &Capture,
+    analysis: &Result<Analysis, AnalysisError>,
+    judge: DiagnosisSettings,
+) -> Diagnosis {
     let references_v = capture.references_v();
-    let record = Record { samples: samples(capture), references_v, periods: judge.periods };
+    let record = Record { samples: capture_samples(capture), references_v, periods: judge.periods };
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
 }
 
@@ -172,27 +176,27 @@ fn compare_with_reference(
     analysis: &Result<Analysis, AnalysisError>,
     judge: DiagnosisSettings,
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
-    reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
+    reference_comparison::compute_nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
 /// Returns a Lissajous image centred on zero, after the correction if one is given.
 fn sample_density(samples: Samples<'_>, correction: Option<EllipseCorrection>) -> Option<SampleDensity> {
     /// Number of samples corrected at a time.
-    const PORTION: usize = 1 << 14;
+    const CHUNK_SAMPLES: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;
     let most = sine_v.iter().chain(cosine_v).fold(0.0, |most: f64, volts| most.max(volts.abs()));
     // The scale changes in steps. A live image would otherwise change its size continuously.
-    let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(LEAST_HALF_V);
-    let side = if sine_v.len() > FEW { CELLS } else { CELLS_OF_FEW };
-    let mut density = SampleDensity::new(PlotSquare::centred(half_v), side)?;
+    let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(MIN_HALF_V);
+    let side = if sine_v.len() > FEW_SAMPLES { CELLS } else { FEW_SAMPLES_CELLS };
+    let mut density = SampleDensity::new(PlotSquare::centred_on_zero(half_v), side)?;
     let Some(correction) = correction else {
-        density.add(sine_v, cosine_v);
+        density.add_samples(sine_v, cosine_v);
         return Some(density);
     };
-    for (sine, cosine) in sine_v.chunks(PORTION).zip(cosine_v.chunks(PORTION)) {
+    for (sine, cosine) in sine_v.chunks(CHUNK_SAMPLES).zip(cosine_v.chunks(CHUNK_SAMPLES)) {
         let pairs = sine.iter().zip(cosine).map(|(sine, cosine)| correction.apply(*sine, *cosine));
         let (sine, cosine): (Vec<f64>, Vec<f64>) = pairs.unzip();
-        density.add(&sine, &cosine);
+        density.add_samples(&sine, &cosine);
     }
     Some(density)
 }
@@ -209,11 +213,11 @@ mod tests {
             cosine_v: (0..10_000).map(|at| 0.5 * angle(at).cos() - 0.05).collect(),
             ..Capture::default()
         };
-        let measurement = Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default());
+        let measurement = Measurement::from_capture(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default());
         for density in [&measurement.raw, &measurement.corrected] {
             let density = density.as_ref().unwrap();
-            assert_eq!(density.counts().iter().sum::<u32>(), 10_000);
-            assert_eq!((density.side(), density.square().half_v), (240, 0.75));
+            assert_eq!(density.cell_counts().iter().sum::<u32>(), 10_000);
+            assert_eq!((density.cells_per_side(), density.square().half_v), (240, 0.75));
         }
         for lengths in measurement.corrected.as_ref().unwrap().vector_lengths() {
             assert!((lengths.least_v - 0.5).abs() < 1e-6 && (lengths.most_v - 0.5).abs() < 1e-6, "{lengths:?}");

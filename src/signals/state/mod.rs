@@ -36,7 +36,7 @@ impl ToolKind for SignalsKind {
     }
 
     fn begin(&self, links: &[String]) -> Box<dyn Tool> {
-        Box::new(Signals::at(links))
+        Box::new(Signals::with_links(links))
     }
 }
 
@@ -45,11 +45,11 @@ impl ToolAction for SignalsAction {
 }
 
 pub use act::Signals;
-pub use action::{Done, FailedTask, Read, SignalsAction};
+pub use action::{FailedTask, ReadCapture, SignalsAction, TaskResult};
 pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
 pub use measurement::{DiagnosisSettings, Measurement, MeasurementResult, Origin, TableSource};
-pub use quantities::{Quantity, QuantityLimit, Unit, error_quantities, quantities};
-pub use reading::{ExampleCapture, Reading};
+pub use quantities::{Quantity, QuantityLimit, Unit, error_quantities, signal_quantities};
+pub use reading::{CaptureReading, ExampleCapture};
 pub use reference_comparison::{AbsoluteOffset, Nonlinearities, OffsetError, nonlinearity_quantities};
 pub use scope::{Scope, TimeAxisError};
 pub use spectra::{ChannelSpectrum, Spectra, decibel_volts};

@@ -4,7 +4,7 @@
 use super::MeasurementResult;
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::analysis::quality::{Family, Verdict};
-use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
+use crate::analysis::signal_analysis::{Analysis, MIN_OCTANTS};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
@@ -64,14 +64,16 @@ impl Unit {
 
 impl QuantityLimit {
     /// Returns whether a value is within the limit. A value equal to the limit is within it.
-    pub fn holds(self, value: f64) -> bool {
+    pub fn is_met(self, value: f64) -> bool {
         /// Tolerance for rounding errors of a value that equals the limit.
-        const SLACK: f64 = 1e-9;
+        const ROUNDING_TOLERANCE: f64 = 1e-9;
         match self {
-            QuantityLimit::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
-            QuantityLimit::Within(most) => value.abs() <= most + SLACK,
-            QuantityLimit::AtMost(most) => value <= most + SLACK,
-            QuantityLimit::AtLeast(least) => value >= least - SLACK,
+            QuantityLimit::Between(least, most) => {
+                value >= least - ROUNDING_TOLERANCE && value <= most + ROUNDING_TOLERANCE
+            }
+            QuantityLimit::Within(most) => value.abs() <= most + ROUNDING_TOLERANCE,
+            QuantityLimit::AtMost(most) => value <= most + ROUNDING_TOLERANCE,
+            QuantityLimit::AtLeast(least) => value >= least - ROUNDING_TOLERANCE,
         }
     }
 }
@@ -87,13 +89,13 @@ impl Quantity {
     }
 
     /// Judges the quantity by a limit. Exceeding it is only a warning, because the position is still correct.
-    fn bounded(mut self, bound: QuantityLimit) -> Self {
+    fn with_limit(mut self, bound: QuantityLimit) -> Self {
         self.bound = Some(bound);
-        self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
+        self.verdict = Some(if bound.is_met(self.value) { Verdict::Ok } else { Verdict::Warn });
         self
     }
 
-    fn judged(mut self, verdict: Verdict) -> Self {
+    fn with_verdict(mut self, verdict: Verdict) -> Self {
         self.verdict = Some(verdict);
         self
     }
@@ -101,19 +103,19 @@ impl Quantity {
 
 /// Returns the quantities of a signal, judged by the limits of an encoder family. The speed is included if the number
 /// of `periods` per revolution is known. The list is empty if no ellipse was found.
-pub fn quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
+pub fn signal_quantities(measurement: &MeasurementResult, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = ellipse_quantities(analysis, family);
     let (least, most) = family.limits().level_v;
     for (word, level) in [("quality.level_sine", 0), ("quality.level_cosine", 1)] {
         let volts = measurement.levels_v.map(|(sine, cosine)| if level == 0 { sine } else { cosine });
-        let level = |volts| Quantity::new(word, volts, 3, Unit::Volts).bounded(QuantityLimit::Between(least, most));
+        let level = |volts| Quantity::new(word, volts, 3, Unit::Volts).with_limit(QuantityLimit::Between(least, most));
         list.extend(volts.map(level));
     }
     if let Some(frequency_hz) = analysis.frequency_hz() {
         let frequency = Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
-            .bounded(QuantityLimit::Within(BANDWIDTH_HZ / 1e3));
-        list.push(if analysis.is_angle_tracked() { frequency } else { frequency.judged(Verdict::Warn) });
+            .with_limit(QuantityLimit::Within(BANDWIDTH_HZ / 1e3));
+        list.push(if analysis.is_angle_tracked() { frequency } else { frequency.with_verdict(Verdict::Warn) });
         let speed = periods.and_then(|periods| speed_rpm_at(periods, frequency_hz));
         list.extend(speed.map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
     }
@@ -122,7 +124,8 @@ pub fn quantities(measurement: &MeasurementResult, family: Family, periods: Opti
     list.extend(analysis.outliers.as_ref().map(|outliers| left_out(outliers.count)));
     let rows = measurement.rows_left_out;
     list.extend(
-        (rows > 0).then(|| Quantity::new("quality.rows_left_out", rows as f64, 0, Unit::One).judged(Verdict::Warn)),
+        (rows > 0)
+            .then(|| Quantity::new("quality.rows_left_out", rows as f64, 0, Unit::One).with_verdict(Verdict::Warn)),
     );
     list.extend(analysis.duration_s.map(|s| Quantity::new("quality.duration", 1e3 * s, 3, Unit::Milliseconds)));
     list
@@ -134,13 +137,15 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     let volts = |word, peak: f64, factor: f64| {
         let (least, most) = limits.ok_v;
         let quantity = Quantity::new(word, factor * peak, 4, Unit::Volts);
-        quantity.bounded(QuantityLimit::Between(factor * least, factor * most)).judged(limits.amplitude_verdict(peak))
+        quantity
+            .with_limit(QuantityLimit::Between(factor * least, factor * most))
+            .with_verdict(limits.amplitude_verdict(peak))
     };
     let percent = |word, share: f64, decimals| Quantity::new(word, 100.0 * share, decimals, Unit::Percent);
     let offset = |word, offset_v: f64| {
         percent(word, offset_v / ellipse.amplitude_v, 2)
             .with_secondary_value(1000.0 * offset_v, 1, Unit::Millivolts)
-            .bounded(QuantityLimit::Within(100.0 * limits.offset))
+            .with_limit(QuantityLimit::Within(100.0 * limits.offset))
     };
     let (least, most) = coverage.vector_v;
     vec![
@@ -151,12 +156,13 @@ fn ellipse_quantities(analysis: &Analysis, family: Family) -> Vec<Quantity> {
         offset("quality.offset_sine", ellipse.offset_sine_v),
         offset("quality.offset_cosine", ellipse.offset_cosine_v),
         Quantity::new("quality.gain", ellipse.gain_ratio, 4, Unit::One)
-            .bounded(QuantityLimit::Between(limits.gain_ratio.0, limits.gain_ratio.1)),
+            .with_limit(QuantityLimit::Between(limits.gain_ratio.0, limits.gain_ratio.1)),
         Quantity::new("quality.phase", ellipse.phase_error_deg(), 2, Unit::Degrees)
-            .bounded(QuantityLimit::Within(limits.phase_deg)),
-        percent("quality.residual", coverage.residual_rms, 2).bounded(QuantityLimit::AtMost(100.0 * limits.residual)),
+            .with_limit(QuantityLimit::Within(limits.phase_deg)),
+        percent("quality.residual", coverage.residual_rms, 2)
+            .with_limit(QuantityLimit::AtMost(100.0 * limits.residual)),
         Quantity::new("quality.octants", f64::from(coverage.octants), 0, Unit::One)
-            .bounded(QuantityLimit::AtLeast(f64::from(LEAST_OCTANTS))),
+            .with_limit(QuantityLimit::AtLeast(f64::from(MIN_OCTANTS))),
         Quantity::new("quality.periods", coverage.periods, 2, Unit::One),
     ]
 }
@@ -200,12 +206,12 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos() + 0.02).collect(),
             ..Capture::default()
         };
-        Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default())
+        Measurement::from_capture(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default())
     }
 
     #[test]
     fn quantities_match_section_7_with_limits() {
-        let list = quantities(&section_7_example(), Family::Hiperface, Some(50));
+        let list = signal_quantities(&section_7_example(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
         // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 per
         // revolution 2 revolutions per second.
@@ -234,9 +240,9 @@ mod tests {
         let least = find("quality.vector_least");
         assert!((least.value - 0.445_95).abs() < 2e-5 && least.verdict == Some(Verdict::Warn), "{least:?}");
         assert!((find("quality.vector_most").value - 0.537_64).abs() < 2e-5);
-        let bare = quantities(&section_7_example(), Family::Hiperface, None);
+        let bare = signal_quantities(&section_7_example(), Family::Hiperface, None);
         assert!(bare.len() + 1 == list.len() && bare.iter().all(|own| own.unit != Unit::Rpm), "issue 22.13");
-        let wide = quantities(&section_7_example(), Family::AfsAfm60, Some(50));
+        let wide = signal_quantities(&section_7_example(), Family::AfsAfm60, Some(50));
         let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(QuantityLimit::Between(0.4, 0.6))));
     }
@@ -250,8 +256,10 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
             ..Capture::default()
         };
-        let analysis =
-            Measurement::of(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default()).analysis.clone().unwrap();
+        let analysis = Measurement::from_capture(Origin::Virtual, Arc::new(capture), DiagnosisSettings::default())
+            .analysis
+            .clone()
+            .unwrap();
         // Issue 22.13: without the periods per turn there are no mechanical angles and no speed.
         let bare = error_quantities(&analysis, None);
         assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
@@ -271,8 +279,8 @@ mod tests {
             (QuantityLimit::AtMost(2.0), [2.0, -9.0], [2.1, f64::INFINITY]),
             (QuantityLimit::AtLeast(6.0), [6.0, 8.0], [5.0, f64::NAN]),
         ] {
-            assert_eq!(inside.map(|value| bound.holds(value)), [true, true], "{bound:?}");
-            assert_eq!(outside.map(|value| bound.holds(value)), [false, false], "{bound:?}");
+            assert_eq!(inside.map(|value| bound.is_met(value)), [true, true], "{bound:?}");
+            assert_eq!(outside.map(|value| bound.is_met(value)), [false, false], "{bound:?}");
         }
     }
 }

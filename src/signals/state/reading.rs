@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::{DiagnosisSettings, Measurement, Origin, Read, Scope, Table, TableSource};
-use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, TableHints};
+use super::{DiagnosisSettings, Measurement, Origin, ReadCapture, Scope, Table, TableSource};
+use crate::analysis::capture::{Capture, CaptureError, HEAD_BYTES, TableHints, TableImport};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
 /// Example capture that ships with the program.
@@ -19,7 +19,7 @@ pub enum ExampleCapture {
 impl ExampleCapture {
     pub const ALL: [ExampleCapture; 2] = [ExampleCapture::Healthy, ExampleCapture::WithErrors];
 
-    pub fn word(self) -> &'static str {
+    pub fn keyword(self) -> &'static str {
         match self {
             ExampleCapture::Healthy => "signals.example_healthy",
             ExampleCapture::WithErrors => "signals.example_errors",
@@ -42,30 +42,30 @@ impl ExampleCapture {
 }
 
 #[derive(Debug)]
-pub struct Reading {
+pub struct CaptureReading {
     pub(super) number: u32,
     pub place: TableSource,
     /// Previous table, which is restored if the reading is cancelled.
     pub(super) settled: Option<Table>,
-    progress: Arc<Progress>,
+    progress: Arc<ReadingProgress>,
 }
 
 /// Progress of a reading, shared between the task and the window.
 #[derive(Debug, Default)]
-pub(super) struct Progress {
+pub(super) struct ReadingProgress {
     done: AtomicU64,
     total: AtomicU64,
     cancel: AtomicBool,
 }
 
-impl Reading {
-    pub(super) fn new(number: u32, place: TableSource, settled: Option<Table>) -> (Self, Arc<Progress>) {
-        let progress = Arc::<Progress>::default();
-        (Reading { number, place, settled, progress: progress.clone() }, progress)
+impl CaptureReading {
+    pub(super) fn new(number: u32, place: TableSource, settled: Option<Table>) -> (Self, Arc<ReadingProgress>) {
+        let progress = Arc::<ReadingProgress>::default();
+        (CaptureReading { number, place, settled, progress: progress.clone() }, progress)
     }
 
     /// Returns the fraction that has been read, 0 to 1, or `None` if the total is unknown.
-    pub fn share(&self) -> Option<f64> {
+    pub fn fraction_read(&self) -> Option<f64> {
         let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
     }
@@ -79,33 +79,38 @@ impl Reading {
     }
 }
 
-impl Drop for Reading {
+impl Drop for CaptureReading {
     fn drop(&mut self) {
         self.cancel();
     }
 }
 
 /// Reads and measures a capture. This may take long for a large file.
-pub(super) fn read(place: TableSource, hints: TableHints, judge: DiagnosisSettings, progress: &Progress) -> Read {
+pub(super) fn read(
+    place: TableSource,
+    hints: TableHints,
+    judge: DiagnosisSettings,
+    progress: &ReadingProgress,
+) -> ReadCapture {
     let (head, result) = match &place {
         TableSource::Example(example) => {
             let bytes = example.bytes();
-            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import_capture(bytes, &hints))
+            (bytes.get(..HEAD_BYTES.min(bytes.len())).unwrap_or_default().to_vec(), import_capture(bytes, &hints))
         }
         TableSource::File(path) => match capture_head(path) {
             Ok(head) => (head, read_file(path, &hints, progress)),
             Err(error) => (Vec::new(), Err(error.into())),
         },
     };
-    let table = Table::of(place, &head, hints);
+    let table = Table::from_head(place, &head, hints);
     let result = result.map(|capture| {
-        let scope = Scope::of(&capture);
-        (Measurement::of(Origin::Table(table.place.clone()), Arc::new(capture), judge), scope)
+        let scope = Scope::from_capture(&capture);
+        (Measurement::from_capture(Origin::Table(table.place.clone()), Arc::new(capture), judge), scope)
     });
-    Read { table, result }
+    ReadCapture { table, result }
 }
 
-fn read_file(path: &Path, hints: &TableHints, progress: &Progress) -> Result<Capture, ReadCaptureError> {
+fn read_file(path: &Path, hints: &TableHints, progress: &ReadingProgress) -> Result<Capture, ReadCaptureError> {
     let mut tell = |done, total| {
         progress.done.store(done, Ordering::Relaxed);
         progress.total.store(total, Ordering::Relaxed);
@@ -115,8 +120,8 @@ fn read_file(path: &Path, hints: &TableHints, progress: &Progress) -> Result<Cap
 
 fn import_capture(bytes: &[u8], hints: &TableHints) -> Result<Capture, ReadCaptureError> {
     let read = || -> Result<Capture, CaptureError> {
-        let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), hints)?;
-        import.feed(bytes)?;
+        let mut import = TableImport::from_head(bytes.get(..HEAD_BYTES.min(bytes.len())).unwrap_or_default(), hints)?;
+        import.process(bytes)?;
         Ok(import.finish()?.1)
     };
     Ok(read()?)

@@ -27,28 +27,28 @@ pub(super) struct Window {
 }
 
 /// Maximum number of samples measured at once.
-pub(super) const MOST: usize = 500_000;
+pub(super) const MAX_SAMPLES: usize = 500_000;
 const EVERY_NS: i64 = 250_000_000;
 
 impl RecentSamples {
-    pub(super) fn add(&mut self, batch: Batch<ChannelSamples>) {
+    pub(super) fn add_batch(&mut self, batch: Batch<ChannelSamples>) {
         if batch.lost > 0 || batch.period_ns != self.period_ns {
             (self.chunks, self.count) = (VecDeque::new(), 0);
         }
         self.period_ns = batch.period_ns;
         let count = i64::try_from(batch.samples.len()).unwrap_or(0);
-        self.newest = Some(batch.time.plus((count - 1).max(0).saturating_mul(batch.period_ns)));
+        self.newest = Some(batch.time.saturating_add_ns((count - 1).max(0).saturating_mul(batch.period_ns)));
         self.count += batch.samples.len();
         self.chunks.push_back(Arc::new(batch.samples));
         while let Some(oldest) = self.chunks.front().map(|chunk| chunk.len())
-            && self.count - oldest >= MOST
+            && self.count - oldest >= MAX_SAMPLES
         {
             self.chunks.pop_front();
             self.count -= oldest;
         }
     }
 
-    pub(super) fn newest(&self) -> Option<SampleTime> {
+    pub(super) fn latest_time(&self) -> Option<SampleTime> {
         self.newest
     }
 
@@ -61,11 +61,11 @@ impl RecentSamples {
         }
     }
 
-    /// Returns the newest samples of the given duration, at most [`MOST`]. Returns `None` until enough samples have
+    /// Returns the newest samples of the given duration, at most [`MAX_SAMPLES`]. Returns `None` until enough samples have
     /// arrived.
-    pub(super) fn window(&self, milliseconds: u32) -> Option<Window> {
+    pub(super) fn latest_window(&self, milliseconds: u32) -> Option<Window> {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
-        let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
+        let count = usize::try_from(wanted).unwrap_or(MAX_SAMPLES).clamp(1, MAX_SAMPLES);
         let mut skip = self.count.checked_sub(count)?;
         let too_old = |chunk: &&Arc<ChannelSamples>| {
             let is_too_old = chunk.len() <= skip;
@@ -79,20 +79,20 @@ impl RecentSamples {
 
 impl Window {
     /// Copies the samples to a capture whose times begin at zero.
-    pub(super) fn capture(&self) -> Capture {
+    pub(super) fn to_capture(&self) -> Capture {
         let column = |of: fn(&ChannelSamples) -> &[f64]| -> Vec<f64> {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
         };
         let (sine_v, cosine_v) = (column(|own| &own.sine_v), column(|own| &own.cosine_v));
         // The virtual encoder always provides the single wires. An adapter never does.
         let wires = Wires {
-            sin_v: column(|own| own.wire(|wires| &wires.sin_v)),
-            refsin_v: column(|own| own.wire(|wires| &wires.refsin_v)),
-            cos_v: column(|own| own.wire(|wires| &wires.cos_v)),
-            refcos_v: column(|own| own.wire(|wires| &wires.refcos_v)),
+            sin_v: column(|own| own.wire_samples(|wires| &wires.sin_v)),
+            refsin_v: column(|own| own.wire_samples(|wires| &wires.refsin_v)),
+            cos_v: column(|own| own.wire_samples(|wires| &wires.cos_v)),
+            refcos_v: column(|own| own.wire_samples(|wires| &wires.refcos_v)),
             reference_deg: Vec::new(),
         };
-        let reference_deg = column(|own| own.wire(|wires| &wires.reference_deg));
+        let reference_deg = column(|own| own.wire_samples(|wires| &wires.reference_deg));
         let period_s = self.period_ns as f64 * 1e-9;
         Capture {
             left_out: 0,
@@ -128,8 +128,14 @@ mod tests {
     fn signals_without_wire_samples_are_measured() {
         let mut recent = RecentSamples::default();
         let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
-        recent.add(Batch { first: 0, time: SampleTime::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
-        let window = recent.window(2).unwrap().capture();
+        recent.add_batch(Batch {
+            first: 0,
+            time: SampleTime::ORIGIN,
+            period_ns: 1_000_000,
+            lost: 0,
+            samples: pair.into(),
+        });
+        let window = recent.latest_window(2).unwrap().to_capture();
         assert_eq!((window.sine_v, window.cosine_v), (vec![2.0, 3.0], vec![5.0, 6.0]));
         assert!(window.wires.is_none() && window.reference_deg.is_none());
         assert_eq!(window.time_s, [0.0, 0.001]);
@@ -138,20 +144,20 @@ mod tests {
     #[test]
     fn a_window_has_the_newest_samples_without_a_gap() {
         let mut recent = RecentSamples::default();
-        assert!(recent.window(10).is_none() && !recent.is_due(None));
-        recent.add(batch(0, 5, 1_000_000, 0));
-        recent.add(batch(5, 6, 1_000_000, 0));
+        assert!(recent.latest_window(10).is_none() && !recent.is_due(None));
+        recent.add_batch(batch(0, 5, 1_000_000, 0));
+        recent.add_batch(batch(5, 6, 1_000_000, 0));
         // Ten milliseconds are ten samples, 1 to 10; sine is 2n − n, cosine 4n − n.
-        let window = recent.window(10).unwrap().capture();
+        let window = recent.latest_window(10).unwrap().to_capture();
         assert_eq!((window.sine_v.len(), window.sine_v[0], window.cosine_v[9]), (10, 1.0, 30.0));
         assert!((window.time_s[9] - 0.009).abs() < 1e-12);
         assert_eq!((window.wires.unwrap().cos_v[9], window.reference_deg.unwrap()[9]), (40.0, 5.0));
         // Five milliseconds are in the second batch only.
-        let window = recent.window(5).unwrap();
-        assert_eq!((window.chunks.len(), window.capture().sine_v), (1, vec![6.0, 7.0, 8.0, 9.0, 10.0]));
-        recent.add(batch(20, 4, 1_000_000, 9));
-        assert!(recent.window(10).is_none(), "what is before the gap does not belong to it");
-        recent.add(batch(24, 4, 500_000, 0));
+        let window = recent.latest_window(5).unwrap();
+        assert_eq!((window.chunks.len(), window.to_capture().sine_v), (1, vec![6.0, 7.0, 8.0, 9.0, 10.0]));
+        recent.add_batch(batch(20, 4, 1_000_000, 9));
+        assert!(recent.latest_window(10).is_none(), "what is before the gap does not belong to it");
+        recent.add_batch(batch(24, 4, 500_000, 0));
         assert_eq!(recent.count, 4, "another rate is another signal");
     }
 
@@ -159,25 +165,25 @@ mod tests {
     fn chunks_are_shared_and_limited_to_the_window() {
         let mut recent = RecentSamples::default();
         for at in 0..70 {
-            recent.add(batch(at * 10_000, 10_000, 1_000, 0));
+            recent.add_batch(batch(at * 10_000, 10_000, 1_000, 0));
         }
-        assert_eq!((recent.count, recent.chunks.len()), (MOST, 50));
-        let window = recent.window(10_000).unwrap();
+        assert_eq!((recent.count, recent.chunks.len()), (MAX_SAMPLES, 50));
+        let window = recent.latest_window(10_000).unwrap();
         assert!(Arc::ptr_eq(&window.chunks[0], &recent.chunks[0]));
         // Half a second at 1 MHz is the maximum: samples 200 000 to 699 999.
-        let capture = window.capture();
-        assert_eq!((capture.sine_v.len(), capture.sine_v[0]), (MOST, 200_000.0));
+        let capture = window.to_capture();
+        assert_eq!((capture.sine_v.len(), capture.sine_v[0]), (MAX_SAMPLES, 200_000.0));
     }
 
     #[test]
     fn signals_are_measured_four_times_a_second() {
         let mut recent = RecentSamples::default();
-        recent.add(batch(0, 100, 1_000_000, 0));
+        recent.add_batch(batch(0, 100, 1_000_000, 0));
         assert!(recent.is_due(None));
         let measured = recent.newest;
-        recent.add(batch(100, 249, 1_000_000, 0));
+        recent.add_batch(batch(100, 249, 1_000_000, 0));
         assert!(!recent.is_due(measured));
-        recent.add(batch(349, 1, 1_000_000, 0));
+        recent.add_batch(batch(349, 1, 1_000_000, 0));
         assert!(recent.is_due(measured));
     }
 }

@@ -3,10 +3,10 @@
 //! sections 4 and 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
-use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::arctan::{Phase, from_voltages};
 use crate::analysis::capture::Capture;
 use crate::analysis::nonlinearity::{Deviation, Nonlinearity};
-use crate::analysis::outliers::kept;
+use crate::analysis::outliers::remaining_ranges;
 use crate::analysis::revolution::{Revolution, RevolutionError};
 use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::synchronise::{STEPS, measure_offset};
@@ -62,10 +62,10 @@ impl OffsetError {
 }
 
 /// Number of sections into which a curve is divided for drawing.
-const STRETCHES: usize = 512;
+const CURVE_SECTIONS: usize = 512;
 
 /// Returns DNL and INL of a capture, or `None` if it has no reference angle.
-pub(super) fn nonlinearities(
+pub(super) fn compute_nonlinearities(
     capture: &Capture,
     analysis: &Analysis,
     periods: u32,
@@ -73,19 +73,19 @@ pub(super) fn nonlinearities(
     let reference = capture.reference_deg.as_ref()?;
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
     let revolution =
-        Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+        Revolution::from_samples(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
     Some(revolution.map(|revolution| Nonlinearities {
         revolutions: revolution.raw.revolutions,
-        raw: Part::of(&revolution.raw),
-        corrected: Part::of(&revolution.corrected),
+        raw: Part::from_nonlinearity(&revolution.raw),
+        corrected: Part::from_nonlinearity(&revolution.corrected),
     }))
 }
 
 impl Part {
-    fn of(nonlinearity: &Nonlinearity) -> Self {
+    fn from_nonlinearity(nonlinearity: &Nonlinearity) -> Self {
         let (mut deviation, mut mean) = (Vec::new(), Vec::new());
         let whole = |own: &Deviation| own.differential_deg + own.integral_deg;
-        for stretch in nonlinearity.curve.chunks(nonlinearity.curve.len().div_ceil(STRETCHES).max(1)) {
+        for stretch in nonlinearity.curve.chunks(nonlinearity.curve.len().div_ceil(CURVE_SECTIONS).max(1)) {
             let least = stretch.iter().min_by(|a, b| whole(a).total_cmp(&whole(b)));
             let most = stretch.iter().max_by(|a, b| whole(a).total_cmp(&whole(b)));
             deviation.extend([least, most].into_iter().flatten().map(|own| (own.reference_deg, whole(own))));
@@ -122,15 +122,15 @@ pub(super) fn absolute_offset(
     let count = absolute.len().min(capture.sine_v.len()).min(capture.cosine_v.len());
     let sample = |at: usize| -> Option<(u64, Phase)> {
         let steps = absolute.get(at)?.rem_euclid(STEPS as i64).unsigned_abs();
-        Some((steps, exact(*capture.sine_v.get(at)?, *capture.cosine_v.get(at)?)?))
+        Some((steps, from_voltages(*capture.sine_v.get(at)?, *capture.cosine_v.get(at)?)?))
     };
-    let samples = || kept(count, left_out).flatten().filter_map(sample);
+    let samples = || remaining_ranges(count, left_out).flatten().filter_map(sample);
     if samples().next().is_none() {
         return Some(Err(OffsetError::NoSignal));
     }
     let Some(offset_steps) = measure_offset(samples()) else { return Some(Err(OffsetError::Scattered)) };
     let off = |(steps, phase): (u64, Phase)| {
-        let periods = (steps as f64 - offset_steps) / STEPS as f64 - phase.periods();
+        let periods = (steps as f64 - offset_steps) / STEPS as f64 - phase.to_periods();
         (periods - periods.round()).abs() * STEPS as f64
     };
     let farthest_steps = samples().map(off).fold(0.0, f64::max);
@@ -164,14 +164,14 @@ mod tests {
             sine_v: &capture.sine_v,
             cosine_v: &capture.cosine_v,
         };
-        Analysis::of(samples).unwrap()
+        Analysis::from_samples(samples).unwrap()
     }
 
     #[test]
     fn nonlinearities_are_shown_in_degrees_and_arcseconds() {
         let capture = capture();
         let analysis = analysed(&capture);
-        let told = nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
+        let told = compute_nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
         let list = nonlinearity_quantities(&told);
         // Section 6: an offset of 1 % is ±0.573 electrical degrees; of one of 64 periods 32.23″. 0.01° are 36″.
         for (at, seconds, tolerance) in [(0, 32.23, 0.2), (1, 0.0, 0.2), (2, 36.0, 0.2), (3, 36.0, 0.2)] {
@@ -180,7 +180,7 @@ mod tests {
         }
         assert!((list[4].value - 1.25).abs() < 0.02, "{:?}", list[4]);
         assert_eq!(told.raw.mean.len() * 2, told.raw.deviation.len());
-        assert!(told.raw.mean.len() <= STRETCHES && told.raw.mean.len() > STRETCHES / 2);
+        assert!(told.raw.mean.len() <= CURVE_SECTIONS && told.raw.mean.len() > CURVE_SECTIONS / 2);
         let most = told.raw.deviation.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
         // The ends of both parts meet on the way; the mean of a sine over 1.25 turns is 1/(2.5·π).
         assert!((most - (0.01 * (1.0 - 0.127_324) + 0.573 / 64.0)).abs() < 2e-4, "{most}");
@@ -190,9 +190,9 @@ mod tests {
     fn without_a_reference_there_is_no_nonlinearity() {
         let mut capture = capture();
         let analysis = analysed(&capture);
-        assert!(matches!(nonlinearities(&capture, &analysis, 100), Some(Err(RevolutionError::Periods { .. }))));
+        assert!(matches!(compute_nonlinearities(&capture, &analysis, 100), Some(Err(RevolutionError::Periods { .. }))));
         capture.reference_deg = None;
-        assert_eq!(nonlinearities(&capture, &analysis, 64), None);
+        assert_eq!(compute_nonlinearities(&capture, &analysis, 64), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::feed::ChannelSamples;
 use crate::analysis::SampleTime;
 use crate::analysis::capture::Capture;
-use crate::analysis::history::{Kind, Part, Refused};
+use crate::analysis::history::{BatchError, ColumnPart, Kind};
 use crate::analysis::wiring::Wires;
 use crate::app::recorder::{self, GroupId, Recorder, SAMPLE, Scale, Series};
 use crate::signals::state::TEXTS;
@@ -31,11 +31,11 @@ pub enum TimeAxisError {
 const FARTHEST_S: f64 = 9.2e9;
 
 /// Maximum number of samples kept of a running source: five seconds at 100 kHz.
-const KEPT: usize = 500_000;
+const MAX_KEPT_SAMPLES: usize = 500_000;
 /// Time span in nanoseconds that is displayed first.
 const SPAN: i64 = 10_000_000;
 /// Number of samples added to the recorder at a time.
-const PORTION: usize = 1 << 16;
+const CHUNK_SAMPLES: usize = 1 << 16;
 
 /// Text IDs and export headings of the differential signals, in volts.
 const DIFFERENCES: [(&str, &str); 3] = [("scope.sine", "sine"), ("scope.cosine", "cosine"), ("scope.vector", "vector")];
@@ -45,10 +45,10 @@ const WIRES: [(&str, &str); 4] =
 
 impl Scope {
     pub(super) fn live(with_wires: bool) -> Self {
-        Scope::new(with_wires, KEPT, Recorder::new(SPAN))
+        Scope::new(with_wires, MAX_KEPT_SAMPLES, Recorder::new(SPAN))
     }
 
-    pub(super) fn of(capture: &Capture) -> Self {
+    pub(super) fn from_capture(capture: &Capture) -> Self {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
         let counts = capture.time_s.len() < count;
         let recorder = if counts { Recorder::counting(1) } else { Recorder::new(SPAN) };
@@ -58,7 +58,7 @@ impl Scope {
             scope.refused = Some(TimeAxisError::TooFar);
         }
         while from < count && scope.refused.is_none() {
-            let to = (from + PORTION).min(count);
+            let to = (from + CHUNK_SAMPLES).min(count);
             scope.refused = scope.add_capture(capture, from..to).err().map(|_| TimeAxisError::GoBack);
             from = to;
         }
@@ -84,7 +84,7 @@ impl Scope {
         Scope { recorder, refused: None, group }
     }
 
-    fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), Refused> {
+    fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), BatchError> {
         let part = |column: &[f64]| column.get(range.clone()).unwrap_or_default().to_vec();
         let times = range.clone().map(|at| match capture.time_s.get(at) {
             Some(seconds) if !self.recorder.counts() => SampleTime::from_nanoseconds((seconds * 1e9).round() as i64),
@@ -103,22 +103,23 @@ impl Scope {
     }
 
     /// Separates the following samples from the previous ones by a gap.
-    pub(super) fn interrupt(&mut self) {
+    pub(super) fn mark_gap(&mut self) {
         self.recorder.break_before_next(self.group);
     }
 
     /// Adds received samples. Returns the number of samples that could not be stored.
-    pub(super) fn add(&mut self, batch: &Batch<ChannelSamples>) -> u64 {
+    pub(super) fn add_batch(&mut self, batch: &Batch<ChannelSamples>) -> u64 {
         if batch.lost > 0 {
-            self.interrupt();
+            self.mark_gap();
         }
         let count = i64::try_from(batch.samples.len()).unwrap_or(0);
-        let times: Vec<SampleTime> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
+        let times: Vec<SampleTime> =
+            (0..count).map(|at| batch.time.saturating_add_ns(at.saturating_mul(batch.period_ns))).collect();
         let ChannelSamples { sine_v, cosine_v, wires } = &batch.samples;
         match self.append(&times, sine_v, cosine_v, wires.as_ref()) {
             Ok(()) => 0,
             Err(_) => {
-                self.interrupt();
+                self.mark_gap();
                 times.len() as u64
             }
         }
@@ -130,11 +131,14 @@ impl Scope {
         sine: &[f64],
         cosine: &[f64],
         wires: Option<&Wires>,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), BatchError> {
         let vector: Vec<f64> = sine.iter().zip(cosine).map(|(sine, cosine)| sine.hypot(*cosine)).collect();
-        let mut parts = vec![Part::real(sine), Part::real(cosine), Part::real(&vector)];
+        let mut parts =
+            vec![ColumnPart::from_reals(sine), ColumnPart::from_reals(cosine), ColumnPart::from_reals(&vector)];
         if let Some(wires) = wires {
-            parts.extend([&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v].map(|own| Part::real(own)));
+            parts.extend(
+                [&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v].map(|own| ColumnPart::from_reals(own)),
+            );
         }
         self.recorder.append(self.group, times, &parts)
     }
@@ -171,7 +175,7 @@ mod tests {
             }),
             ..Capture::default()
         };
-        let scope = Scope::of(&capture);
+        let scope = Scope::from_capture(&capture);
         assert_eq!(names(&scope), ["scope.sine", "scope.cosine", "scope.vector"]);
         assert_eq!(scope.recorder.lines().len(), 7);
         // The vector of 0.3 and 0.4 is 0.5.
@@ -198,35 +202,35 @@ mod tests {
         let mut scope = Scope::live(true);
         let broken = |scope: &Scope| {
             let history = scope.recorder.history(&scope.recorder.lines()[0]).unwrap();
-            let all = history.all();
+            let all = history.indices();
             let is_break = |at: &u64| history.sample(0, *at).unwrap().flags.contains(Flags::BREAK);
             all.filter(is_break).collect::<Vec<u64>>()
         };
-        assert_eq!(scope.add(&batch(0, 3)), 0);
+        assert_eq!(scope.add_batch(&batch(0, 3)), 0);
         let before = broken(&scope);
-        scope.interrupt();
-        assert_eq!(scope.add(&batch(100, 3)), 0);
+        scope.mark_gap();
+        assert_eq!(scope.add_batch(&batch(100, 3)), 0);
         assert_eq!(broken(&scope), [before.clone(), vec![3]].concat());
-        assert_eq!(scope.add(&batch(50, 4)), 4, "time went back");
-        assert_eq!(scope.add(&batch(200, 1)), 0);
+        assert_eq!(scope.add_batch(&batch(50, 4)), 4, "time went back");
+        assert_eq!(scope.add_batch(&batch(200, 1)), 0);
         assert_eq!(broken(&scope), [before, vec![3, 6]].concat());
     }
 
     #[test]
     fn without_times_samples_are_counted_and_backward_times_refused() {
         let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
-        let scope = Scope::of(&capture);
+        let scope = Scope::from_capture(&capture);
         assert!(scope.recorder.counts() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);
         assert_eq!(scope.recorder.lines().len(), 3);
         capture.time_s = vec![0.0, 2.0, 1.0];
-        let scope = Scope::of(&capture);
+        let scope = Scope::from_capture(&capture);
         assert!(scope.refused == Some(TimeAxisError::GoBack) && scope.recorder.is_empty());
         // Milliseconds since 1970 read as seconds.
         capture.time_s = vec![1.7e12, 1.7e12 + 1.0, 1.7e12 + 2.0];
-        let scope = Scope::of(&capture);
+        let scope = Scope::from_capture(&capture);
         assert!(scope.refused == Some(TimeAxisError::TooFar) && scope.recorder.is_empty());
         capture.time_s = vec![1.7e9, 1.7e9 + 1.0, 1.7e9 + 2.0];
-        assert_eq!(Scope::of(&capture).refused, None);
-        assert!(Scope::of(&Capture::default()).recorder.is_empty());
+        assert_eq!(Scope::from_capture(&capture).refused, None);
+        assert!(Scope::from_capture(&Capture::default()).recorder.is_empty());
     }
 }

@@ -21,11 +21,11 @@ pub struct ChannelSpectrum {
 }
 
 /// Maximum number of samples in a transform.
-const MOST: usize = 1 << 20;
+const MAX_SAMPLES: usize = 1 << 20;
 const LINES: usize = 1_000;
 const PEAKS: usize = 6;
 /// Smallest amplitude of a labelled peak, as a fraction of the highest peak.
-const LEAST_PEAK: f64 = 1e-4;
+const MIN_PEAK: f64 = 1e-4;
 /// Smallest amplitude of a labelled peak, as a multiple of the median of all lines. Lower peaks may be noise: in a
 /// million lines of noise, the highest reaches 4.5.
 const NOISE: f64 = 6.0;
@@ -35,24 +35,24 @@ impl Spectra {
     ///
     /// # Errors
     /// Returns an error if the times are missing or uneven, or if there are too few samples.
-    pub(super) fn of(samples: Samples<'_>) -> Result<Self, SpectrumError> {
+    pub(super) fn from_samples(samples: Samples<'_>) -> Result<Self, SpectrumError> {
         let Samples { time_s, sine_v, cosine_v } = samples;
         let count = sine_v.len().min(cosine_v.len()).min(time_s.len());
-        let from = count.saturating_sub(MOST);
+        let from = count.saturating_sub(MAX_SAMPLES);
         let last = |column: &[f64]| column.get(from..count).unwrap_or_default().to_vec();
         let rate_hz = sample_rate_hz(&last(time_s))?;
-        let channel = |column: &[f64]| Spectrum::of(&last(column), rate_hz);
+        let channel = |column: &[f64]| Spectrum::from_samples(&last(column), rate_hz);
         let (sine, cosine) = (channel(sine_v)?, channel(cosine_v)?);
         Ok(Spectra {
             spacing_hz: sine.spacing_hz(),
             samples: count - from,
-            sine: decimate(&sine),
-            cosine: decimate(&cosine),
+            sine: decimate_spectrum(&sine),
+            cosine: decimate_spectrum(&cosine),
         })
     }
 }
 
-fn decimate(spectrum: &Spectrum) -> ChannelSpectrum {
+fn decimate_spectrum(spectrum: &Spectrum) -> ChannelSpectrum {
     let amplitudes = spectrum.amplitudes_v();
     let stretch = amplitudes.len().div_ceil(LINES).max(1);
     let highest = |(number, lines): (usize, &[f64])| {
@@ -60,9 +60,9 @@ fn decimate(spectrum: &Spectrum) -> ChannelSpectrum {
         Some(((number * stretch + at) as f64 * spectrum.spacing_hz(), *volts))
     };
     let lines = amplitudes.chunks(stretch).enumerate().filter_map(highest).collect();
-    let peaks = spectrum.peaks(PEAKS);
+    let peaks = spectrum.highest_peaks(PEAKS);
     let most = peaks.first().map_or(0.0, |peak| peak.amplitude_v);
-    let least = (LEAST_PEAK * most).max(NOISE * median(amplitudes));
+    let least = (MIN_PEAK * most).max(NOISE * median(amplitudes));
     let peaks = peaks.into_iter().filter(|peak| peak.amplitude_v >= least).collect();
     ChannelSpectrum { lines, peaks }
 }
@@ -76,8 +76,8 @@ fn median(values: &[f64]) -> f64 {
 /// Converts a peak amplitude in volts to an rms level in decibels relative to one volt.
 pub fn decibel_volts(peak_v: f64) -> f64 {
     /// Lowest level in decibels. A double cannot distinguish a lower one from zero next to one volt.
-    const LEAST: f64 = -160.0;
-    (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
+    const MIN_DECIBELS: f64 = -160.0;
+    (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(MIN_DECIBELS)
 }
 
 #[cfg(test)]
@@ -93,7 +93,7 @@ mod tests {
         let sine_v: Vec<f64> =
             time_s.iter().map(|time| 0.5 * tone(*time, 1_000.0) + 0.02 * tone(*time, 8_000.0)).collect();
         let cosine_v: Vec<f64> = time_s.iter().map(|time| 0.5 * tone(*time, 1_000.0)).collect();
-        let spectra = Spectra::of(Samples { time_s: &time_s, sine_v: &sine_v, cosine_v: &cosine_v }).unwrap();
+        let spectra = Spectra::from_samples(Samples { time_s: &time_s, sine_v: &sine_v, cosine_v: &cosine_v }).unwrap();
         assert!(spectra.samples == 50_000 && (spectra.spacing_hz - 2.0).abs() < 1e-9);
         assert!(spectra.sine.lines.len() <= 1_000);
         let [first, second] = spectra.sine.peaks[..] else { panic!("{:?}", spectra.sine.peaks) };
@@ -108,11 +108,11 @@ mod tests {
     fn uneven_times_yield_no_spectrum() {
         let column = vec![0.5; 20];
         let none = Samples { time_s: &[], sine_v: &column, cosine_v: &column };
-        assert_eq!(Spectra::of(none), Err(SpectrumError::TooFew { samples: 0 }));
+        assert_eq!(Spectra::from_samples(none), Err(SpectrumError::TooFew { samples: 0 }));
         let mut time_s: Vec<f64> = (0..20).map(f64::from).collect();
         time_s[10] = 10.5;
         let uneven = Samples { time_s: &time_s, sine_v: &column, cosine_v: &column };
-        assert!(matches!(Spectra::of(uneven), Err(SpectrumError::Uneven { .. })));
+        assert!(matches!(Spectra::from_samples(uneven), Err(SpectrumError::Uneven { .. })));
     }
 
     #[test]

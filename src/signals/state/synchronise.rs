@@ -2,7 +2,7 @@
 //! give the mean lead of the absolute position. See SICK 8010701, forming the absolute position, and section 4 of the
 //! project's sine/cosine reference.
 
-use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::arctan::{Phase, from_voltages};
 use crate::analysis::quality::{Limits, Verdict};
 use crate::analysis::synchronise::{AmbiguousPeriodError, STEPS, SynchronisedPosition, Synchroniser, measure_offset};
 use crate::app::number::{MOST_PERIODS, parse_number_or_hex, whole, within};
@@ -76,8 +76,8 @@ pub struct SynchronisationResult {
     pub periods: u32,
 }
 
-const LEAST_READINGS: usize = 2;
-const MOST_TURNS: u32 = 65_536;
+const MIN_READINGS: usize = 2;
+const MAX_TURNS: u32 = 65_536;
 
 impl Default for Form {
     /// Creates the entries of the example in the second row of the reference's table.
@@ -104,8 +104,8 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
-    pub fn synchronisation(&self) -> Result<SynchronisationResult, Text> {
-        let (periods, synchroniser) = self.synchroniser()?;
+    pub fn compute_result(&self) -> Result<SynchronisationResult, Text> {
+        let (periods, synchroniser) = self.create_synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
         let absolute = parse_number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
         let phase = self.phase()?;
@@ -115,8 +115,8 @@ impl Form {
             phase,
             period: absolute / STEPS,
             step,
-            difference_steps: step as f64 - STEPS as f64 * phase.periods(),
-            result: synchroniser.synchronise(absolute, phase),
+            difference_steps: step as f64 - STEPS as f64 * phase.to_periods(),
+            result: synchroniser.combine(absolute, phase),
             periods,
         })
     }
@@ -125,15 +125,15 @@ impl Form {
     ///
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
-    pub fn quadrature(&self) -> Result<Option<f64>, Text> {
+    pub fn quadrature_position(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
         }
-        let (_, synchroniser) = self.synchroniser()?;
+        let (_, synchroniser) = self.create_synchroniser()?;
         let last = synchroniser.periods * 4 - 1;
         let quarters = parse_number_or_hex(TEXTS.text("synchronise.quarters"), &self.quarters, last)?;
         let (period, phase) = synchroniser.with_quadrature(quarters, self.phase()?);
-        Ok(Some(period as f64 + phase.periods()))
+        Ok(Some(period as f64 + phase.to_periods()))
     }
 
     /// Returns the highest speed in revolutions per minute for a reliable check without a latch. Up to this speed, the
@@ -142,14 +142,14 @@ impl Form {
     /// # Errors
     /// Returns the reason why the first invalid entry was refused.
     pub fn max_unlatched_rpm(&self) -> Result<f64, Text> {
-        let (periods, _) = self.synchroniser()?;
+        let (periods, _) = self.create_synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
         Ok(0.5 * 60.0 / (f64::from(periods) * jitter_ms / 1e3))
     }
 
-    fn synchroniser(&self) -> Result<(u32, Synchroniser), Text> {
+    fn create_synchroniser(&self) -> Result<(u32, Synchroniser), Text> {
         let periods = whole(TEXTS.text("synchronise.periods"), &self.periods, 1, MOST_PERIODS)?;
-        let turns = whole(TEXTS.text("synchronise.turns"), &self.turns, 1, MOST_TURNS)?;
+        let turns = whole(TEXTS.text("synchronise.turns"), &self.turns, 1, MAX_TURNS)?;
         let offset_steps = within(TEXTS.text("synchronise.offset"), &self.offset, -32.0, 32.0)?;
         let half_step = self.half_step;
         let whole = Synchroniser::new(u64::from(periods) * u64::from(turns));
@@ -165,7 +165,7 @@ impl Form {
             PhaseInput::Degrees => {
                 Phase::from_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
             }
-            PhaseInput::Volts => exact(
+            PhaseInput::Volts => from_voltages(
                 within(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
                 within(TEXTS.text("synchronise.cosine"), &self.cosine_v, -10.0, 10.0)?,
             ),
@@ -176,12 +176,12 @@ impl Form {
 
 impl SynchronisationResult {
     /// Returns the fine position as a shaft angle in degrees, within a revolution.
-    pub fn degrees(&self) -> Option<f64> {
+    pub fn to_degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
     }
 
-    pub fn words(&self) -> (Verdict, Text) {
+    pub fn to_text(&self) -> (Verdict, Text) {
         match self.result {
             Err(AmbiguousPeriodError) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
             Ok(fine) => {
@@ -198,14 +198,14 @@ impl SynchronisationResult {
 }
 
 impl SynchroniseState {
-    pub(super) fn act(&mut self, action: SynchroniseAction) {
+    pub(super) fn handle_action(&mut self, action: SynchroniseAction) {
         match action {
             SynchroniseAction::Edit(form) => {
                 self.form = *form;
                 self.problem = None;
             }
             SynchroniseAction::UseOffset => {
-                if let Some(offset) = self.measured() {
+                if let Some(offset) = self.measured_offset() {
                     // The entry accepts a decimal point in every language.
                     self.form.offset = format!("{offset:.2}");
                 }
@@ -216,15 +216,15 @@ impl SynchroniseState {
     }
 
     /// Takes the next reading of an encoder at rest, if there is one.
-    pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
+    pub(crate) fn follow_source(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
-            Some(Ok(reading)) => self.take(reading, source.origin()),
+            Some(Ok(reading)) => self.add_reading(reading, source.origin()),
             Some(Err(why)) => self.problem = Some(why),
             None => {}
         }
     }
 
-    fn take(&mut self, reading: SineCosineReading, origin: SineCosineOrigin) {
+    fn add_reading(&mut self, reading: SineCosineReading, origin: SineCosineOrigin) {
         self.problem = None;
         let range = origin.range;
         if self.origin.as_ref() != Some(&origin) {
@@ -247,20 +247,21 @@ impl SynchroniseState {
         (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
         (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
         let length = sine_v.hypot(cosine_v);
-        match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude_verdict(length) != Verdict::Fault) {
+        match from_voltages(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude_verdict(length) != Verdict::Fault)
+        {
             Some(phase) if reading.valid => self.readings.push((reading.position.into(), phase)),
             Some(_) => self.problem = Some(Text::new("commutation.invalid")),
             None => self.problem = Some(TEXTS.text("synchronise.no_signal")),
         }
     }
 
-    pub fn readings(&self) -> usize {
+    pub fn reading_count(&self) -> usize {
         self.readings.len()
     }
 
     /// Returns the offset measured from the readings, in the form of the entry, or `None` if it cannot be measured.
-    pub fn measured(&self) -> Option<f64> {
-        if self.readings.len() < LEAST_READINGS {
+    pub fn measured_offset(&self) -> Option<f64> {
+        if self.readings.len() < MIN_READINGS {
             return None;
         }
         measure_offset(self.readings.iter().copied()).map(|offset| self.add_half_step(offset))
@@ -294,35 +295,35 @@ mod tests {
             (form("0", "0.51", "16", "1"), 0, 0, -16.32, -1, 15.51, 0.49, "unsure"),
         ];
         for (form, period, step, difference, k, fine, residual, verdict) in rows {
-            let told = form.synchronisation().unwrap();
+            let told = form.compute_result().unwrap();
             assert_eq!((told.period, told.step), (period, step), "{form:?}");
             assert!((told.difference_steps - difference).abs() < 1e-9, "{told:?}");
             let result = told.result.unwrap();
             assert_eq!(result.correction, k, "{told:?}");
             assert!((result.periods() - fine).abs() < 1e-9, "{told:?}");
             assert!((result.residual_periods - residual).abs() < 6e-5, "{told:?}");
-            assert_eq!(told.words().1.id().strip_prefix("synchronise."), Some(verdict));
+            assert_eq!(told.to_text().1.id().strip_prefix("synchronise."), Some(verdict));
         }
         // 339.02 of 1024 periods, and nothing else for many turns.
         for turns in ["1", "4096"] {
-            let degrees = form("0x2A5F", "0.02", "1024", turns).synchronisation().unwrap().degrees().unwrap();
+            let degrees = form("0x2A5F", "0.02", "1024", turns).compute_result().unwrap().to_degrees().unwrap();
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
         }
-        let told = form("0", "0.5", "16", "1").synchronisation().unwrap();
-        assert_eq!((told.result, told.degrees()), (Err(AmbiguousPeriodError), None));
-        assert_eq!(told.words().1.id(), "synchronise.impossible");
+        let told = form("0", "0.5", "16", "1").compute_result().unwrap();
+        assert_eq!((told.result, told.to_degrees()), (Err(AmbiguousPeriodError), None));
+        assert_eq!(told.to_text().1.id(), "synchronise.impossible");
     }
 
     #[test]
     fn the_phase_can_be_typed_in_three_units() {
         let degrees = Form { phase_input: PhaseInput::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
-        assert!((degrees.synchronisation().unwrap().phase.periods() - 0.02).abs() < 1e-12);
+        assert!((degrees.compute_result().unwrap().phase.to_periods() - 0.02).abs() < 1e-12);
         let typed = |text: &str| text.to_owned();
         let (sine_v, cosine_v) = (typed("-0.5"), typed("0"));
         let volts = Form { phase_input: PhaseInput::Volts, sine_v, cosine_v, ..Form::default() };
-        assert_eq!(volts.synchronisation().unwrap().phase.periods(), 0.75);
+        assert_eq!(volts.compute_result().unwrap().phase.to_periods(), 0.75);
         let nothing = Form { sine_v: typed("0"), ..volts };
-        assert_eq!(nothing.synchronisation().unwrap_err().id(), "synchronise.no_signal");
+        assert_eq!(nothing.compute_result().unwrap_err().id(), "synchronise.no_signal");
     }
 
     /// Quarter counters with a phase, and 29 rpm for a millisecond with 1024 periods, match section 4.
@@ -330,11 +331,11 @@ mod tests {
     fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
             let form = Form { quarters: quarters.to_owned(), ..form("0", phase, "1024", "1") };
-            assert!((form.quadrature().unwrap().unwrap() - fine).abs() < 1e-12, "{quarters}");
+            assert!((form.quadrature_position().unwrap().unwrap() - fine).abs() < 1e-12, "{quarters}");
         }
-        assert_eq!(Form::default().quadrature(), Ok(None));
+        assert_eq!(Form::default().quadrature_position(), Ok(None));
         let beyond = Form { quarters: "4096".to_owned(), ..Form::default() };
-        assert_eq!(beyond.quadrature().unwrap_err().id(), "entry.position_range");
+        assert_eq!(beyond.quadrature_position().unwrap_err().id(), "entry.position_range");
         assert!((Form::default().max_unlatched_rpm().unwrap() - 29.296_875).abs() < 1e-9);
         let jitter = Form { jitter_ms: "0".to_owned(), ..Form::default() };
         assert_eq!(jitter.max_unlatched_rpm().unwrap_err().id(), "entry.number");
@@ -354,7 +355,7 @@ mod tests {
             (form("0", "0", "1024", "0"), "entry.whole"),
             (Form { offset: "33".to_owned(), ..Form::default() }, "entry.number"),
         ] {
-            assert_eq!(form.synchronisation().unwrap_err().id(), id, "{form:?}");
+            assert_eq!(form.compute_result().unwrap_err().id(), id, "{form:?}");
         }
     }
 
@@ -371,32 +372,32 @@ mod tests {
                 signals: Some(SineCosineVolts { sine_v: 0.5 * sine, cosine_v: 0.5 * cosine }),
             }
         };
-        assert_eq!(page.measured(), None);
+        assert_eq!(page.measured_offset(), None);
         // Step 10 at 8 steps (90°), and step 31 at 28 steps (315°).
         let whose = |number, serial: &str| SineCosineOrigin {
             session: SessionId(number),
             serial_number: Some(serial.to_owned()),
             range,
         };
-        page.take(at(10, 90.0), whose(1, "A"));
-        assert_eq!((page.readings(), page.measured()), (1, None));
-        page.take(at(95, 315.0), whose(1, "A"));
-        assert!((page.measured().unwrap() - 2.5).abs() < 1e-9);
-        page.act(SynchroniseAction::UseOffset);
+        page.add_reading(at(10, 90.0), whose(1, "A"));
+        assert_eq!((page.reading_count(), page.measured_offset()), (1, None));
+        page.add_reading(at(95, 315.0), whose(1, "A"));
+        assert!((page.measured_offset().unwrap() - 2.5).abs() < 1e-9);
+        page.handle_action(SynchroniseAction::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
         // d = 31 − 28; without the offset of 2.5 half a step remains.
-        let told = page.form.synchronisation().unwrap();
+        let told = page.form.compute_result().unwrap();
         assert!((told.difference_steps - 3.0).abs() < 0.01);
         assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);
-        page.take(SineCosineReading { signals: None, ..at(10, 0.0) }, whose(1, "A"));
+        page.add_reading(SineCosineReading { signals: None, ..at(10, 0.0) }, whose(1, "A"));
         assert_eq!(page.problem.as_ref().unwrap().id(), "synchronise.no_channels");
-        assert_eq!(page.readings(), 2);
+        assert_eq!(page.reading_count(), 2);
         let small = SineCosineOrigin { range: Some(SineCosineRange { periods: 16, turns: 1 }), ..whose(1, "A") };
         for other in [small, whose(1, "A"), whose(1, "B"), whose(2, "B")] {
-            page.take(at(10, 90.0), other);
-            assert_eq!(page.readings(), 1, "another encoder begins anew");
+            page.add_reading(at(10, 90.0), other);
+            assert_eq!(page.reading_count(), 1, "another encoder begins anew");
         }
-        page.act(SynchroniseAction::Forget);
-        assert_eq!(page.readings(), 0);
+        page.handle_action(SynchroniseAction::Forget);
+        assert_eq!(page.reading_count(), 0);
     }
 }

@@ -31,11 +31,11 @@ const LINES: usize = 6;
 /// Maximum number of characters displayed per line.
 const WIDTH: usize = 160;
 /// Maximum number of columns offered for selection.
-const MOST_COLUMNS: usize = 64;
+const MAX_COLUMNS: usize = 64;
 
 impl Table {
     /// Creates a table from the first bytes of a file.
-    pub(super) fn of(place: TableSource, head: &[u8], hints: TableHints) -> Self {
+    pub(super) fn from_head(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
             let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
@@ -76,7 +76,7 @@ impl Table {
             delimiter => line.matches(delimiter).count() + 1,
         };
         let named = self.layout.as_ref().map_or(0, |layout| layout.names.len());
-        self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MOST_COLUMNS)
+        self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MAX_COLUMNS)
     }
 
     pub fn name(&self, column: usize) -> Option<&str> {
@@ -86,8 +86,8 @@ impl Table {
 
     /// Selects a column. Returns `false` if the table cannot be read with it, for example while the other reference
     /// column is missing.
-    pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
-        let mut columns = self.columns().unwrap_or(Columns::PLAIN);
+    pub(super) fn select_column(&mut self, column: Column, number: Option<usize>) -> bool {
+        let mut columns = self.columns().unwrap_or(Columns::TIME_SINE_COSINE);
         match (column, number) {
             (Column::Time, number) => columns.time = number,
             (Column::ReferenceAngle, number) => columns.reference_angle = number,
@@ -117,7 +117,7 @@ mod tests {
     use crate::signals::state::ExampleCapture;
 
     fn table(text: &str) -> Table {
-        Table::of(TableSource::Example(ExampleCapture::Healthy), text.as_bytes(), TableHints::default())
+        Table::from_head(TableSource::Example(ExampleCapture::Healthy), text.as_bytes(), TableHints::default())
     }
 
     #[test]
@@ -136,17 +136,17 @@ mod tests {
     #[test]
     fn references_apply_only_if_both_are_chosen() {
         let mut table = table("a,b,c,d,e\n0,1,2,3,4\n");
-        assert!(!table.choose(Column::RefSine, Some(3)), "the other one is missing");
+        assert!(!table.select_column(Column::RefSine, Some(3)), "the other one is missing");
         assert_eq!((table.column(Column::RefSine), table.hints.columns), (Some(3), None));
-        assert!(table.choose(Column::RefCosine, Some(5)));
+        assert!(table.select_column(Column::RefCosine, Some(5)));
         assert_eq!(table.columns().unwrap().references, Some((3, 5)));
-        assert!(table.choose(Column::RefSine, None), "without one of them both are not taken off");
+        assert!(table.select_column(Column::RefSine, None), "without one of them both are not taken off");
         assert_eq!(table.columns().unwrap().references, None);
         assert_eq!(table.column(Column::RefCosine), Some(5));
-        assert!(table.choose(Column::Cosine, Some(4)) && table.choose(Column::Time, None));
+        assert!(table.select_column(Column::Cosine, Some(4)) && table.select_column(Column::Time, None));
         let columns = table.hints.columns.unwrap();
         assert_eq!((columns.time, columns.sine, columns.cosine), (None, 2, 4));
-        assert!(!table.choose(Column::Sine, None));
+        assert!(!table.select_column(Column::Sine, None));
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! Tasks of the Signals tab. Every task delivers a result, even if it could not be started or was aborted.
 
-use super::{Done, TAB};
+use super::{TAB, TaskResult};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{ActionMailbox, TaskRunner};
 
 /// Guard that reports a failure if the task ends without a result.
 struct CompletionGuard {
     mailbox: ActionMailbox,
-    failed: Option<Done>,
+    failed: Option<TaskResult>,
 }
 
 impl CompletionGuard {
@@ -24,12 +24,17 @@ impl Drop for CompletionGuard {
     }
 }
 
-fn done_action(done: Done) -> Action {
+fn done_action(done: TaskResult) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
 /// Runs a task on a thread. If the task ends without a result, `failed` is delivered instead.
-pub(super) fn run(tasks: &TaskRunner, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
+pub(super) fn run(
+    tasks: &TaskRunner,
+    name: &str,
+    failed: TaskResult,
+    task: impl FnOnce() -> TaskResult + Send + 'static,
+) {
     let promise = CompletionGuard { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
         let done = task();
@@ -39,10 +44,10 @@ pub(super) fn run(tasks: &TaskRunner, name: &str, failed: Done, task: impl FnOnc
 }
 
 /// Drops a large value on another thread, since releasing its memory takes a while.
-pub(super) fn let_go(tasks: &TaskRunner, large: impl Send + 'static) {
+pub(super) fn drop_in_background(tasks: &TaskRunner, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);
-        done_action(Done::LetGo)
+        done_action(TaskResult::LetGo)
     });
 }
 
@@ -58,7 +63,7 @@ mod tests {
         loop {
             match tasks.next() {
                 Some(Action::Done(StudioDone::Tool(_, done))) => match done.open() {
-                    Ok(Done::Failed(failed)) => return Some(failed),
+                    Ok(TaskResult::Failed(failed)) => return Some(failed),
                     other => panic!("{:?}", other.is_ok()),
                 },
                 Some(_) => {}
@@ -71,9 +76,9 @@ mod tests {
     #[test]
     fn only_a_panicking_task_is_reported_as_failed() {
         let tasks = TaskRunner::new(Arc::new(|| ()));
-        run(&tasks, "ends", Done::Failed(FailedTask::Judge), || Done::Failed(FailedTask::Measure(1)));
+        run(&tasks, "ends", TaskResult::Failed(FailedTask::Judge), || TaskResult::Failed(FailedTask::Measure(1)));
         assert_eq!(next(&tasks), Some(FailedTask::Measure(1)));
-        run(&tasks, "breaks off", Done::Failed(FailedTask::Read(7)), || std::panic::resume_unwind(Box::new(())));
+        run(&tasks, "breaks off", TaskResult::Failed(FailedTask::Read(7)), || std::panic::resume_unwind(Box::new(())));
         assert_eq!(next(&tasks), Some(FailedTask::Read(7)));
         assert!(tasks.next().is_none());
     }

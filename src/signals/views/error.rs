@@ -3,10 +3,10 @@
 use egui::Ui;
 
 use super::{SignalsUiState, nonlinearity, numbers, octant, quality, source};
-use crate::analysis::position_error::{ErrorBasis, PositionError, harmonics};
+use crate::analysis::position_error::{ErrorBasis, PositionError, harmonic_amplitudes};
 use crate::app::{Action, Text};
 use crate::signals::state::{MeasurementResult, Signals, TEXTS, error_quantities};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, split};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -26,7 +26,7 @@ pub(super) fn page_ui(
         octant::card_ui(ui, theme, &mut view.octant);
         return;
     };
-    let compared = signals.comparison();
+    let compared = signals.compared_result();
     curves_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
     theme.gap(ui);
     split(
@@ -39,13 +39,13 @@ pub(super) fn page_ui(
                 quality::periods_ui(ui, theme, signals, periods, actions);
                 ui.add_space(theme.space.inside);
                 let of = |own: &MeasurementResult| {
-                    own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()))
+                    own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.signal_periods()))
                 };
                 let others = compared.and_then(|own| of(own));
-                let own = error_quantities(analysis, signals.periods());
+                let own = error_quantities(analysis, signals.signal_periods());
                 numbers::rows_ui(ui, theme, "error.numbers", &own, others.as_deref());
                 ui.add_space(theme.space.inside);
-                paragraph(ui, theme.caption(theme.words(&basis(analysis.error.basis))));
+                paragraph(ui, theme.caption(theme.words(&basis_text(analysis.error.basis))));
             });
         },
         |ui, _| harmonics_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
@@ -56,14 +56,14 @@ pub(super) fn page_ui(
     octant::card_ui(ui, theme, &mut view.octant);
 }
 
-fn basis(basis: ErrorBasis) -> Text {
+fn basis_text(basis: ErrorBasis) -> Text {
     match basis {
         ErrorBasis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),
         ErrorBasis::Ellipse => TEXTS.text("error.basis_ellipse"),
     }
 }
 
-fn other(compared: Option<&MeasurementResult>) -> Option<&PositionError> {
+fn compared_error(compared: Option<&MeasurementResult>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
 
@@ -71,9 +71,9 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
-        Trace { name: say(theme, id), points, colour, dashed }
+        Trace { name: translate(theme, id), points, colour, dashed }
     };
-    let traces = series(error, other(compared), trace);
+    let traces = error_series(error, compared_error(compared), trace);
     card(ui, theme, TEXTS.text("error.curve"), |ui| {
         let value = TEXTS.text("error.curve_value").with_number("raw", error.raw_peak_to_peak_deg(), 3).with_number(
             "corrected",
@@ -82,7 +82,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
         );
         let own = Chart {
             traces: &traces,
-            label: &say(theme, "error.curve"),
+            label: &translate(theme, "error.curve"),
             value: &theme.words(&value),
             height: 180.0,
             x_unit: "°",
@@ -92,21 +92,22 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option
             ..Chart::default()
         };
         chart(ui, theme, &own);
-        paragraph(ui, theme.caption(say(theme, "error.axes")));
+        paragraph(ui, theme.caption(translate(theme, "error.axes")));
     });
 }
 
 fn harmonics_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&MeasurementResult>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
-        let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
-        Trace { name: say(theme, id), points, colour, dashed }
+        let points = (1_u32..).zip(harmonic_amplitudes(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
+        Trace { name: translate(theme, id), points, colour, dashed }
     };
-    let traces = series(error, other(compared), trace);
+    let traces = error_series(error, compared_error(compared), trace);
     card(ui, theme, TEXTS.text("error.harmonics"), |ui| {
-        let peaks: Vec<String> = harmonics(&error.raw_deg).iter().map(|peak| theme.number(*peak, 3)).collect();
+        let peaks: Vec<String> =
+            harmonic_amplitudes(&error.raw_deg).iter().map(|peak| theme.number(*peak, 3)).collect();
         let own = Chart {
             traces: &traces,
-            label: &say(theme, "error.harmonics"),
+            label: &translate(theme, "error.harmonics"),
             value: &peaks.join("; "),
             height: 150.0,
             y_unit: "°",
@@ -116,12 +117,12 @@ fn harmonics_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Opt
             ..Chart::default()
         };
         chart(ui, theme, &own);
-        paragraph(ui, theme.caption(say(theme, "error.harmonics_axes")));
+        paragraph(ui, theme.caption(translate(theme, "error.harmonics_axes")));
     });
 }
 
 /// Returns the raw and corrected traces of the capture, and of the compared capture if given.
-fn series(
+fn error_series(
     error: &PositionError,
     compared: Option<&PositionError>,
     trace: impl Fn(&'static str, &[f64], usize, bool) -> Trace,

@@ -6,15 +6,15 @@ use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
 use crate::signals::state::input_circuit::{Form, InputCircuitResult, OperatingPoint};
 use crate::signals::state::{TEXTS, Unit};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::controls::{card, labelled_entry, paragraph, row, show_error_below, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
-const ENTRY: f32 = 80.0;
+const ENTRY_WIDTH: f32 = 80.0;
 const ROWS: u32 = 10;
 const POINTS: u32 = 100;
-const HEIGHT: f32 = 220.0;
+const CHART_HEIGHT: f32 = 220.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     // The result is drawn beside the entries, and so it is calculated first.
@@ -51,7 +51,7 @@ fn entries_ui(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text
             ("input.resistance", &mut form.resistance, "10k"),
             ("input.capacitance", &mut form.capacitance, "47p"),
         ] {
-            labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
+            labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
         }
         show_error_below(ui, theme, refused);
     });
@@ -60,7 +60,7 @@ fn entries_ui(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text
 fn notes_ui(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("input.notes"), |ui| {
         for id in ["input.note_resistor", "input.note_adc", "input.note_lag"] {
-            paragraph(ui, theme.label(say(theme, id)));
+            paragraph(ui, theme.label(translate(theme, id)));
         }
     });
 }
@@ -82,17 +82,17 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) 
         let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
         let khz =
             |hertz: f64| theme.monospace(format!("{} {}", theme.number(hertz / 1e3, 1), Unit::Kilohertz.unit_symbol()));
-        let rpm = format!("{} {}", theme.number(circuit.most_rpm, 1), say(theme, "input.rpm"));
-        row(ui, theme, &say(theme, "input.most"), theme.monospace(rpm));
-        row(ui, theme, &say(theme, "input.lag"), number(response.phase_deg, 3, "° el."));
-        row(ui, theme, &say(theme, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
-        row(ui, theme, &say(theme, "input.lag_shaft"), number(shaft_deg, 5, "°"));
+        let rpm = format!("{} {}", theme.number(circuit.most_rpm, 1), translate(theme, "input.rpm"));
+        row(ui, theme, &translate(theme, "input.most"), theme.monospace(rpm));
+        row(ui, theme, &translate(theme, "input.lag"), number(response.phase_deg, 3, "° el."));
+        row(ui, theme, &translate(theme, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
+        row(ui, theme, &translate(theme, "input.lag_shaft"), number(shaft_deg, 5, "°"));
         let gain =
             format!("{}  ({} dB)", theme.number(response.gain, 5), theme.number(20.0 * response.gain.log10(), 2));
-        row(ui, theme, &say(theme, "input.gain"), theme.monospace(gain));
-        row(ui, theme, &say(theme, "input.corner"), khz(circuit.corner_hz));
-        row(ui, theme, &say(theme, "input.sampling"), khz(2.0 * frequency_hz));
-        row(ui, theme, &say(theme, "input.skew"), number(circuit.sampling_skew_deg(), 2, "° el./µs"));
+        row(ui, theme, &translate(theme, "input.gain"), theme.monospace(gain));
+        row(ui, theme, &translate(theme, "input.corner"), khz(circuit.corner_hz));
+        row(ui, theme, &translate(theme, "input.sampling"), khz(2.0 * frequency_hz));
+        row(ui, theme, &translate(theme, "input.skew"), number(circuit.sampling_skew_deg(), 2, "° el./µs"));
     });
 }
 
@@ -104,10 +104,10 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
             let grid = egui::Grid::new("input.table").spacing([theme.space.between, theme.space.inside]);
             grid.show(ui, |ui| {
                 for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
-                    ui.label(theme.caption(say(theme, id)));
+                    ui.label(theme.caption(translate(theme, id)));
                 }
                 ui.end_row();
-                for point in circuit.course(ROWS) {
+                for point in circuit.operating_points(ROWS) {
                     let response = point.response;
                     for (value, decimals) in [
                         (point.speed_rpm, 1),
@@ -126,9 +126,9 @@ fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
 }
 
 fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
-    let course = circuit.course(POINTS);
+    let course = circuit.operating_points(POINTS);
     let trace = |id, colour, dashed, value: fn(&OperatingPoint) -> f64| Trace {
-        name: say(theme, id),
+        name: translate(theme, id),
         points: course.iter().map(|point| (point.speed_rpm, value(point))).collect(),
         colour,
         dashed,
@@ -138,7 +138,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
         trace("input.curve_gain", 1, true, |point| 100.0 * point.response.gain),
     ];
     card(ui, theme, TEXTS.text("input.curves"), |ui| {
-        let (label, rpm) = (say(theme, "input.curves"), say(theme, "input.rpm"));
+        let (label, rpm) = (translate(theme, "input.curves"), translate(theme, "input.rpm"));
         let value = TEXTS
             .text("input.curves_value")
             .with_number("lag", course.last().map_or(0.0, |point| point.response.phase_deg), 2)
@@ -148,7 +148,7 @@ fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &InputCircuitResult) {
             traces: &traces,
             label: &label,
             value: &value,
-            height: HEIGHT,
+            height: CHART_HEIGHT,
             x_unit: &rpm,
             y_floor: Some(0.0),
             x_range: Some((0.0, circuit.most_rpm)),

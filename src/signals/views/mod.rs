@@ -118,17 +118,17 @@ fn page_ui(
             }
         }
         Page::Synchronise => {
-            source::problem(ui, theme, signals);
+            source::problem_ui(ui, theme, signals);
             synchronise::page_ui(ui, theme, signals, device, actions);
         }
         Page::InputCircuit => {
-            source::problem(ui, theme, signals);
+            source::problem_ui(ui, theme, signals);
             input_circuit::page_ui(ui, theme, &mut view.input_circuit);
         }
     });
 }
 
 /// Returns a message in the window's language, from the Signals catalogue or the common one.
-pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+pub(crate) fn translate(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

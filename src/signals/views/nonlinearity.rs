@@ -5,7 +5,7 @@ use egui::Ui;
 use super::numbers;
 use crate::app::explain;
 use crate::signals::state::{MeasurementResult, Nonlinearities, TEXTS, nonlinearity_quantities};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -35,13 +35,13 @@ pub(super) fn card_ui(
             }
         }
         Some(Err(error)) => problem(ui, theme, Some(&explain::signal::revolution(error))),
-        None => paragraph(ui, theme.label(say(theme, "nonlinearity.no_reference"))),
+        None => paragraph(ui, theme.label(translate(theme, "nonlinearity.no_reference"))),
     });
 }
 
 fn curve_ui(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
     let trace = |id: &'static str, points: &[(f64, f64)], colour: usize, dashed: bool| Trace {
-        name: say(theme, id),
+        name: translate(theme, id),
         points: points.to_vec(),
         colour,
         dashed,
@@ -57,7 +57,7 @@ fn curve_ui(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
         .with_number("inl", nonlinearities.raw.integral_deg, 5);
     let own = Chart {
         traces: &traces,
-        label: &say(theme, "nonlinearity.title"),
+        label: &translate(theme, "nonlinearity.title"),
         value: &theme.words(&value),
         height: 180.0,
         x_unit: "°",
@@ -66,5 +66,5 @@ fn curve_ui(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
         ..Chart::default()
     };
     chart(ui, theme, &own);
-    paragraph(ui, theme.caption(say(theme, "nonlinearity.axes")));
+    paragraph(ui, theme.caption(translate(theme, "nonlinearity.axes")));
 }

@@ -4,16 +4,16 @@ use egui::{RichText, Ui, WidgetInfo};
 
 use crate::analysis::quality::Verdict;
 use crate::signals::state::{Quantity, QuantityLimit, Unit};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::{Theme, controls};
 
 /// Minimum width in points for showing a value in its second unit. In a narrower window, the second unit is in the
 /// tooltip.
-const WIDE: f32 = 390.0;
+const MIN_SECOND_UNIT_WIDTH: f32 = 390.0;
 /// Minimum width in points for the column of limits. In a narrower window, each limit is in the tooltip of its verdict
 /// icon.
-const LEAST: f32 = 350.0;
-const LIMITS: f32 = 110.0;
+const MIN_LIMITS_WIDTH: f32 = 350.0;
+const LIMITS_WIDTH: f32 = 110.0;
 
 /// Draws the rows. If a second list is given, its values and the differences are also drawn.
 pub(super) fn rows_ui(
@@ -25,20 +25,21 @@ pub(super) fn rows_ui(
 ) {
     let room = ui.available_width();
     let bounded = quantities.iter().any(|quantity| quantity.bound.is_some());
-    let wide = room >= if bounded { WIDE } else { WIDE - LIMITS } && compared.is_none();
-    let limits = room >= LEAST && compared.is_none();
+    let wide = room >= if bounded { MIN_SECOND_UNIT_WIDTH } else { MIN_SECOND_UNIT_WIDTH - LIMITS_WIDTH }
+        && compared.is_none();
+    let limits = room >= MIN_LIMITS_WIDTH && compared.is_none();
     let between = if wide { theme.space.groups } else { theme.space.between };
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
         egui::Grid::new(name).spacing([between, theme.space.inside]).show(ui, |ui| {
             if compared.is_some() {
                 for id in ["", "compare.now", "compare.kept", "compare.difference"] {
-                    ui.label(if id.is_empty() { RichText::new("") } else { theme.caption(say(theme, id)) });
+                    ui.label(if id.is_empty() { RichText::new("") } else { theme.caption(translate(theme, id)) });
                 }
                 ui.end_row();
             }
             for quantity in quantities {
-                ui.label(theme.label(say(theme, quantity.word)));
+                ui.label(theme.label(translate(theme, quantity.word)));
                 value(ui, theme, quantity, wide);
                 if let Some(compared) = compared {
                     let other = compared.iter().find(|other| other.word == quantity.word);
@@ -80,17 +81,17 @@ fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<
     };
     let number = |value: f64| theme.monospace(theme.number(value, quantity.decimals));
     ui.label(number(other.value).color(theme.palette.muted));
-    let difference = rounded(quantity.value - other.value, quantity.decimals);
+    let difference = without_negative_zero(quantity.value - other.value, quantity.decimals);
     let sign = if difference > 0.0 { "+" } else { "" };
     ui.label(theme.monospace(format!("{sign}{}", theme.number(difference, quantity.decimals))));
 }
 
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
-    with_unit_symbol(theme.number(rounded(value, decimals), decimals), unit)
+    with_unit_symbol(theme.number(without_negative_zero(value, decimals), decimals), unit)
 }
 
 /// Returns zero for a value that is displayed as zero, which avoids a minus sign.
-fn rounded(value: f64, decimals: usize) -> f64 {
+fn without_negative_zero(value: f64, decimals: usize) -> f64 {
     let scale = 10_f64.powi(decimals as i32);
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
@@ -122,7 +123,7 @@ fn verdict_icon_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
         Verdict::Warn => "quality.outside",
         Verdict::Fault => "quality.fault",
     };
-    let word = say(theme, id);
+    let word = translate(theme, id);
     let response = ui.label(RichText::new(icon).color(colour));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &word));
     response.on_hover_text(format!("{word}: {limit}"));

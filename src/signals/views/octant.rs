@@ -6,7 +6,7 @@ use egui::Ui;
 use crate::analysis::arctan::OctantTable;
 use crate::signals::state::TEXTS;
 use crate::signals::state::interpolation::{INTERVALS, interpolate, table_errors};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 
@@ -24,7 +24,7 @@ impl Default for OctantUiState {
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     card(ui, theme, TEXTS.text("octant.title"), |ui| {
-        paragraph(ui, theme.label(say(theme, "octant.words")));
+        paragraph(ui, theme.label(translate(theme, "octant.words")));
         ui.add_space(theme.space.inside);
         split(ui, theme, (0.5, 560.0), view, |ui, _| tables_ui(ui, theme), |ui, view| voltage_pair_ui(ui, theme, view));
     });
@@ -34,7 +34,7 @@ fn tables_ui(ui: &mut Ui, theme: &Theme) {
     ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("octant.title").spacing([theme.space.groups, theme.space.inside]).show(ui, |ui| {
         for id in ["octant.intervals", "octant.largest", "octant.of_period", "octant.bits"] {
-            ui.label(theme.caption(say(theme, id)));
+            ui.label(theme.caption(translate(theme, id)));
         }
         ui.end_row();
         for table in table_errors() {
@@ -51,24 +51,24 @@ fn voltage_pair_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     for (id, text) in [("octant.sine", &mut view.sine), ("octant.cosine", &mut view.cosine)] {
         labelled_entry(ui, theme, TEXTS.text(id), text, 88.0, "");
     }
-    let word = say(theme, "octant.intervals");
+    let word = translate(theme, "octant.intervals");
     entry(ui, theme, &word, |ui| {
         choice(ui, &word, &mut view.intervals, INTERVALS.map(|own| (own, own.to_string())));
     });
     match interpolate(&view.sine, &view.cosine, view.intervals) {
         Ok(found) => {
             for (id, phase) in [("octant.exact", found.exact), ("octant.table", found.table)] {
-                let degrees = theme.number(phase.degrees(), 5);
-                let periods = theme.number(phase.periods(), 6);
+                let degrees = theme.number(phase.to_degrees(), 5);
+                let periods = theme.number(phase.to_periods(), 6);
                 row(
                     ui,
                     theme,
-                    &say(theme, id),
+                    &translate(theme, id),
                     theme.monospace(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))),
                 );
             }
             let difference = format!("{}°", theme.number(found.difference_deg, 5));
-            row(ui, theme, &say(theme, "octant.difference"), theme.monospace(difference));
+            row(ui, theme, &translate(theme, "octant.difference"), theme.monospace(difference));
         }
         Err(why) => problem(ui, theme, Some(&why)),
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::signals::state::TEXTS;
-use crate::signals::views::say;
+use crate::signals::views::translate;
 
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
@@ -13,13 +13,15 @@ use crate::analysis::lissajous::PlotSquare;
 use crate::analysis::quality::Family;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
-use crate::signals::state::{Measurement, MeasurementResult, Signals, SignalsAction as Signals_, forms, quantities};
+use crate::signals::state::{
+    Measurement, MeasurementResult, Signals, SignalsAction as Signals_, forms, signal_quantities,
+};
 use crate::ui::controls::{card, card_with_trailing, choice, committed_entry, entry, name, paragraph, problem, split};
 use crate::ui::widgets::{Lissajous, LissajousFigure, density_image, lissajous, series};
 use crate::ui::{Theme, icons};
 
 /// Common numbers of periods per revolution.
-const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
+const COMMON_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
 const CURVE: usize = 180;
 
 pub(super) fn page_ui(
@@ -53,7 +55,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
     let aside = |ui: &mut Ui| {
         // The buttons are laid out from right to left.
         for (own, id) in [(true, "quality.corrected"), (false, "quality.raw")] {
-            let word = say(theme, id);
+            let word = translate(theme, id);
             let button = egui::Button::selectable(corrected == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add_enabled(analysed.is_some(), button), analysed.is_some(), &word).clicked() {
                 view.corrected = own;
@@ -73,14 +75,14 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
             None => TEXTS.text("quality.lissajous_bare").with("samples", measurement.capture.sine_v.len()),
         };
         let [own, other] = &mut view.pictures;
-        if signals.comparison().is_none() {
+        if signals.compared_result().is_none() {
             *other = Picture::default();
         }
-        let compared = signals.comparison().map(|kept| {
-            let picture = other.of(ui, theme, kept, corrected, 1);
+        let compared = signals.compared_result().map(|kept| {
+            let picture = other.texture_of(ui, theme, kept, corrected, 1);
             quality_figure(kept, corrected, picture, (1, true))
         });
-        let picture = own.of(ui, theme, measurement.results(), corrected, 0);
+        let picture = own.texture_of(ui, theme, measurement.results(), corrected, 0);
         let shown = quality_figure(measurement, corrected, picture, (0, false));
         let figures: Vec<LissajousFigure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
@@ -88,11 +90,11 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
             figures: &figures,
             ok_v: limits.ok_v,
             fault_v: limits.fault_v,
-            label: &say(theme, "quality.lissajous"),
+            label: &translate(theme, "quality.lissajous"),
             value: &theme.words(&value),
         };
         lissajous(ui, theme, &lissajous_, side);
-        paragraph(ui, theme.caption(say(theme, "quality.rings")));
+        paragraph(ui, theme.caption(translate(theme, "quality.rings")));
     });
 }
 
@@ -101,7 +103,7 @@ fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Me
 pub(super) struct Picture(Option<(Arc<MeasurementResult>, bool, Color32, TextureHandle)>);
 
 impl Picture {
-    fn of(
+    fn texture_of(
         &mut self,
         ui: &Ui,
         theme: &Theme,
@@ -140,7 +142,7 @@ fn quality_figure(
 
 /// Draws the reason why a capture could not be analysed, and its findings.
 pub(super) fn refusal_ui(ui: &mut Ui, theme: &Theme, measurement: &MeasurementResult) {
-    let Some(why) = measurement.refusal(theme.language) else { return };
+    let Some(why) = measurement.failure_text(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
         for finding in &measurement.diagnosis.findings {
@@ -169,17 +171,17 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
 fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
-        match measurement.refusal(theme.language) {
+        match measurement.failure_text(theme.language) {
             Some(why) => line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why)),
             None if findings.is_empty() => {
-                line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "quality.good"));
+                line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, translate(theme, "quality.good"));
             }
             None => {}
         }
         for finding in findings {
             finding_ui(ui, theme, finding);
         }
-        if let Some((kept, changes)) = signals.comparison().zip(signals.changes()) {
+        if let Some((kept, changes)) = signals.compared_result().zip(signals.changes()) {
             changes_ui(ui, theme, &kept.origin.name(), &changes);
         }
     });
@@ -194,7 +196,7 @@ fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &DiagnosisChange
     };
     under(ui, "compare.worse");
     if changes.worse.is_empty() && changes.untold.is_empty() {
-        line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "compare.nothing"));
+        line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, translate(theme, "compare.nothing"));
     }
     for finding in &changes.worse {
         finding_ui(ui, theme, finding);
@@ -219,7 +221,7 @@ fn values_ui(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("quality.numbers"), |ui| {
-        let word = say(theme, "quality.family");
+        let word = translate(theme, "quality.family");
         let mut family = signals.family();
         entry(ui, theme, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
@@ -229,8 +231,8 @@ fn values_ui(
         });
         periods_ui(ui, theme, signals, &mut view.periods, actions);
         ui.add_space(theme.space.inside);
-        let of = |own: &MeasurementResult| quantities(own, signals.family(), signals.periods());
-        let others = signals.comparison().map(|own| of(own));
+        let of = |own: &MeasurementResult| signal_quantities(own, signals.family(), signals.signal_periods());
+        let others = signals.compared_result().map(|own| of(own));
         numbers::rows_ui(ui, theme, "quality.numbers", &of(measurement), others.as_deref());
     });
 }
@@ -243,17 +245,17 @@ pub(super) fn periods_ui(
     draft: &mut super::Draft,
     actions: &mut Vec<Action>,
 ) {
-    let word = say(theme, "quality.periods_per_turn");
+    let word = translate(theme, "quality.periods_per_turn");
     entry(ui, theme, &word, |ui| {
-        let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
+        let shown = signals.signal_periods().map(|periods| periods.to_string()).unwrap_or_default();
         committed_entry(ui, draft, &shown, 72.0, &word, |text| {
-            actions.push(Action::tool(Signals_::SetPeriods(forms::periods(text)?)));
+            actions.push(Action::tool(Signals_::SetPeriods(forms::parse_periods(text)?)));
             Ok(())
         });
-        let usual = say(theme, "quality.periods_usual");
+        let usual = translate(theme, "quality.periods_usual");
         let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
-            for periods in USUAL_PERIODS {
-                if ui.selectable_label(signals.periods() == Some(periods), periods.to_string()).clicked() {
+            for periods in COMMON_PERIODS {
+                if ui.selectable_label(signals.signal_periods() == Some(periods), periods.to_string()).clicked() {
                     *draft = None;
                     actions.push(Action::tool(Signals_::SetPeriods(periods)));
                     ui.close();
@@ -265,7 +267,7 @@ pub(super) fn periods_ui(
     if let Some((_, Some(why))) = draft {
         problem(ui, theme, Some(why));
     }
-    if signals.periods().is_none() {
-        line_ui(ui, icons::QUESTION, theme.palette.warn, say(theme, "quality.periods_open"));
+    if signals.signal_periods().is_none() {
+        line_ui(ui, icons::QUESTION, theme.palette.warn, translate(theme, "quality.periods_open"));
     }
 }

@@ -8,14 +8,14 @@ use crate::app::{Action, RecorderOwner, explain};
 use crate::signals::state::{
     ChannelSpectrum, Measurement, Signals, Spectra, TAB, TEXTS, TimeAxisError, Unit, decibel_volts,
 };
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::controls::{card, card_with_trailing, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, plot};
 
 /// Minimum height of the trace in points.
-const TRACE: f32 = 300.0;
-const SPECTRUM: f32 = 200.0;
+const MIN_TRACE_HEIGHT: f32 = 300.0;
+const SPECTRUM_HEIGHT: f32 = 200.0;
 
 #[derive(Default)]
 pub(super) struct ScopeUiState {
@@ -44,11 +44,11 @@ pub(super) fn page_ui(
 
 fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeUiState, actions: &mut Vec<Action>) {
     let scope = signals.scope();
-    let height = (ui.ctx().content_rect().height() * 0.5).max(TRACE);
+    let height = (ui.ctx().content_rect().height() * 0.5).max(MIN_TRACE_HEIGHT);
     card(ui, theme, TEXTS.text("scope.title"), |ui| {
         ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
             ui.set_max_height(height);
-            let empty = say(
+            let empty = translate(
                 theme,
                 match scope.refused {
                     Some(TimeAxisError::GoBack) => "scope.refused",
@@ -59,7 +59,7 @@ fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeUiState,
             plot::plot_ui(ui, theme, &scope.recorder, RecorderOwner::Tool(TAB), &mut view.plot, &empty, actions);
         });
         if scope.recorder.counts() {
-            paragraph(ui, theme.caption(say(theme, "scope.counts")));
+            paragraph(ui, theme.caption(translate(theme, "scope.counts")));
         }
     });
 }
@@ -70,7 +70,7 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
     let aside = |ui: &mut Ui| {
         // The buttons are laid out from right to left.
         for (own, id) in [(true, "spectrum.volts"), (false, "spectrum.decibels")] {
-            let word = say(theme, id);
+            let word = translate(theme, id);
             let button = egui::Button::selectable(volts == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add(button), true, &word).clicked() {
                 wanted = own;
@@ -85,21 +85,21 @@ fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Meas
                 return;
             }
         };
-        let kept = signals.comparison().and_then(|own| own.spectra.as_ref().ok());
+        let kept = signals.compared_result().and_then(|own| own.spectra.as_ref().ok());
         lines_ui(ui, theme, spectra, kept, volts);
         peaks_ui(ui, theme, spectra, measurement);
     });
     view.volts = wanted;
 }
 
-fn shown(volts: bool, peak_v: f64) -> f64 {
+fn display_scale(volts: bool, peak_v: f64) -> f64 {
     if volts { peak_v } else { decibel_volts(peak_v) }
 }
 
 fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
     let trace = |id: &'static str, channel: &ChannelSpectrum, colour: usize, dashed: bool| Trace {
-        name: say(theme, id),
-        points: channel.lines.iter().map(|(hertz, peak)| (hertz / 1e3, shown(volts, *peak))).collect(),
+        name: translate(theme, id),
+        points: channel.lines.iter().map(|(hertz, peak)| (hertz / 1e3, display_scale(volts, *peak))).collect(),
         colour,
         dashed,
     };
@@ -112,15 +112,15 @@ fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra
     traces.push(trace("signals.sine", &spectra.sine, 0, false));
     let mark = |line: &crate::analysis::spectrum::SpectralLine| {
         let words = with_unit(theme, line.frequency_hz / 1e3, 3, Unit::Kilohertz);
-        (line.frequency_hz / 1e3, shown(volts, line.amplitude_v), words)
+        (line.frequency_hz / 1e3, display_scale(volts, line.amplitude_v), words)
     };
     let marks: Vec<_> = spectra.sine.peaks.iter().take(3).map(mark).collect();
     let value: Vec<String> = marks.iter().map(|(_, _, words)| words.clone()).collect();
     let own = Chart {
         traces: &traces,
-        label: &say(theme, "spectrum.title"),
+        label: &translate(theme, "spectrum.title"),
         value: &value.join("; "),
-        height: SPECTRUM,
+        height: SPECTRUM_HEIGHT,
         x_unit: Unit::Kilohertz.unit_symbol(),
         y_unit: if volts { Unit::Volts } else { Unit::DecibelVolts }.unit_symbol(),
         marks: &marks,
@@ -141,12 +141,12 @@ fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measure
     ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("spectrum.title").spacing([theme.space.groups, theme.space.inside]).show(ui, |ui| {
         for id in ["spectrum.channel", "spectrum.frequency", "spectrum.amplitude", "spectrum.level", "spectrum.order"] {
-            ui.label(theme.caption(say(theme, id)));
+            ui.label(theme.caption(translate(theme, id)));
         }
         ui.end_row();
         for (id, channel) in [("signals.sine", &spectra.sine), ("signals.cosine", &spectra.cosine)] {
             for peak in channel.peaks.iter().take(4) {
-                ui.label(theme.label(say(theme, id)));
+                ui.label(theme.label(translate(theme, id)));
                 ui.label(theme.monospace(with_unit(theme, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
                 ui.label(theme.monospace(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
                 ui.label(theme.monospace(with_unit(theme, decibel_volts(peak.amplitude_v), 1, Unit::DecibelVolts)));

@@ -8,7 +8,7 @@ use crate::buses::bridge::protocol::Capabilities;
 use crate::signals::state::{
     ExampleCapture, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
 };
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
 use crate::ui::{Theme, icons};
@@ -29,7 +29,7 @@ pub(super) fn source_ui(
     actions: &mut Vec<Action>,
 ) -> bool {
     reading_ui(ui, theme, signals, actions);
-    problem(ui, theme, signals);
+    problem_ui(ui, theme, signals);
     let running = signals.source().is_running();
     if signals.measurement().is_some() || running {
         displayed_capture_ui(ui, theme, signals, view, actions);
@@ -62,14 +62,14 @@ pub(super) fn settings_ui(
     view: &SourceUiState,
     actions: &mut Vec<Action>,
 ) {
-    if view.settings && live(signals) == Some(SourceKind::Encoder) {
+    if view.settings && current_source(signals) == Some(SourceKind::Encoder) {
         virtual_encoder::card_ui(ui, theme, signals.source(), actions);
         ui.add_space(theme.space.between);
     }
 }
 
 /// Returns the kind of the running or displayed source, or `None` for a table.
-fn live(signals: &Signals) -> Option<SourceKind> {
+fn current_source(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());
     }
@@ -81,14 +81,14 @@ fn live(signals: &Signals) -> Option<SourceKind> {
 }
 
 fn reading_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
-    let Some(reading) = signals.reading() else { return };
+    let Some(reading) = signals.capture_reading() else { return };
     ui.horizontal(|ui| {
         spinner(ui, theme);
         ui.label(theme.label(theme.words(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))));
-        if let Some(share) = reading.share() {
+        if let Some(share) = reading.fraction_read() {
             ui.add(egui::ProgressBar::new(share as f32).desired_height(4.0).desired_width(160.0));
         }
-        let word = say(theme, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
+        let word = translate(theme, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
         if enabled_button(ui, !reading.is_cancelled(), icons::X, &word).clicked() {
             actions.push(Action::tool(Signals_::Cancel));
         }
@@ -97,7 +97,7 @@ fn reading_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<A
 }
 
 /// Draws the reason why a capture could not be read.
-pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
+pub(super) fn problem_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
@@ -127,7 +127,7 @@ fn displayed_capture_ui(
             source_buttons_ui(ui, theme, signals, view, actions);
             save_capture_ui(ui, theme, signals, actions);
             if signals.table().is_some() {
-                toggle_ui(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
+                toggle_ui(ui, icons::TABLE, &translate(theme, "signals.table"), &mut view.table.is_open);
             }
         });
         compared_capture_ui(ui, theme, signals, actions);
@@ -136,14 +136,16 @@ fn displayed_capture_ui(
 
 fn title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
-    if live(signals).is_some() {
+    if current_source(signals).is_some() {
         live_title_ui(ui, theme, signals);
     } else if let Some(measurement) = signals.measurement() {
         let name = theme.words(&measurement.origin.name());
         let response = ui.add(egui::Label::new(theme.heading(name)).truncate());
         match &measurement.origin {
             Origin::Table(TableSource::File(path)) => drop(response.on_hover_text(path.display().to_string())),
-            Origin::Table(TableSource::Example(_)) => badge(ui, theme, &say(theme, "signals.example"), palette.muted),
+            Origin::Table(TableSource::Example(_)) => {
+                badge(ui, theme, &translate(theme, "signals.example"), palette.muted)
+            }
             Origin::Virtual | Origin::Adapter { .. } => {}
         }
     }
@@ -154,7 +156,7 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     let source = signals.source();
     let shown = signals.measurement().map(|own| &own.origin);
-    let origin = match (source.is_running(), source.kind(), source.streaming()) {
+    let origin = match (source.is_running(), source.kind(), source.streaming_adapter()) {
         (true, SourceKind::Encoder, _) => Some(Origin::Virtual),
         (true, SourceKind::Adapter, Some(streaming)) => {
             Some(Origin::Adapter { name: streaming.hello.name.clone(), is_virtual: source.is_virtual() })
@@ -174,8 +176,8 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         (true, false) => ("virtual.running", palette.good),
         (false, _) => ("virtual.stopped", palette.muted),
     };
-    let response = ui.label(RichText::new(say(theme, id)).color(colour));
-    if let Some(streaming) = source.streaming() {
+    let response = ui.label(RichText::new(translate(theme, id)).color(colour));
+    if let Some(streaming) = source.streaming_adapter() {
         let rate = 1e9 / streaming.period_ns.max(1) as f64;
         let volts = f64::from(streaming.full_scale_microvolt) * 1e-6;
         let actual = TEXTS.text("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
@@ -186,12 +188,12 @@ fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
             let text = TEXTS.text("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
             ui.label(theme.label(theme.words(&text.with("milliampere", milliampere))));
         } else if hello.capabilities.has(Capabilities::SUPPLY) {
-            let word = RichText::new(say(theme, "adapter.supply_off")).color(palette.warn);
-            ui.label(word).on_hover_text(say(theme, "adapter.supply_off_hint"));
+            let word = RichText::new(translate(theme, "adapter.supply_off")).color(palette.warn);
+            ui.label(word).on_hover_text(translate(theme, "adapter.supply_off_hint"));
         }
     }
-    if source.lost() > 0 {
-        let text = TEXTS.text("virtual.lost").with("count", source.lost());
+    if source.lost_samples() > 0 {
+        let text = TEXTS.text("virtual.lost").with("count", source.lost_samples());
         ui.label(RichText::new(theme.words(&text)).color(palette.warn));
     }
 }
@@ -205,17 +207,17 @@ fn source_buttons_ui(
 ) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
-    let Some(kind) = live(signals) else { return };
+    let Some(kind) = current_source(signals) else { return };
     if source.is_running() {
-        if button(ui, icons::STOP, &say(theme, "virtual.stop")).clicked() {
+        if button(ui, icons::STOP, &translate(theme, "virtual.stop")).clicked() {
             ask(SourceAction::Stop);
         }
         let held = source.is_held();
         let (icon, id) = if held { (icons::PLAY, "virtual.go_on") } else { (icons::PAUSE, "virtual.hold") };
-        if button(ui, icon, &say(theme, id)).clicked() {
+        if button(ui, icon, &translate(theme, id)).clicked() {
             ask(SourceAction::Hold(!held));
         }
-    } else if button(ui, icons::PLAY, &say(theme, "virtual.again")).clicked() {
+    } else if button(ui, icons::PLAY, &translate(theme, "virtual.again")).clicked() {
         ask(match kind {
             SourceKind::Encoder => SourceAction::Start,
             SourceKind::Adapter => SourceAction::StartAdapter,
@@ -225,7 +227,7 @@ fn source_buttons_ui(
         SourceKind::Encoder => &mut view.settings,
         SourceKind::Adapter => &mut view.adapter,
     };
-    toggle_ui(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
+    toggle_ui(ui, icons::SLIDERS, &translate(theme, "virtual.settings"), open);
 }
 
 fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
@@ -237,16 +239,19 @@ fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 
 /// Draws the button that keeps the displayed capture for comparison.
 fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
-    let word = say(theme, "compare.keep");
-    let same =
-        signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
-    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(say(theme, "compare.keep_hint")).clicked() {
+    let word = translate(theme, "compare.keep");
+    let same = signals
+        .compared_result()
+        .zip(signals.measurement())
+        .is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
+    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(translate(theme, "compare.keep_hint")).clicked()
+    {
         actions.push(Action::tool(Signals_::Keep));
     }
 }
 
 fn compared_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
-    let Some(kept) = signals.comparison() else { return };
+    let Some(kept) = signals.compared_result() else { return };
     ui.horizontal(|ui| {
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());
@@ -254,30 +259,30 @@ fn compared_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &
         let stroke = egui::Stroke::new(2.0, series(theme, 1));
         ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
         ui.add(egui::Label::new(theme.label(theme.words(&text))).truncate());
-        if icon_button(ui, true, icons::X, &say(theme, "compare.drop")).clicked() {
+        if icon_button(ui, true, icons::X, &translate(theme, "compare.drop")).clicked() {
             actions.push(Action::tool(Signals_::DropComparison));
         }
     });
 }
 
 fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
-    let word = say(theme, "signals.source");
+    let word = translate(theme, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
         let mut chosen = None;
-        if button(ui, icons::FOLDER_OPEN, &say(theme, "signals.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
             chosen = Some(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &say(theme, "virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
             chosen = Some(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &say(theme, "adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
             view.adapter = true;
             ui.close();
         }
-        ui.label(theme.caption(say(theme, "signals.examples")));
+        ui.label(theme.caption(translate(theme, "signals.examples")));
         for example in ExampleCapture::ALL {
-            if button(ui, icons::FILE_TEXT, &say(theme, example.word())).clicked() {
+            if button(ui, icons::FILE_TEXT, &translate(theme, example.keyword())).clicked() {
                 chosen = Some(Action::tool(Signals_::Example(example)));
             }
         }
@@ -291,28 +296,28 @@ fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions:
 
 /// Draws the empty page, with buttons to load a capture or start a source.
 fn empty_page_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
-    if signals.reading().is_some() {
+    if signals.capture_reading().is_some() {
         return;
     }
     ui.vertical_centered(|ui| {
         ui.add_space(theme.space.around);
         ui.label(RichText::new(icons::WAVE_SINE).size(theme.sizes.live).color(theme.palette.muted));
         ui.add_space(theme.space.between);
-        ui.add(egui::Label::new(theme.label(say(theme, "signals.nothing"))).wrap());
+        ui.add(egui::Label::new(theme.label(translate(theme, "signals.nothing"))).wrap());
         ui.add_space(theme.space.between);
-        if button(ui, icons::FOLDER_OPEN, &say(theme, "signals.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &translate(theme, "signals.open")).clicked() {
             actions.push(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &say(theme, "virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &translate(theme, "virtual.start")).clicked() {
             actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &say(theme, "adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &translate(theme, "adapter.open")).clicked() {
             view.adapter = true;
         }
         theme.gap(ui);
-        ui.label(theme.caption(say(theme, "signals.try_example")));
+        ui.label(theme.caption(translate(theme, "signals.try_example")));
         for example in ExampleCapture::ALL {
-            if button(ui, icons::WAVE_SINE, &say(theme, example.word())).clicked() {
+            if button(ui, icons::WAVE_SINE, &translate(theme, example.keyword())).clicked() {
                 actions.push(Action::tool(Signals_::Example(example)));
             }
         }

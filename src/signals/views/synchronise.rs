@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::{Action, SineCosineSource, Text};
 use crate::signals::state::synchronise::{Form, PhaseInput, SynchroniseAction as Page, SynchroniseState};
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::SynchronisationResult};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::controls::{
     card, card_with_trailing, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row,
     show_error_below, split, verdict_ui,
@@ -13,8 +13,8 @@ use crate::ui::controls::{
 use crate::ui::widgets::{StepRing, series, step_ring};
 use crate::ui::{Theme, controls, icons};
 
-const ENTRY: f32 = 112.0;
-const RING: f32 = 200.0;
+const ENTRY_WIDTH: f32 = 112.0;
+const RING_SIDE: f32 = 200.0;
 /// Fraction of the width for the left column, and minimum width in points for two columns.
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
@@ -28,7 +28,7 @@ pub(super) fn page_ui(
     let state = signals.synchronise();
     let mut form = state.form.clone();
     // The result is drawn beside the entries, and so it is calculated first.
-    let synchronisation = form.synchronisation();
+    let synchronisation = form.compute_result();
     // The page has two rows. In a single column, each result then follows its inputs.
     split(
         ui,
@@ -58,16 +58,16 @@ pub(super) fn page_ui(
         |ui, _| order_ui(ui, theme),
     );
     if form != state.form {
-        actions.push(ask(Page::Edit(Box::new(form))));
+        actions.push(to_action(Page::Edit(Box::new(form))));
     }
 }
 
-fn ask(action: Page) -> Action {
+fn to_action(action: Page) -> Action {
     Action::tool(Signals::Synchronise(action))
 }
 
 fn typed_entry_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
-    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
+    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY_WIDTH, hint);
 }
 
 fn positions_ui(
@@ -81,14 +81,14 @@ fn positions_ui(
 ) {
     card(ui, theme, TEXTS.text("synchronise.positions"), |ui| {
         typed_entry_ui(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
-        entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
+        entry(ui, theme, &translate(theme, "synchronise.analogue"), |ui| {
             let ways = [
                 (PhaseInput::Periods, "synchronise.in_periods"),
                 (PhaseInput::Degrees, "synchronise.in_degrees"),
                 (PhaseInput::Volts, "synchronise.in_volts"),
             ];
-            let ways = ways.map(|(way, id)| (way, say(theme, id)));
-            choice(ui, &say(theme, "synchronise.analogue"), &mut form.phase_input, ways);
+            let ways = ways.map(|(way, id)| (way, translate(theme, id)));
+            choice(ui, &translate(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
         match form.phase_input {
             PhaseInput::Periods | PhaseInput::Degrees => {
@@ -102,35 +102,35 @@ fn positions_ui(
         typed_entry_ui(ui, theme, "synchronise.periods", &mut form.periods, "1024");
         typed_entry_ui(ui, theme, "synchronise.turns", &mut form.turns, "1");
         typed_entry_ui(ui, theme, "synchronise.offset", &mut form.offset, "0");
-        ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
-            .on_hover_text(say(theme, "synchronise.half_step_hint"));
+        ui.checkbox(&mut form.half_step, translate(theme, "synchronise.half_step"))
+            .on_hover_text(translate(theme, "synchronise.half_step_hint"));
         show_error_below(ui, theme, refused.or(state.problem.as_ref()));
         let ready = device.is_some_and(SineCosineSource::is_ready);
-        let read = enabled_button(ui, ready, icons::CROSSHAIR, &say(theme, "synchronise.read"));
-        if read.on_disabled_hover_text(say(theme, "synchronise.read_hint")).clicked() {
+        let read = enabled_button(ui, ready, icons::CROSSHAIR, &translate(theme, "synchronise.read"));
+        if read.on_disabled_hover_text(translate(theme, "synchronise.read_hint")).clicked() {
             actions.extend(device.map(SineCosineSource::read_action));
         }
     });
 }
 
 fn measured_offset_ui(ui: &mut Ui, theme: &Theme, state: &SynchroniseState, actions: &mut Vec<Action>) {
-    let count = state.readings();
+    let count = state.reading_count();
     let mut forget = false;
     let aside = |ui: &mut Ui| {
-        forget = icon_button(ui, count > 0, icons::TRASH, &say(theme, "synchronise.forget")).clicked();
+        forget = icon_button(ui, count > 0, icons::TRASH, &translate(theme, "synchronise.forget")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("synchronise.measured"), aside, |ui| {
-        paragraph(ui, theme.label(say(theme, "synchronise.measured_words")));
-        row(ui, theme, &say(theme, "synchronise.readings"), theme.monospace(count.to_string()));
-        let offset = state.measured();
+        paragraph(ui, theme.label(translate(theme, "synchronise.measured_words")));
+        row(ui, theme, &translate(theme, "synchronise.readings"), theme.monospace(count.to_string()));
+        let offset = state.measured_offset();
         let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", theme.number(offset, 2)));
-        row(ui, theme, &say(theme, "synchronise.mean"), theme.monospace(words));
-        if enabled_button(ui, offset.is_some(), icons::CHECK, &say(theme, "synchronise.use")).clicked() {
-            actions.push(ask(Page::UseOffset));
+        row(ui, theme, &translate(theme, "synchronise.mean"), theme.monospace(words));
+        if enabled_button(ui, offset.is_some(), icons::CHECK, &translate(theme, "synchronise.use")).clicked() {
+            actions.push(to_action(Page::UseOffset));
         }
     });
     if forget {
-        actions.push(ask(Page::Forget));
+        actions.push(to_action(Page::Forget));
     }
 }
 
@@ -138,7 +138,7 @@ fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();
         let Some((own, offset)) = measurement.and_then(|own| Some((own, own.absolute_offset?))) else {
-            paragraph(ui, theme.label(say(theme, "synchronise.not_captured")));
+            paragraph(ui, theme.label(translate(theme, "synchronise.not_captured")));
             return;
         };
         let name = TEXTS.text("synchronise.captured_from").with_text("name", own.origin.name());
@@ -147,11 +147,11 @@ fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut
             Ok(offset) => {
                 let steps = |steps| theme.monospace(format!("{}/32", theme.number(steps, 2)));
                 let state = signals.synchronise();
-                row(ui, theme, &say(theme, "quality.samples"), theme.monospace(offset.samples.to_string()));
-                row(ui, theme, &say(theme, "synchronise.mean"), steps(state.add_half_step(offset.offset_steps)));
-                row(ui, theme, &say(theme, "synchronise.farthest"), steps(offset.farthest_steps));
-                if enabled_button(ui, true, icons::CHECK, &say(theme, "synchronise.use_captured")).clicked() {
-                    actions.push(ask(Page::UseCaptured(offset.offset_steps)));
+                row(ui, theme, &translate(theme, "quality.samples"), theme.monospace(offset.samples.to_string()));
+                row(ui, theme, &translate(theme, "synchronise.mean"), steps(state.add_half_step(offset.offset_steps)));
+                row(ui, theme, &translate(theme, "synchronise.farthest"), steps(offset.farthest_steps));
+                if enabled_button(ui, true, icons::CHECK, &translate(theme, "synchronise.use_captured")).clicked() {
+                    actions.push(to_action(Page::UseCaptured(offset.offset_steps)));
                 }
             }
             Err(why) => problem(ui, theme, Some(&why.text())),
@@ -160,14 +160,14 @@ fn captured_offset_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut
 }
 
 fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
-    let (verdict, words) = synchronisation.words();
+    let (verdict, words) = synchronisation.to_text();
     let (_, colour) = controls::verdict(theme, verdict);
     card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
         let fine = synchronisation.result.ok();
-        let (label, value) = (say(theme, "synchronise.ring"), theme.words(&words));
+        let (label, value) = (translate(theme, "synchronise.ring"), theme.words(&words));
         let ring = StepRing {
             step: synchronisation.step,
-            phase: synchronisation.phase.periods(),
+            phase: synchronisation.phase.to_periods(),
             apart: fine.map(|fine| fine.residual_periods),
             colour: colour.into(),
             label: &label,
@@ -180,10 +180,10 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult
         split(
             ui,
             theme,
-            (0.5, 2.0 * RING),
+            (0.5, 2.0 * RING_SIDE),
             (),
             |ui, ()| {
-                ui.vertical_centered(|ui| step_ring(ui, theme, &ring, RING.min(ui.available_width())));
+                ui.vertical_centered(|ui| step_ring(ui, theme, &ring, RING_SIDE.min(ui.available_width())));
             },
             |ui, ()| numbers_ui(ui, theme, synchronisation),
         );
@@ -192,48 +192,55 @@ fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult
 
 fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &SynchronisationResult) {
     let number = |value, decimals, unit: &str| theme.monospace(format!("{}{unit}", theme.number(value, decimals)));
-    row(ui, theme, &say(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
+    row(ui, theme, &translate(theme, "synchronise.period"), theme.monospace(synchronisation.period.to_string()));
     // The numbers have the colours of the ring.
     row(
         ui,
         theme,
-        &say(theme, "synchronise.step"),
+        &translate(theme, "synchronise.step"),
         theme.monospace(format!("{}/32", synchronisation.step)).color(series(theme, 0)),
     );
     row(
         ui,
         theme,
-        &say(theme, "synchronise.phase_now"),
-        number(synchronisation.phase.periods(), 5, "").color(series(theme, 1)),
+        &translate(theme, "synchronise.phase_now"),
+        number(synchronisation.phase.to_periods(), 5, "").color(series(theme, 1)),
     );
-    row(ui, theme, &say(theme, "synchronise.difference"), number(synchronisation.difference_steps, 2, "/32"));
+    row(ui, theme, &translate(theme, "synchronise.difference"), number(synchronisation.difference_steps, 2, "/32"));
     if let Ok(fine) = synchronisation.result {
         let correction = if fine.correction == 0 { "0".to_owned() } else { format!("{:+}", fine.correction) };
-        row(ui, theme, &say(theme, "synchronise.correction"), theme.monospace(correction));
-        row(ui, theme, &say(theme, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
-        row(ui, theme, &say(theme, "synchronise.steps"), theme.monospace(format!("{:X}h", fine.steps(16))));
+        row(ui, theme, &translate(theme, "synchronise.correction"), theme.monospace(correction));
+        row(ui, theme, &translate(theme, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
+        row(
+            ui,
+            theme,
+            &translate(theme, "synchronise.steps"),
+            theme.monospace(format!("{:X}h", fine.steps_per_period(16))),
+        );
     }
-    if let Some(degrees) = synchronisation.degrees() {
-        row(ui, theme, &say(theme, "synchronise.shaft"), number(degrees, 6, "°"));
+    if let Some(degrees) = synchronisation.to_degrees() {
+        row(ui, theme, &translate(theme, "synchronise.shaft"), number(degrees, 6, "°"));
     }
 }
 
 fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("synchronise.counter"), |ui| {
-        paragraph(ui, theme.label(say(theme, "synchronise.counter_words")));
+        paragraph(ui, theme.label(translate(theme, "synchronise.counter_words")));
         typed_entry_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
-        match form.quadrature() {
-            Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.monospace(theme.number(fine, 5))),
+        match form.quadrature_position() {
+            Ok(Some(fine)) => {
+                row(ui, theme, &translate(theme, "synchronise.fine"), theme.monospace(theme.number(fine, 5)))
+            }
             Ok(None) => {}
             Err(why) => problem(ui, theme, Some(&why)),
         }
         ui.add_space(theme.space.inside);
-        paragraph(ui, theme.label(say(theme, "synchronise.check_words")));
+        paragraph(ui, theme.label(translate(theme, "synchronise.check_words")));
         typed_entry_ui(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
         match form.max_unlatched_rpm() {
             Ok(rpm) => {
-                let words = format!("{} {}", theme.number(rpm, 1), say(theme, "input.rpm"));
-                row(ui, theme, &say(theme, "synchronise.below"), theme.monospace(words));
+                let words = format!("{} {}", theme.number(rpm, 1), translate(theme, "input.rpm"));
+                row(ui, theme, &translate(theme, "synchronise.below"), theme.monospace(words));
             }
             Err(why) => problem(ui, theme, Some(&why)),
         }
@@ -250,7 +257,7 @@ fn order_ui(ui: &mut Ui, theme: &Theme) {
             "synchronise.order_run",
             "synchronise.order_check",
         ] {
-            paragraph(ui, theme.label(say(theme, id)));
+            paragraph(ui, theme.label(translate(theme, id)));
         }
     });
 }

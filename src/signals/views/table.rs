@@ -6,7 +6,7 @@ use super::Draft;
 use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::app::Action;
 use crate::signals::state::{Column, SignalsAction as Signals, TEXTS, Table, forms};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::ui::controls::{
     button, card_with_trailing, choice, committed_entry, entry, paragraph, problem, two_columns,
 };
@@ -40,7 +40,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     let mut act = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
-        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "columns.detect")).clicked();
+        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "columns.detect")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
         lines_ui(ui, theme, table);
@@ -63,7 +63,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
             paragraph(ui, theme.caption(theme.words(&text)));
         }
         if table.half_chosen != (None, None) {
-            paragraph(ui, theme.caption(say(theme, "columns.half_chosen")));
+            paragraph(ui, theme.caption(translate(theme, "columns.half_chosen")));
         }
     });
     if again {
@@ -88,18 +88,19 @@ fn lines_ui(ui: &mut Ui, theme: &Theme, table: &Table) {
 }
 
 fn form_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
-    let word = say(theme, "columns.delimiter");
+    let word = translate(theme, "columns.delimiter");
     let mut delimiter = table.delimiter();
     entry(ui, theme, &word, |ui| {
-        let options = DELIMITERS.map(|(own, id)| (Some(own), say(theme, id)));
+        let options = DELIMITERS.map(|(own, id)| (Some(own), translate(theme, id)));
         if choice(ui, &word, &mut delimiter, options) {
             delimiter.into_iter().for_each(|own| act(Signals::SetDelimiter(own)));
         }
     });
-    let word = say(theme, "columns.decimal");
+    let word = translate(theme, "columns.decimal");
     let mut comma = table.hints.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
     entry(ui, theme, &word, |ui| {
-        let options = [(Some(false), say(theme, "columns.point")), (Some(true), say(theme, "columns.comma"))];
+        let options =
+            [(Some(false), translate(theme, "columns.point")), (Some(true), translate(theme, "columns.comma"))];
         if choice(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| act(Signals::SetDecimalComma(own)));
         }
@@ -108,11 +109,11 @@ fn form_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signa
 
 fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
     for (column, id) in COLUMNS {
-        let word = say(theme, id);
+        let word = translate(theme, id);
         let mut number = table.column(column);
         let needed = matches!(column, Column::Sine | Column::Cosine);
         entry(ui, theme, &word, |ui| {
-            let none = (!needed).then(|| (None, say(theme, "columns.none")));
+            let none = (!needed).then(|| (None, translate(theme, "columns.none")));
             let width = table.width().max(number.unwrap_or(0));
             let numbers = (1..=width).map(|own| match table.name(own) {
                 Some(name) => (Some(own), format!("{own}: {name}")),
@@ -123,7 +124,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
             }
         });
         if column == Column::Time && number.is_some() {
-            let word = say(theme, "columns.time_unit");
+            let word = translate(theme, "columns.time_unit");
             let mut unit = table.hints.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
             entry(ui, theme, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
@@ -138,7 +139,7 @@ fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Si
 fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, act: &mut impl FnMut(Signals)) {
     let volts = table.hints.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
     let shown = volts.map(|volts| theme.plain(volts)).unwrap_or_default();
-    let word = say(theme, "columns.volts");
+    let word = translate(theme, "columns.volts");
     entry(ui, theme, &word, |ui| {
         committed_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             act(Signals::SetVolts(forms::volts_per_unit(text)?));

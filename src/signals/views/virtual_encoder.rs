@@ -5,7 +5,7 @@ use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 use crate::analysis::wiring::Wire;
 use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
-use crate::signals::views::say;
+use crate::signals::views::translate;
 use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 use crate::ui::controls::{
     button, card_with_trailing, choice, entry, label_width, paragraph, show_error_below, two_columns,
@@ -25,14 +25,14 @@ const fn linear_slider(quantity: Quantity, least: f64, most: f64, decimals: usiz
     SliderSpec { quantity, ends: (least, most), decimals, logarithmic: false }
 }
 
-const fn wide(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
+const fn slider_spec(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
     SliderSpec { quantity, ends: (least, most), decimals, logarithmic: true }
 }
 
 const SIGNAL: [SliderSpec; 9] = [
-    wide(Quantity::Speed, -6000.0, 6000.0, 1),
-    wide(Quantity::Periods, 1.0, 65_536.0, 0),
-    wide(Quantity::Rate, 1_000.0, 1_000_000.0, 0),
+    slider_spec(Quantity::Speed, -6000.0, 6000.0, 1),
+    slider_spec(Quantity::Periods, 1.0, 65_536.0, 0),
+    slider_spec(Quantity::Rate, 1_000.0, 1_000_000.0, 0),
     linear_slider(Quantity::Amplitude, 0.0, 1.0, 3),
     linear_slider(Quantity::GainRatio, 0.5, 1.5, 3),
     linear_slider(Quantity::PhaseError, -20.0, 20.0, 2),
@@ -41,14 +41,14 @@ const SIGNAL: [SliderSpec; 9] = [
     linear_slider(Quantity::Level, 0.0, 5.0, 2),
 ];
 const DISTURBANCES: [SliderSpec; 8] = [
-    wide(Quantity::Noise, 0.0, 0.2, 4),
-    wide(Quantity::Interference, 0.0, 0.2, 4),
-    wide(Quantity::InterferenceFrequency, 10.0, 100_000.0, 0),
-    wide(Quantity::Hum, 0.0, 0.2, 4),
+    slider_spec(Quantity::Noise, 0.0, 0.2, 4),
+    slider_spec(Quantity::Interference, 0.0, 0.2, 4),
+    slider_spec(Quantity::InterferenceFrequency, 10.0, 100_000.0, 0),
+    slider_spec(Quantity::Hum, 0.0, 0.2, 4),
     linear_slider(Quantity::HumFrequency, 16.0, 400.0, 1),
     linear_slider(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
     linear_slider(Quantity::Modulation, 0.0, 20.0, 1),
-    wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
+    slider_spec(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
 /// Durations of the measured samples to choose from, in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
@@ -57,7 +57,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let mut reset = false;
     let aside = |ui: &mut Ui| {
-        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "virtual.reset")).clicked();
+        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &translate(theme, "virtual.reset")).clicked();
     };
     card_with_trailing(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
         // The rows are low, since all of them must fit beside the curves that they affect.
@@ -72,8 +72,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
             |ui, ask| sliders_ui(ui, theme, source.settings(), &SIGNAL, *ask),
             |ui, ask| {
                 sliders_ui(ui, theme, source.settings(), &DISTURBANCES, *ask);
-                wires(ui, theme, source.settings(), *ask);
-                window(ui, theme, source, *ask);
+                wires_ui(ui, theme, source.settings(), *ask);
+                window_ui(ui, theme, source, *ask);
             },
         );
     });
@@ -89,9 +89,9 @@ fn sliders_ui(
     list: &[SliderSpec],
     ask: &mut impl FnMut(SourceAction),
 ) {
-    const NUMBER: f32 = 96.0;
+    const NUMBER_WIDTH: f32 = 96.0;
     let label = label_width(ui);
-    let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);
+    let rail = (ui.available_width() - label - NUMBER_WIDTH - 3.0 * theme.space.between).clamp(40.0, 220.0);
     ui.spacing_mut().slider_width = rail;
     for own in list {
         let word = theme.words(&explain::signal::quantity(own.quantity));
@@ -116,35 +116,35 @@ fn sliders_ui(
     }
 }
 
-fn wires(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
-    let word = say(theme, "virtual.open_wire");
+fn wires_ui(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
+    let word = translate(theme, "virtual.open_wire");
     let mut open = settings.open_wire;
     entry(ui, theme, &word, |ui| {
         let wires = Wire::ALL.map(|wire| (Some(wire), wire.name().to_owned()));
-        let none = [(None, say(theme, "virtual.no_wire"))];
+        let none = [(None, translate(theme, "virtual.no_wire"))];
         if choice(ui, &word, &mut open, none.into_iter().chain(wires)) {
             ask(SourceAction::SetOpenWire(open));
         }
     });
-    let word = say(theme, "virtual.references");
+    let word = translate(theme, "virtual.references");
     let mut references = settings.references;
     entry(ui, theme, &word, |ui| {
         let options = [
-            (ReferenceLevel::Level, say(theme, "virtual.level")),
-            (ReferenceLevel::Complement, say(theme, "virtual.complement")),
+            (ReferenceLevel::Level, translate(theme, "virtual.level")),
+            (ReferenceLevel::Complement, translate(theme, "virtual.complement")),
         ];
         if choice(ui, &word, &mut references, options) {
             ask(SourceAction::SetReferences(references));
         }
     });
     let mut terminated = settings.terminated;
-    if ui.checkbox(&mut terminated, say(theme, "virtual.terminated")).changed() {
+    if ui.checkbox(&mut terminated, translate(theme, "virtual.terminated")).changed() {
         ask(SourceAction::SetTerminated(terminated));
     }
 }
 
-fn window(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(SourceAction)) {
-    let word = say(theme, "virtual.window");
+fn window_ui(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(SourceAction)) {
+    let word = translate(theme, "virtual.window");
     let mut window = source.window_ms();
     entry(ui, theme, &word, |ui| {
         if choice(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {

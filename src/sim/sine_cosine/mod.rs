@@ -77,7 +77,7 @@ impl Source {
     /// Returns the time of a sample. Returns `None` if the changes before the sample are no longer stored.
     pub fn time(&self, index: u64) -> Option<SampleTime> {
         let segment = self.segment(index)?;
-        Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
+        Some(self.start.saturating_add_ns(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
     /// Returns `count` samples from `first` on. Returns `None` if the changes before these samples are no longer

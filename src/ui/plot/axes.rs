@@ -68,10 +68,13 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
     // If labels would differ in their last digits only, they count from a round time before them.
-    let coarse =
-        if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(axis_base_time(from, step)) } else { None };
+    let coarse = if step < SECOND && from.as_nanoseconds().abs() > 2000 * step {
+        Some(axis_base_time(from, step))
+    } else {
+        None
+    };
     let origin = coarse.unwrap_or(0);
-    let first = from.nanoseconds().saturating_sub(origin).div_euclid(step);
+    let first = from.as_nanoseconds().saturating_sub(origin).div_euclid(step);
     let mut ticks = Vec::new();
     for count in first..=first.saturating_add(most as i64 + 3) {
         let offset = count.saturating_mul(step);
@@ -89,7 +92,7 @@ pub(super) fn time_ticks(from: SampleTime, to: SampleTime, most: usize, language
 
 /// Returns ticks labelled with sample numbers instead of times.
 pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, language: Language) -> TimeTicks {
-    let number = |time: SampleTime| time.nanoseconds() as f64 / SAMPLE as f64;
+    let number = |time: SampleTime| time.as_nanoseconds() as f64 / SAMPLE as f64;
     let step = step(number(to) - number(from), most as f64).max(1.0);
     let tick = |value: f64| (SampleTime::from_nanoseconds((value * SAMPLE as f64) as i64), decimal(value, 0, language));
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
@@ -98,7 +101,7 @@ pub(super) fn sample_ticks(from: SampleTime, to: SampleTime, most: usize, langua
 /// Returns the base time at or before `from`. It is a multiple of 0.1 s for steps below 1 ms, and of 10 s otherwise.
 fn axis_base_time(from: SampleTime, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
-    from.nanoseconds().div_euclid(grain).saturating_mul(grain)
+    from.as_nanoseconds().div_euclid(grain).saturating_mul(grain)
 }
 
 fn time_step(span: i64, most: usize) -> i64 {
@@ -175,7 +178,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
 
 /// Formats a point in time with the precision of a picture that spans `span` nanoseconds.
 pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> String {
-    let nanoseconds = time.nanoseconds();
+    let nanoseconds = time.as_nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
     let decimals = digits.map_or(9, |(_, digits)| digits);
     let sign = if nanoseconds < 0 { "-" } else { "" };
@@ -189,7 +192,7 @@ pub(super) fn time_of_day(time: SampleTime, span: i64, language: Language) -> St
 }
 
 pub(super) fn sample_number(time: SampleTime) -> String {
-    time.nanoseconds().div_euclid(SAMPLE).to_string()
+    time.as_nanoseconds().div_euclid(SAMPLE).to_string()
 }
 
 /// Formats a duration with about four digits.

@@ -7,7 +7,7 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
-use crate::analysis::history::{Grid, GridColumns, Picture};
+use crate::analysis::history::{Grid, GridColumns, HistoryPicture};
 use crate::app::recorder::{Recorder, SampleGroupStamp, Series, SeriesId};
 
 /// Gap between two lanes, in points.
@@ -46,7 +46,7 @@ pub(super) struct Layout {
 /// Reduced samples, cached between redraws.
 #[derive(Default)]
 pub(super) struct Reduced {
-    pictures: Vec<(SeriesId, Picture)>,
+    pictures: Vec<(SeriesId, HistoryPicture)>,
     made: Vec<(SeriesId, PictureInputs)>,
     gutter: f32,
 }
@@ -60,7 +60,7 @@ struct PictureInputs {
 }
 
 impl Reduced {
-    pub(super) fn picture(&self, line: SeriesId) -> Option<&Picture> {
+    pub(super) fn picture(&self, line: SeriesId) -> Option<&HistoryPicture> {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
@@ -72,21 +72,21 @@ impl Reduced {
         let mut cuts: Vec<(PictureInputs, GridColumns)> = Vec::new();
         for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = PictureInputs { samples: recorder.group_stamp(line), all: history.all(), grid: *grid };
+            let wanted = PictureInputs { samples: recorder.group_stamp(line), all: history.indices(), grid: *grid };
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }
             // Lines share one cut if their samples were taken together.
             if !cuts.iter().any(|(made, _)| *made == wanted) {
-                cuts.push((wanted.clone(), history.cut(grid)));
+                cuts.push((wanted.clone(), history.divide_into_pixels(grid)));
             }
             if self.picture(line.id).is_none() {
-                self.pictures.push((line.id, Picture::default()));
+                self.pictures.push((line.id, HistoryPicture::default()));
             }
             let cut = cuts.iter().find(|(made, _)| *made == wanted);
             let picture = self.pictures.iter_mut().find(|(id, _)| *id == line.id);
             if let (Some((_, cut)), Some((_, picture))) = (cut, picture) {
-                history.picture(line.column(), cut, picture);
+                history.render_column(line.column(), cut, picture);
             }
             self.made.retain(|(id, _)| *id != line.id);
             self.made.push((line.id, wanted));
@@ -121,7 +121,7 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let pixels = (chart.width() * pixels_per_point).floor().max(1.0);
         let grid = Grid::new(from, to, pixels as usize);
         let scale = f64::from(1.0 / pixels_per_point) / grid.width() as f64;
-        let time = TimeAxis { from: grid.edge(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
+        let time = TimeAxis { from: grid.pixel_start(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
         let lanes = lay_out_lanes(chart, &groups, &time, reduced);
         let needed = (max_label_len(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
@@ -185,7 +185,7 @@ fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> 
 mod tests {
     use super::*;
     use crate::analysis::SampleTime;
-    use crate::analysis::history::{Kind, Part};
+    use crate::analysis::history::{ColumnPart, Kind};
     use crate::app::Text;
     use crate::app::recorder::{RecorderAction, Scale};
 
@@ -196,7 +196,7 @@ mod tests {
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
         recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "value", scales));
         let times: Vec<SampleTime> = (0..1000).map(|at| SampleTime::from_nanoseconds(at * 1000)).collect();
-        recorder.append(group, &times, &[Part::real(&[value; 1000])]).unwrap();
+        recorder.append(group, &times, &[ColumnPart::from_reals(&[value; 1000])]).unwrap();
         recorder
     }
 

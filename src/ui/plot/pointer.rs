@@ -87,9 +87,9 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
         Drag::Box { to, .. } => *to = place,
         Drag::Picture { under, window: (from, to) } => {
             // The time is relative to the start of the visible span, because the layout moves with it.
-            let here = from.plus((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
+            let here = from.saturating_add_ns((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
             let by = under.nanoseconds_since(here);
-            context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
+            context.act(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
         }
     }
 }
@@ -166,5 +166,5 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
 fn shift(context: &mut Context<'_>, share: f64) {
     let (from, to) = context.recorder.window();
     let by = (context.recorder.span() as f64 * share) as i64;
-    context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
+    context.act(RecorderAction::Look(from.saturating_add_ns(by), to.saturating_add_ns(by)));
 }

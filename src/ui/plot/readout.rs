@@ -180,7 +180,7 @@ fn remarks_ui(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measu
 
 fn newest(context: &Context<'_>, line: &Series) -> Option<Sample> {
     let history = context.recorder.history(line)?;
-    history.sample(line.column(), history.all().end.checked_sub(1)?)
+    history.sample(line.column(), history.indices().end.checked_sub(1)?)
 }
 
 fn value(theme: &Theme, line: &Series, sample: &Sample) -> String {

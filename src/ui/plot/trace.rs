@@ -5,7 +5,7 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 use crate::analysis::SampleTime;
-use crate::analysis::history::{Flags, Picture};
+use crate::analysis::history::{Flags, HistoryPicture};
 
 const WIDTH: f32 = 1.5;
 /// Number of points up to which a line is drawn smoothly.
@@ -35,7 +35,7 @@ impl TimeAxis {
     }
 
     pub(super) fn time(&self, x: f32) -> SampleTime {
-        self.from.plus((f64::from(x - self.left) / self.scale) as i64)
+        self.from.saturating_add_ns((f64::from(x - self.left) / self.scale) as i64)
     }
 }
 
@@ -77,7 +77,7 @@ pub(super) struct TraceStyle {
 }
 
 pub(super) fn shapes(
-    picture: &Picture,
+    picture: &HistoryPicture,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -97,7 +97,7 @@ pub(super) fn shapes(
 /// Draws one vertical bar per pixel column. The bar spans the minimum to the maximum of the samples, and is extended to
 /// join the end of the previous column.
 fn draw_dense_trace(
-    picture: &Picture,
+    picture: &HistoryPicture,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -143,7 +143,7 @@ fn bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
 }
 
 fn draw_sparse_trace(
-    picture: &Picture,
+    picture: &HistoryPicture,
     lane: Rect,
     time: &TimeAxis,
     value: &ValueAxis,
@@ -230,7 +230,7 @@ fn clip_segment(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
 }
 
 /// Draws ticks at the bottom of the lane for invalid samples and warnings, regardless of the zoom.
-fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
+fn marks(picture: &HistoryPicture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
         let (colour, height) = if pixel.flags.contains(Flags::BAD) {
@@ -252,7 +252,7 @@ fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &TraceStyle, out: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::history::{Grid, History, Kind, Part};
+    use crate::analysis::history::{ColumnPart, Grid, History, Kind};
 
     const LANE: Rect = Rect { min: Pos2::ZERO, max: pos2(100.0, 50.0) };
     const PEN: TraceStyle =
@@ -276,10 +276,10 @@ mod tests {
         let times: Vec<SampleTime> = (0..count).map(|at| SampleTime::from_nanoseconds(at * 100_000 / count)).collect();
         let values: Vec<f64> = (0..count).map(value).collect();
         let flags: Vec<Flags> = (0..count).map(flags).collect();
-        history.append(&times, &[Part::real(&values).with_flags(&flags)]).unwrap();
+        history.append(&times, &[ColumnPart::from_reals(&values).with_flags(&flags)]).unwrap();
         let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(100_000), 100);
-        let mut picture = Picture::default();
-        history.picture(0, &history.cut(&grid), &mut picture);
+        let mut picture = HistoryPicture::default();
+        history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
         let time = TimeAxis { from: SampleTime::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
         let mut shapes = Vec::new();
         super::shapes(&picture, LANE, &time, &ValueAxis::new(LANE, (0.0, 1.0)), &PEN, &mut shapes);

@@ -100,14 +100,14 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 pub fn density_image(density: &SampleDensity, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
-    let side = density.side();
+    let side = density.cells_per_side();
     let scale = f64::from(density.max_count()).ln_1p().max(f64::MIN_POSITIVE);
     let brightness = |count: u32| match count {
         0 => 0.0,
         count => LEAST + (1.0 - LEAST) * (f64::from(count).ln_1p() / scale) as f32,
     };
     // Pictures begin at the top, and densities at the bottom.
-    let rows = density.counts().chunks(side).rev();
+    let rows = density.cell_counts().chunks(side).rev();
     let pixels = rows.flatten().map(|count| colour.gamma_multiply(brightness(*count))).collect();
     ColorImage::new([side, side], pixels)
 }

@@ -50,7 +50,7 @@ impl Producer for AnalogueSource {
         let period_ns = settings.period_ns();
         let now = clock.now();
         // The samples of a batch exist when the last of them is due.
-        let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
+        let full = time.saturating_add_ns((BATCH_NS - period_ns).max(0)).as_nanoseconds();
         let full = Moment::from_elapsed(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));
         let late = SampleTime::from(clock.now()).nanoseconds_since(time);
@@ -63,7 +63,7 @@ impl Producer for AnalogueSource {
         let first = self.next + lost;
         let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).ok_or(StaleSettings)?;
         self.next = first + count;
-        let time = time.plus(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
+        let time = time.saturating_add_ns(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
         Ok(Some(Batch { first, time, period_ns, lost, samples }))
     }
 }

@@ -11,7 +11,7 @@ fn plain(_: f64, _: f64, signal: (f64, f64)) -> (f64, f64) {
 }
 
 fn analysed(made: &Made) -> Analysis {
-    Analysis::of(made.record().samples).unwrap()
+    Analysis::from_samples(made.record().samples).unwrap()
 }
 
 #[test]
@@ -113,10 +113,10 @@ fn single_ended_columns_are_reported_instead_of_an_offset() {
 fn a_shaft_at_rest_is_reported() {
     for periods in [0.0, 0.13, 0.5, 0.88] {
         let capture = made(|_| periods, plain);
-        assert_eq!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");
+        assert_eq!(Analysis::from_samples(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");
         assert_eq!(found(&capture), [FindingKind::AtRest]);
     }
     // Noise around zero may be an open cable.
     let capture = made(|_| 0.0, |_, _, _| (0.0, 0.0));
-    assert_ne!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest);
+    assert_ne!(Analysis::from_samples(capture.record().samples).unwrap_err(), AnalysisError::AtRest);
 }

@@ -1,6 +1,6 @@
 //! Cases small enough to be written down.
 
-use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Refused, Value};
+use super::super::{BLOCK, BatchError, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Value};
 use crate::analysis::SampleTime;
 
 fn time(nanoseconds: i64) -> SampleTime {
@@ -11,9 +11,9 @@ fn times(nanoseconds: impl IntoIterator<Item = i64>) -> Vec<SampleTime> {
     nanoseconds.into_iter().map(time).collect()
 }
 
-fn picture(history: &History, from: i64, to: i64, pixels: usize) -> Picture {
-    let mut picture = Picture::default();
-    history.picture(0, &history.cut(&Grid::new(time(from), time(to), pixels)), &mut picture);
+fn picture(history: &History, from: i64, to: i64, pixels: usize) -> HistoryPicture {
+    let mut picture = HistoryPicture::default();
+    history.render_column(0, &history.divide_into_pixels(&Grid::new(time(from), time(to), pixels)), &mut picture);
     picture
 }
 
@@ -21,7 +21,7 @@ fn picture(history: &History, from: i64, to: i64, pixels: usize) -> Picture {
 fn history(values: &[f64], flags: &[Flags]) -> History {
     let mut history = History::new(&[Kind::Real], values.len());
     let times = times((0..values.len() as i64).map(|k| 10 * k));
-    history.append(&times, &[Part::real(values).with_flags(flags)]).unwrap();
+    history.append(&times, &[ColumnPart::from_reals(values).with_flags(flags)]).unwrap();
     history
 }
 
@@ -43,7 +43,7 @@ fn few_samples_are_returned_raw_with_their_neighbours() {
     let picture = picture(&history(&values, &[]), 50, 80, 30);
     assert!(picture.raw);
     let found: Vec<_> =
-        picture.pixels.iter().map(|pixel| (pixel.from.nanoseconds(), pixel.values.unwrap().last)).collect();
+        picture.pixels.iter().map(|pixel| (pixel.from.as_nanoseconds(), pixel.values.unwrap().last)).collect();
     assert_eq!(found, [(40, 4.0), (50, 5.0), (60, 6.0), (70, 7.0), (80, 8.0)]);
     assert!(picture.pixels[1..].iter().all(|pixel| pixel.joined));
 }
@@ -84,19 +84,23 @@ fn a_history_of_only_bad_samples_is_shown() {
     let picture = picture(&history, 0, 10 * values.len() as i64, 10);
     assert!(picture.pixels.len() >= 10);
     assert!(picture.pixels.iter().all(|pixel| pixel.values.is_none() && pixel.flags.contains(Flags::BAD)));
-    assert_eq!(history.statistics(0, history.all()), None);
+    assert_eq!(history.statistics(0, history.indices()), None);
 }
 
 #[test]
 fn a_pause_and_a_reported_gap_break_every_column() {
     let mut history = History::new(&[Kind::Whole, Kind::Real], 100).with_longest_pause(10);
-    history.append(&times([0, 10, 21]), &[Part::whole(&[1, 2, 3]), Part::real(&[1.0, 2.0, 3.0])]).unwrap();
+    history
+        .append(&times([0, 10, 21]), &[ColumnPart::from_integers(&[1, 2, 3]), ColumnPart::from_reals(&[1.0, 2.0, 3.0])])
+        .unwrap();
     history.break_before_next();
-    history.append(&[], &[Part::whole(&[]), Part::real(&[])]).unwrap();
-    history.append(&times([25, 36]), &[Part::whole(&[4, 5]), Part::real(&[4.0, 5.0])]).unwrap();
+    history.append(&[], &[ColumnPart::from_integers(&[]), ColumnPart::from_reals(&[])]).unwrap();
+    history
+        .append(&times([25, 36]), &[ColumnPart::from_integers(&[4, 5]), ColumnPart::from_reals(&[4.0, 5.0])])
+        .unwrap();
     for column in 0..2 {
         let breaks: Vec<bool> =
-            history.all().map(|index| history.sample(column, index).unwrap().flags == Flags::BREAK).collect();
+            history.indices().map(|index| history.sample(column, index).unwrap().flags == Flags::BREAK).collect();
         assert_eq!(breaks, [false, false, true, true, true], "{column}");
     }
 }
@@ -104,29 +108,34 @@ fn a_pause_and_a_reported_gap_break_every_column() {
 #[test]
 fn a_mismatched_batch_is_refused_unchanged() {
     let mut history = History::new(&[Kind::Real], 100);
-    history.append(&times([5, 5]), &[Part::real(&[1.0, 2.0])]).unwrap();
-    let cases: [(&str, &[i64], &[Part<'_>], Refused); 6] = [
-        ("too few columns", &[6], &[], Refused::Shape),
-        ("too few values", &[6, 7], &[Part::real(&[1.0])], Refused::Shape),
-        ("too few flags", &[6, 7], &[Part::real(&[1.0, 2.0]).with_flags(&[Flags::NONE])], Refused::Shape),
-        ("another kind", &[6], &[Part::whole(&[1])], Refused::Shape),
-        ("back to before", &[4], &[Part::real(&[1.0])], Refused::TimeGoesBack { at: 0 }),
-        ("back inside", &[6, 8, 7], &[Part::real(&[1.0, 2.0, 3.0])], Refused::TimeGoesBack { at: 2 }),
+    history.append(&times([5, 5]), &[ColumnPart::from_reals(&[1.0, 2.0])]).unwrap();
+    let cases: [(&str, &[i64], &[ColumnPart<'_>], BatchError); 6] = [
+        ("too few columns", &[6], &[], BatchError::Shape),
+        ("too few values", &[6, 7], &[ColumnPart::from_reals(&[1.0])], BatchError::Shape),
+        (
+            "too few flags",
+            &[6, 7],
+            &[ColumnPart::from_reals(&[1.0, 2.0]).with_flags(&[Flags::NONE])],
+            BatchError::Shape,
+        ),
+        ("another kind", &[6], &[ColumnPart::from_integers(&[1])], BatchError::Shape),
+        ("back to before", &[4], &[ColumnPart::from_reals(&[1.0])], BatchError::TimeGoesBack { at: 0 }),
+        ("back inside", &[6, 8, 7], &[ColumnPart::from_reals(&[1.0, 2.0, 3.0])], BatchError::TimeGoesBack { at: 2 }),
     ];
     for (label, nanoseconds, parts, wanted) in cases {
         assert_eq!(history.append(&times(nanoseconds.iter().copied()), parts), Err(wanted), "{label}");
-        assert_eq!(history.all(), 0..2, "{label}");
+        assert_eq!(history.indices(), 0..2, "{label}");
     }
 }
 
 #[test]
 fn the_nearest_sample_is_exact() {
     let mut history = History::new(&[Kind::Whole], 100);
-    assert_eq!(history.nearest(time(0)), None);
+    assert_eq!(history.nearest_index(time(0)), None);
     let positions = [1 << 60, (1 << 60) + 1, i64::MIN];
-    history.append(&times([0, 10, 20]), &[Part::whole(&positions)]).unwrap();
+    history.append(&times([0, 10, 20]), &[ColumnPart::from_integers(&positions)]).unwrap();
     for (probe, wanted) in [(-99, 0), (4, 0), (5, 0), (6, 1), (15, 1), (16, 2), (i64::MAX, 2)] {
-        assert_eq!(history.nearest(time(probe)), Some(wanted), "{probe}");
+        assert_eq!(history.nearest_index(time(probe)), Some(wanted), "{probe}");
     }
     assert_eq!(history.sample(0, 1).unwrap().value, Value::Whole((1 << 60) + 1));
     assert_eq!((history.sample(0, 3), history.sample(1, 0)), (None, None));
@@ -136,17 +145,17 @@ fn the_nearest_sample_is_exact() {
 fn samples_of_the_same_time_are_found_together() {
     let count = 2 * BLOCK + 5;
     let mut history = History::new(&[Kind::Real], count);
-    history.append(&times((0..count).map(|_| 7)), &[Part::real(&vec![1.0; count])]).unwrap();
-    assert_eq!(history.indices(time(7), time(8)), 0..count as u64);
-    assert_eq!(history.indices(time(8), time(7)), count as u64..count as u64);
-    assert_eq!(history.indices(time(6), time(7)), 0..0);
+    history.append(&times((0..count).map(|_| 7)), &[ColumnPart::from_reals(&vec![1.0; count])]).unwrap();
+    assert_eq!(history.indices_between(time(7), time(8)), 0..count as u64);
+    assert_eq!(history.indices_between(time(8), time(7)), count as u64..count as u64);
+    assert_eq!(history.indices_between(time(6), time(7)), 0..0);
 }
 
 #[test]
 fn noise_on_a_large_position_keeps_its_deviation() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let positions: Vec<i64> = (0..10_000).map(|k| (1 << 50) + k % 2).collect();
-    history.append(&times(0..10_000), &[Part::whole(&positions)]).unwrap();
+    history.append(&times(0..10_000), &[ColumnPart::from_integers(&positions)]).unwrap();
     let found = history.statistics(0, 0..10_000).unwrap();
     assert_eq!((found.count, found.mean - (1_i64 << 50) as f64), (10_000, 0.5));
     assert!((found.deviation - 0.500_025).abs() < 1e-6, "{found:?}");
@@ -159,7 +168,7 @@ fn noise_on_a_large_position_keeps_its_deviation() {
 fn single_steps_are_resolved_at_a_large_position() {
     let mut history = History::new(&[Kind::Whole], 10 * BLOCK);
     let positions: Vec<i64> = (0..10 * BLOCK as i64).map(|k| (1 << 50) + k % 3).collect();
-    history.append(&times(0..10 * BLOCK as i64), &[Part::whole(&positions)]).unwrap();
+    history.append(&times(0..10 * BLOCK as i64), &[ColumnPart::from_integers(&positions)]).unwrap();
     for pixel in picture(&history, 0, 10 * BLOCK as i64, 5).pixels.iter().filter(|pixel| pixel.from != pixel.to) {
         let values = pixel.values.unwrap();
         assert_eq!((values.min, values.max), ((1_i64 << 50) as f64, ((1_i64 << 50) + 2) as f64));
@@ -169,9 +178,12 @@ fn single_steps_are_resolved_at_a_large_position() {
 #[test]
 fn a_grid_is_anchored_at_multiples_of_its_width() {
     let grid = Grid::new(time(105), time(205), 10);
-    assert_eq!((grid.width(), grid.pixel_count(), grid.edge(0), grid.edge(11)), (10, 11, time(100), time(210)));
+    assert_eq!(
+        (grid.width(), grid.pixel_count(), grid.pixel_start(0), grid.pixel_start(11)),
+        (10, 11, time(100), time(210))
+    );
     let before = Grid::new(time(-5), time(5), 10);
-    assert_eq!((before.width(), before.edge(0), before.pixel_count()), (1, time(-5), 10));
+    assert_eq!((before.width(), before.pixel_start(0), before.pixel_count()), (1, time(-5), 10));
     for (label, grid) in [
         ("no pixels", Grid::new(time(0), time(9), 0)),
         ("no time", Grid::new(time(9), time(9), 5)),
@@ -180,7 +192,7 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
         assert_eq!(grid.pixel_count(), 0, "{label}");
     }
     let all = Grid::new(time(i64::MIN), time(i64::MAX), 3);
-    assert!(all.pixel_count() <= 4 && all.edge(all.pixel_count()) == time(i64::MAX), "{all:?}");
+    assert!(all.pixel_count() <= 4 && all.pixel_start(all.pixel_count()) == time(i64::MAX), "{all:?}");
     let history = history(&[1.0, 2.0], &[]);
     assert_eq!(picture(&history, 9, 0, 5).pixels.len(), 2, "the samples on both sides");
 }
@@ -194,8 +206,8 @@ fn the_next_oldest_sample_is_predicted() {
     for portion in [1, 4_095, 8_191, 1, 1, 4_095, 10_000] {
         let expected = history.oldest_remaining_time(portion);
         let times: Vec<SampleTime> = (next..next + portion as i64).map(SampleTime::from_nanoseconds).collect();
-        history.append(&times, &[Part::whole(&vec![0; portion])]).unwrap();
-        let oldest = history.time(history.all().start).filter(|oldest| oldest.nanoseconds() < next);
+        history.append(&times, &[ColumnPart::from_integers(&vec![0; portion])]).unwrap();
+        let oldest = history.time(history.indices().start).filter(|oldest| oldest.as_nanoseconds() < next);
         assert_eq!(expected, oldest, "{next} and {portion}");
         next += portion as i64;
     }

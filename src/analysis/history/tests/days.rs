@@ -1,7 +1,7 @@
 //! Long runs in virtual time, and their memory use. These are shorter than a day's samples, so that they can be run
 //! unoptimised; `benches/history.rs` runs the whole day.
 
-use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture};
+use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind};
 use crate::analysis::{Motion, PositionUnwrapper, SampleTime};
 
 const MILLISECOND: i64 = 1_000_000;
@@ -21,10 +21,10 @@ fn memory_is_close_to_the_raw_columns() {
         let wholes = vec![15; BLOCK];
         let flags = vec![Flags::WARNING; if flagged { BLOCK } else { 0 }];
         let part = |kind: &Kind| match kind {
-            Kind::Real => Part::real(&reals).with_flags(&flags),
-            Kind::Whole => Part::whole(&wholes).with_flags(&flags),
+            Kind::Real => ColumnPart::from_reals(&reals).with_flags(&flags),
+            Kind::Whole => ColumnPart::from_integers(&wholes).with_flags(&flags),
         };
-        let parts: Vec<Part<'_>> = kinds.iter().map(part).collect();
+        let parts: Vec<ColumnPart<'_>> = kinds.iter().map(part).collect();
         let mut most = 0;
         for block in 0..200_i64 {
             let times: Vec<SampleTime> = (0..BLOCK as i64)
@@ -33,7 +33,7 @@ fn memory_is_close_to_the_raw_columns() {
             history.append(&times, &parts).unwrap();
             most = most.max(history.memory());
         }
-        let samples = (history.all().end - history.all().start) as usize;
+        let samples = (history.indices().end - history.indices().start) as usize;
         assert_eq!(samples, capacity + BLOCK, "{label}");
         let raw = samples * 8 * (kinds.len() + 1);
         let ratio = most as f64 / raw as f64;
@@ -50,13 +50,16 @@ fn times_are_exact_over_ten_days() {
     for start in (0..ten_days).step_by(3_600_000) {
         let numbers: Vec<i64> = (start..start + 5_000).collect();
         let times: Vec<SampleTime> = numbers.iter().map(|k| at(*k)).collect();
-        history.append(&times, &[Part::whole(&numbers)]).unwrap();
+        history.append(&times, &[ColumnPart::from_integers(&numbers)]).unwrap();
         for k in (start..start + 5_000).step_by(499) {
-            let index = history.nearest(at(k)).unwrap();
+            let index = history.nearest_index(at(k)).unwrap();
             assert_eq!(history.time(index), Some(at(k)));
             let before = history.time(index - u64::from(k != start)).unwrap();
-            assert_eq!(at(k).nanoseconds_since(before), at(k).nanoseconds() - at((k - 1).max(start)).nanoseconds());
-            assert_eq!(history.indices(at(k), at(k).plus(1)), index..index + 1);
+            assert_eq!(
+                at(k).nanoseconds_since(before),
+                at(k).as_nanoseconds() - at((k - 1).max(start)).as_nanoseconds()
+            );
+            assert_eq!(history.indices_between(at(k), at(k).saturating_add_ns(1)), index..index + 1);
         }
     }
 }
@@ -69,7 +72,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
     const SPEED: i64 = 409;
     let mut history = History::new(&[Kind::Whole, Kind::Real], 200_000).with_longest_pause(10 * MILLISECOND);
     let mut unwrap = PositionUnwrapper::rotary(RANGE).unwrap();
-    let mut motion = Motion::over(20 * MILLISECOND);
+    let mut motion = Motion::with_window(20 * MILLISECOND);
     let mut most = 0;
     let mut start = 0;
     let mut gaps = 0;
@@ -81,7 +84,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
             // The cable was unplugged for 100 ms.
             start += 100;
             gaps += 1;
-            unwrap.gap();
+            unwrap.mark_gap();
         }
         for k in start..start + BATCH {
             let time = SampleTime::from_nanoseconds(k * MILLISECOND);
@@ -96,20 +99,20 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
             speeds.push(speed.unwrap_or(f64::NAN));
             times.push(time);
         }
-        history.append(&times, &[Part::whole(&positions), Part::real(&speeds)]).unwrap();
+        history.append(&times, &[ColumnPart::from_integers(&positions), ColumnPart::from_reals(&speeds)]).unwrap();
         start += BATCH;
         most = most.max(history.memory());
     }
     assert!(most < 200_000 * 24 * 135 / 100, "{most}");
     // The remaining samples, at three zooms: every gap is a break, and no column is higher than the encoder turns.
-    let all = history.all();
-    let (from, to) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap().plus(1));
+    let all = history.indices();
+    let (from, to) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap().saturating_add_ns(1));
     let kept = all.clone().filter(|index| history.sample(0, *index).unwrap().flags == Flags::BREAK).count();
     assert!(kept > 3 && kept <= gaps);
     for pixels in [20, 400, 3_000] {
         let grid = Grid::new(from, to, pixels);
-        let mut picture = Picture::default();
-        history.picture(0, &history.cut(&grid), &mut picture);
+        let mut picture = HistoryPicture::default();
+        history.render_column(0, &history.divide_into_pixels(&grid), &mut picture);
         let broken = picture.pixels.iter().filter(|pixel| pixel.flags.contains(Flags::BREAK)).count();
         assert!(broken == kept || pixels == 20 && broken > 3, "{pixels}: {broken} of {kept}");
         for pixel in &picture.pixels {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::{BLOCK, Flags, Grid, Pixel, Reduced, Value};
+use super::super::{BLOCK, Flags, Grid, Pixel, ReducedSamples, Value};
 use crate::analysis::SampleTime;
 
 /// One column with its times, and what is still stored of it.
@@ -33,7 +33,7 @@ impl Model {
     }
 
     pub(super) fn between(&self, first: usize, from: SampleTime, to: SampleTime) -> Range<usize> {
-        let at = |time: SampleTime| first + self.times[first..].partition_point(|at| *at < time.nanoseconds());
+        let at = |time: SampleTime| first + self.times[first..].partition_point(|at| *at < time.as_nanoseconds());
         at(from)..at(to)
     }
 
@@ -61,7 +61,7 @@ impl Model {
         let pixel = |range: Range<usize>| {
             let good: Vec<usize> = self.good(range.clone()).collect();
             let value = |at: &usize| self.values[*at].to_f64();
-            let values = good.first().zip(good.last()).map(|(first, last)| Reduced {
+            let values = good.first().zip(good.last()).map(|(first, last)| ReducedSamples {
                 first: value(first),
                 min: good.iter().map(value).fold(f64::INFINITY, f64::min),
                 max: good.iter().map(value).fold(f64::NEG_INFINITY, f64::max),
@@ -88,9 +88,9 @@ impl Model {
     /// Returns the first sample of a pixel column: the first after its edge, or the beginning of 512, 64 or 8 samples
     /// that is no earlier than a sixteenth of a column before the edge.
     fn edge(&self, first: usize, grid: &Grid, pixel: usize) -> usize {
-        let edge = grid.edge(pixel);
+        let edge = grid.pixel_start(pixel);
         let exact = self.between(first, edge, edge).start;
-        let earliest = edge.nanoseconds() - grid.width() / 16;
+        let earliest = edge.as_nanoseconds() - grid.width() / 16;
         let starts = [512, 64, 8].map(|size| exact / size * size);
         let near = |start: &usize| *start >= first && (*start == exact || self.times[*start] >= earliest);
         let inner = pixel > 0 && pixel < grid.pixel_count();
@@ -99,7 +99,7 @@ impl Model {
 
     /// Returns the range of the values in the blocks between two times, by which the rounding is measured.
     pub(super) fn around(&self, first: usize, from: SampleTime, to: SampleTime) -> f64 {
-        let range = self.between(first, from, to.plus(1));
+        let range = self.between(first, from, to.saturating_add_ns(1));
         let blocks = range.start / BLOCK * BLOCK..range.end.next_multiple_of(BLOCK).min(self.times.len());
         let values = || self.good(blocks.clone()).map(|at| self.values[at].to_f64());
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Pixel, Value};
+use super::super::{BLOCK, ColumnPart, Flags, Grid, History, HistoryPicture, Kind, Pixel, Value};
 use super::model::Model;
 use crate::analysis::SampleTime;
 
@@ -131,12 +131,12 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
     for from in (0..run.count).step_by(run.batch) {
         let range = from..(from + run.batch).min(run.count);
         let part = match kind {
-            Kind::Real => Part::real(&reals[range.clone()]),
-            Kind::Whole => Part::whole(&wholes[range.clone()]),
+            Kind::Real => ColumnPart::from_reals(&reals[range.clone()]),
+            Kind::Whole => ColumnPart::from_integers(&wholes[range.clone()]),
         };
         let part = if run.flagged == 0 { part } else { part.with_flags(&given.flags[range.clone()]) };
         let zeros = vec![0.0; range.len()];
-        history.append(&times[range], &[Part::real(&zeros), part]).unwrap();
+        history.append(&times[range], &[ColumnPart::from_reals(&zeros), part]).unwrap();
     }
 }
 
@@ -179,8 +179,8 @@ proptest! {
             let from = (from * 1.2 - 0.1) * span;
             let to = from + span * length * length * length + 1.0;
             let grid = Grid::new(SampleTime::from_nanoseconds(from as i64), SampleTime::from_nanoseconds(to as i64), pixels);
-            let mut picture = Picture::default();
-            history.picture(1, &history.cut(&grid), &mut picture);
+            let mut picture = HistoryPicture::default();
+            history.render_column(1, &history.divide_into_pixels(&grid), &mut picture);
             let (wanted, raw) = model.picture(first, &grid);
             prop_assert_eq!(picture.raw, raw);
             check(&picture.pixels, &wanted, |pixel| model.around(first, pixel.from, pixel.to))?;
@@ -197,11 +197,11 @@ proptest! {
         let (history, model) = build(kind, &runs, capacity);
         let first = model.first(capacity);
         let count = model.times.len();
-        prop_assert_eq!(history.all(), first as u64..count as u64);
+        prop_assert_eq!(history.indices(), first as u64..count as u64);
         prop_assert!(first == 0 || count - first >= capacity && count - first <= capacity + 2 * BLOCK);
         for at in (first..count).step_by(7) {
             let sample = history.sample(1, at as u64).unwrap();
-            prop_assert_eq!((sample.time.nanoseconds(), sample.flags), (model.times[at], model.flags[at]));
+            prop_assert_eq!((sample.time.as_nanoseconds(), sample.flags), (model.times[at], model.flags[at]));
             let same = sample.value == model.values[at] || sample.value.to_f64().is_nan() && model.values[at].to_f64().is_nan();
             prop_assert!(same);
         }
@@ -242,7 +242,7 @@ proptest! {
         let span = *model.times.last().unwrap() as f64;
         for probe in probes {
             let probe = (probe * span) as i64;
-            let found = history.nearest(SampleTime::from_nanoseconds(probe)).unwrap() as usize;
+            let found = history.nearest_index(SampleTime::from_nanoseconds(probe)).unwrap() as usize;
             let nearest = (first..model.times.len()).map(|at| (model.times[at] - probe).abs()).min().unwrap();
             prop_assert_eq!((model.times[found] - probe).abs(), nearest);
         }
@@ -255,20 +255,20 @@ proptest! {
         let (history, before) = build(kind, &runs, capacity);
         let end = before.times[before.times.len() - 1] + 1;
         let grid = Grid::new(SampleTime::ORIGIN, SampleTime::from_nanoseconds(end), 50);
-        let mut picture = Picture::default();
-        history.picture(1, &history.cut(&grid), &mut picture);
+        let mut picture = HistoryPicture::default();
+        history.render_column(1, &history.divide_into_pixels(&grid), &mut picture);
         let (later, _) = build(kind, &[runs, more].concat(), capacity);
-        let mut later_picture = Picture::default();
-        later.picture(1, &later.cut(&grid), &mut later_picture);
+        let mut later_picture = HistoryPicture::default();
+        later.render_column(1, &later.divide_into_pixels(&grid), &mut later_picture);
         // The samples of complete blocks that are still stored are identical to the last bit.
-        let settled = history.time(history.all().end / BLOCK as u64 * BLOCK as u64).map_or(end, SampleTime::nanoseconds);
-        let oldest = later.time(later.all().start).unwrap();
+        let settled = history.time(history.indices().end / BLOCK as u64 * BLOCK as u64).map_or(end, SampleTime::as_nanoseconds);
+        let oldest = later.time(later.indices().start).unwrap();
         if !picture.raw && !later_picture.raw {
-            let is_settled = |pixel: &&Pixel| pixel.from > oldest && pixel.to.nanoseconds() < settled;
+            let is_settled = |pixel: &&Pixel| pixel.from > oldest && pixel.to.as_nanoseconds() < settled;
             let old: Vec<&Pixel> = picture.pixels.iter().filter(is_settled).collect();
             let new: Vec<&Pixel> = later_picture.pixels.iter().filter(is_settled).collect();
             // The column truncated by eviction comes first.
-            let cut = usize::from(later.all().start > history.all().start) * 2;
+            let cut = usize::from(later.indices().start > history.indices().start) * 2;
             prop_assert_eq!(old.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>(),
                 new.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>());
         }
@@ -276,11 +276,11 @@ proptest! {
         let width = grid.width();
         let moved = Grid::new(SampleTime::from_nanoseconds(10 * width), SampleTime::from_nanoseconds(60 * width), 50);
         prop_assert_eq!(moved.width(), width);
-        let mut moved_picture = Picture::default();
-        history.picture(1, &history.cut(&moved), &mut moved_picture);
+        let mut moved_picture = HistoryPicture::default();
+        history.render_column(1, &history.divide_into_pixels(&moved), &mut moved_picture);
         if !picture.raw && !moved_picture.raw {
             // The ends of a picture are exact; between them a column may begin a sixteenth of its width earlier.
-            let (from, to) = (moved.edge(1), grid.edge(grid.pixel_count() - 1).plus(-(width / 16)));
+            let (from, to) = (moved.pixel_start(1), grid.pixel_start(grid.pixel_count() - 1).saturating_add_ns(-(width / 16)));
             let inside = |pixel: &&Pixel| pixel.from >= from && pixel.from < to;
             let still: Vec<&Pixel> = picture.pixels.iter().filter(inside).collect();
             let again: Vec<&Pixel> = moved_picture.pixels.iter().filter(inside).collect();

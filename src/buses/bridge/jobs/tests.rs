@@ -121,9 +121,9 @@ fn unfetched_and_damaged_samples_are_counted_as_missing() {
     assert!((115_000..=125_000).contains(&slept), "six of the seven seconds: {slept}");
     assert!(lost > slept + 100, "damaged packets too: {lost}");
     // Times continue through the gap like the numbers.
-    let begin = batches[0].time.plus(batches[0].first as i64 * -50_000);
+    let begin = batches[0].time.saturating_add_ns(batches[0].first as i64 * -50_000);
     for batch in &batches {
-        assert_eq!(batch.time, begin.plus(batch.first as i64 * 50_000), "{}", batch.first);
+        assert_eq!(batch.time, begin.saturating_add_ns(batch.first as i64 * 50_000), "{}", batch.first);
     }
 }
 
@@ -284,7 +284,7 @@ fn a_requested_supply_is_switched_on_within_its_limit() {
         device.too_high = too_high;
         let heard = device.heard.clone();
         let mut bench = bench(SINE_COSINE, device);
-        bench.bridge.supply = Some(Family::AfsAfm60.supply());
+        bench.bridge.supply = Some(Family::AfsAfm60.supply_voltage());
         let mut requested = vec![Request::Hello, Request::Supply { on: true, millivolt: 5_000 }];
         match expected {
             Ok(supplied) => {
@@ -303,7 +303,7 @@ fn a_requested_supply_is_switched_on_within_its_limit() {
         assert_eq!(*heard.lock().unwrap(), requested);
     }
     let mut bench = bench(SINE_COSINE, puppet(Vec::new()));
-    bench.bridge.supply = Some(Family::Hiperface.supply());
+    bench.bridge.supply = Some(Family::Hiperface.supply_voltage());
     assert_eq!(adapter_error(bench.error()), AdapterError::NoSupply { name: "Puppet".to_owned() });
 }
 

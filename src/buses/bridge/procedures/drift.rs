@@ -29,7 +29,7 @@ const JUMP_NS: i128 = 1_000_000_000;
 impl ClockDrift {
     /// Returns the local time at `own_ns` of the adapter's clock. It is at most `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: SampleTime) -> SampleTime {
-        let most = i128::from(latest.nanoseconds()) - own_ns;
+        let most = i128::from(latest.as_nanoseconds()) - own_ns;
         let lead = self.minimum_offset_ns(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
@@ -79,7 +79,8 @@ mod tests {
             let own = i128::from(sampled + sampled / 1_000_000 * parts_per_million) + 77_000_000_000;
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let under_way = 300_000 + (random >> 33) as i64 % 5_700_000;
-            let time = drift.time(own / 1000 * 1000, SampleTime::from_nanoseconds(sampled + under_way)).nanoseconds();
+            let time =
+                drift.time(own / 1000 * 1000, SampleTime::from_nanoseconds(sampled + under_way)).as_nanoseconds();
             assert!((-5 * MS..7 * MS).contains(&(time - sampled)), "{packet}: {} ns off", time - sampled);
             let last = before.replace(time).unwrap_or(time - PACKET);
             assert!((time - last - PACKET).abs() <= PACKET / 1000, "{packet}: {} ns on", time - last);

@@ -113,7 +113,7 @@ impl SampleStream {
             continuity: Continuity::at_start(),
             next: 0,
             missing: 0,
-            not_before: after.map_or(begun_at, |after| begun_at.max(after.plus(1))),
+            not_before: after.map_or(begun_at, |after| begun_at.max(after.saturating_add_ns(1))),
             heard_at: adapter.line.now(),
             last: None,
             drift: ClockDrift::default(),
@@ -224,11 +224,11 @@ impl SampleStream {
         // The time since the start of the adapter may exceed the range of nanoseconds.
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
-        let latest = SampleTime::from(now).plus(lasts.saturating_neg()).max(self.not_before);
+        let latest = SampleTime::from(now).saturating_add_ns(lasts.saturating_neg()).max(self.not_before);
         let estimate = self.drift.time(own, latest);
         // The time never runs backwards, even if that of the adapter does.
-        let time = self.last.map_or(estimate, |last| estimate.max(last.plus(1)));
-        self.last = Some(time.plus(lasts));
+        let time = self.last.map_or(estimate, |last| estimate.max(last.saturating_add_ns(1)));
+        self.last = Some(time.saturating_add_ns(lasts));
         time
     }
 }

@@ -64,7 +64,7 @@ mod tests {
         );
         let mut before = None;
         for batch in &batches {
-            assert_eq!((batch.time, batch.period_ns), (begin.plus(batch.first as i64 * 50_000), 50_000));
+            assert_eq!((batch.time, batch.period_ns), (begin.saturating_add_ns(batch.first as i64 * 50_000), 50_000));
             for frame in &batch.samples {
                 let PositionData { multiturn, singleturn, error, warning } = frame.unwrap();
                 let position = i64::from(multiturn) * 131_072 + i64::from(singleturn);

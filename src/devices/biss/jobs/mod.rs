@@ -20,7 +20,7 @@ pub use job::{
 pub use open::{check, open};
 
 use crate::buses::bridge::procedures::log_supply_failure;
-use crate::devices::biss::procedures::check::Wear;
+use crate::devices::biss::procedures::check::MemoryWear;
 use crate::devices::biss::procedures::{
     self, Error, Identity, Master, ReadStep, Sample, Station, Unsaved, identify, procedure, read_position,
     read_registers, read_sample, read_status, read_watched_value,
@@ -128,7 +128,7 @@ impl Device for Biss {
             }
             BissJob::Check => {
                 let (store, is_virtual) = (context.store.clone(), context.is_virtual);
-                let wear = |identity: &Identity| Wear {
+                let wear = |identity: &Identity| MemoryWear {
                     seen: cycles_seen(&store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,

@@ -8,7 +8,7 @@ use crate::devices::biss::protocol::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
 };
 
-pub use crate::analysis::check::{Verdict, Wear};
+pub use crate::analysis::check::{MemoryWear, Verdict};
 
 pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
@@ -99,7 +99,7 @@ const READINGS: u32 = 50;
 pub fn check(
     master: &mut Master<'_>,
     types: &Descriptions,
-    wear: impl FnOnce(&Identity) -> Wear,
+    wear: impl FnOnce(&Identity) -> MemoryWear,
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
 ) -> Result<Vec<BissStepResult>, Error> {
     let survey = survey(master, types, progress)?;
@@ -125,7 +125,7 @@ fn identity(identity: &Identity) -> BissStepResult {
     }
     findings.extend(identity.firmware.map(|firmware| (Verdict::Good, CheckFinding::Firmware(firmware))));
     findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, CheckFinding::Mismatch(mismatch))));
-    BissStepResult::of(CheckStep::Identity, findings)
+    BissStepResult::new(CheckStep::Identity, findings)
 }
 
 fn status(status: &Status) -> BissStepResult {
@@ -142,12 +142,12 @@ fn status(status: &Status) -> BissStepResult {
     if status.protection.is_some_and(|password| password != 0) {
         findings.push((Verdict::Attention, CheckFinding::Open));
     }
-    BissStepResult::of(CheckStep::Status, findings)
+    BissStepResult::new(CheckStep::Status, findings)
 }
 
 fn position(reading: Option<PositionReading>) -> BissStepResult {
     let Some(reading) = reading else {
-        return BissStepResult::of(CheckStep::Position, vec![(Verdict::Bad, CheckFinding::NoPosition)]);
+        return BissStepResult::new(CheckStep::Position, vec![(Verdict::Bad, CheckFinding::NoPosition)]);
     };
     let mut findings = vec![(Verdict::Good, CheckFinding::Position(reading))];
     if reading.error == Some(true) {
@@ -156,12 +156,12 @@ fn position(reading: Option<PositionReading>) -> BissStepResult {
     if reading.warning == Some(true) {
         findings.push((Verdict::Attention, CheckFinding::WarningBit));
     }
-    BissStepResult::of(CheckStep::Position, findings)
+    BissStepResult::new(CheckStep::Position, findings)
 }
 
 fn data_sheet(identity: &Identity) -> BissStepResult {
     let Some(sheet) = &identity.data_sheet else {
-        return BissStepResult::of(CheckStep::DataSheet, vec![(Verdict::Attention, CheckFinding::NoSheet)]);
+        return BissStepResult::new(CheckStep::DataSheet, vec![(Verdict::Attention, CheckFinding::NoSheet)]);
     };
     let wrong = [&sheet.common, &sheet.encoder].into_iter().filter_map(|bank| bank.eds.err());
     let mut findings: Vec<(Verdict, CheckFinding)> =
@@ -181,7 +181,7 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
             }
         }
     }
-    BissStepResult::of(CheckStep::DataSheet, findings)
+    BissStepResult::new(CheckStep::DataSheet, findings)
 }
 
 /// Offsets of the limits in the encoder bank of the data sheet.
@@ -216,7 +216,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
         findings.push((judge(fits), CheckFinding::Supply { millivolt, low, high }));
         findings.push((judge(u32::from(milliampere) <= most), CheckFinding::Current { milliampere, high: most }));
     }
-    (!findings.is_empty()).then(|| BissStepResult::of(CheckStep::Limits, findings))
+    (!findings.is_empty()).then(|| BissStepResult::new(CheckStep::Limits, findings))
 }
 
 fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
@@ -232,7 +232,7 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
         _ if saved.passes() => (Verdict::Good, CheckFinding::Wiegand(saved)),
         _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),
     };
-    Some(BissStepResult::of(CheckStep::Wiegand, vec![finding]))
+    Some(BissStepResult::new(CheckStep::Wiegand, vec![finding]))
 }
 
 /// Reads the position repeatedly and counts a missing reading as damaged.
@@ -253,13 +253,13 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(BissStepResult::of(
+    Ok(BissStepResult::new(
         CheckStep::Readings,
         vec![(verdict, CheckFinding::Readings { requested: READINGS, damaged })],
     ))
 }
 
-fn wear_result(wear: Wear) -> Option<BissStepResult> {
-    let (verdict, seen) = wear.judged()?;
-    Some(BissStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
+fn wear_result(wear: MemoryWear) -> Option<BissStepResult> {
+    let (verdict, seen) = wear.verdict()?;
+    Some(BissStepResult::new(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

@@ -52,7 +52,7 @@ impl ConsecutiveFrames {
         let Chunk { first, time, period_ns, lost, .. } = *portion;
         let is_limited = period_ns > i64::from(wished_us) * 1000;
         // A time before the start of the stream is replaced by the start.
-        let at = Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
+        let at = Moment::from_elapsed(Duration::from_nanos(time.as_nanoseconds().max(0).unsigned_abs()));
         ConsecutiveFrames { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 

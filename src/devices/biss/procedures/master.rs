@@ -151,7 +151,7 @@ impl<'a> Master<'a> {
     /// value. The write is repeated only if the value was not accepted.
     ///
     /// # Errors
-    /// Returns [`Error::ReservedBitsError`] if the encoder refuses the value. Returns [`Error::Unclear`] if it remains unknown
+    /// Returns [`Error::Refused`] if the encoder refuses the value. Returns [`Error::Unclear`] if it remains unknown
     /// whether the value was accepted, for example in a command register. Returns other errors if the value was not
     /// accepted after five attempts. After [`Error::Cancelled`], nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {

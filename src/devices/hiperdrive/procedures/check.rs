@@ -180,22 +180,22 @@ pub fn check(
     let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
-    lines.push(HiperdriveStepResult::of(
+    lines.push(HiperdriveStepResult::new(
         CheckStep::Supply,
         vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, CheckFinding::Supply)],
     ));
     let celsius = master.read_number(own(11)?)?;
-    lines.push(HiperdriveStepResult::of(
+    lines.push(HiperdriveStepResult::new(
         CheckStep::Temperature,
         vec![in_range(celsius, &TEMPERATURES, CheckFinding::Temperature)],
     ));
-    lines.push(HiperdriveStepResult::of(CheckStep::Address, address(&network(master)?)));
+    lines.push(HiperdriveStepResult::new(CheckStep::Address, address(&network(master)?)));
     let saved = match master.read_number(ParameterNumber::SAVE)? {
         0 => (Verdict::Good, CheckFinding::Saved),
         other => (Verdict::Attention, CheckFinding::NotSaved(other)),
     };
-    lines.push(HiperdriveStepResult::of(CheckStep::Memory, vec![saved]));
-    lines.push(HiperdriveStepResult::of(CheckStep::Drives, drives(&identity)));
+    lines.push(HiperdriveStepResult::new(CheckStep::Memory, vec![saved]));
+    lines.push(HiperdriveStepResult::new(CheckStep::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
         progress(at as u64 + 1, total, CheckStep::Errors(drive.number));
@@ -218,7 +218,7 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     let late = master.station().late_reply_count();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
     let replies = CheckFinding::Replies { requested: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
-    Ok(HiperdriveStepResult::of(CheckStep::Messages, vec![(verdict, replies)]))
+    Ok(HiperdriveStepResult::new(CheckStep::Messages, vec![(verdict, replies)]))
 }
 
 fn device(identity: &Identity) -> HiperdriveStepResult {
@@ -227,7 +227,7 @@ fn device(identity: &Identity) -> HiperdriveStepResult {
         CheckFinding::SerialNumber(identity.serial_number.clone()),
         CheckFinding::Version(identity.version.clone()),
     ];
-    HiperdriveStepResult::of(CheckStep::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
+    HiperdriveStepResult::new(CheckStep::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
 }
 
 fn address(network: &Network) -> Vec<(Verdict, CheckFinding)> {
@@ -278,12 +278,12 @@ fn check_drive(
     };
     let temperature = in_range(status.temperature, &TEMPERATURES, CheckFinding::Temperature);
     Ok(vec![
-        HiperdriveStepResult::of(CheckStep::Request(number), request),
-        HiperdriveStepResult::of(CheckStep::Line(number), vec![rs485]),
-        HiperdriveStepResult::of(CheckStep::Timeout(number), vec![timeout]),
-        HiperdriveStepResult::of(CheckStep::Errors(number), error_findings(&status)),
-        HiperdriveStepResult::of(CheckStep::DriveTemperature(number), vec![temperature]),
-        HiperdriveStepResult::of(CheckStep::Range(number), range(master, drive)?),
+        HiperdriveStepResult::new(CheckStep::Request(number), request),
+        HiperdriveStepResult::new(CheckStep::Line(number), vec![rs485]),
+        HiperdriveStepResult::new(CheckStep::Timeout(number), vec![timeout]),
+        HiperdriveStepResult::new(CheckStep::Errors(number), error_findings(&status)),
+        HiperdriveStepResult::new(CheckStep::DriveTemperature(number), vec![temperature]),
+        HiperdriveStepResult::new(CheckStep::Range(number), range(master, drive)?),
     ])
 }
 

@@ -104,7 +104,7 @@ impl<'a> Master<'a> {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::ReservedBitsError`]
+    /// Returns [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`] or [`Error::Refused`]
     /// if the parameter cannot be read. Returns [`Error::Length`] for a number of the wrong length, or an error if the
     /// exchange fails.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
@@ -151,7 +151,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Returns [`Error::OutOfRange`], [`Error::ReadOnly`] or [`Error::Motion`] without sending anything. Returns
-    /// [`Error::Refuses`] or [`Error::ReservedBitsError`] if the device refuses the value, or an error if the exchange fails.
+    /// [`Error::Refuses`] or [`Error::Refused`] if the device refuses the value, or an error if the exchange fails.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = writable_parameter(number)?;
         // The plan has already checked the travel.
@@ -182,7 +182,7 @@ impl<'a> Master<'a> {
     /// Reads the identity object, which every EtherNet/IP device has.
     ///
     /// # Errors
-    /// Returns [`Error::ReservedBitsError`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
         let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), RetryPolicy::Always)?;
@@ -201,7 +201,7 @@ impl<'a> Master<'a> {
     /// replies.
     ///
     /// # Errors
-    /// Returns [`Error::ReservedBitsError`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub(super) fn set_attribute(
         &mut self,
         requested: RequestedItem,

@@ -237,7 +237,7 @@ impl Station {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// Returns [`ReservedBitsError`] for an unknown parameter or a parameter of a missing drive.
+    /// Returns [`Refused`] for an unknown parameter or a parameter of a missing drive.
     pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
         self.advance(now);
         self.answers_at = None;
@@ -261,7 +261,7 @@ impl Station {
     /// Writes a parameter.
     ///
     /// # Errors
-    /// Returns [`ReservedBitsError`] if the write is refused. Nothing was written then.
+    /// Returns [`Refused`] if the write is refused. Nothing was written then.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
         self.advance(now);
         self.answers_at = None;

@@ -9,7 +9,7 @@ mod offset_location;
 mod outcome;
 mod report;
 
-use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::arctan::{Phase, from_voltages};
 use crate::analysis::quality::{Limits, Verdict};
 use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
@@ -163,7 +163,7 @@ impl PendingReading {
                 if Limits::HIPERFACE.amplitude_verdict(volts) == Verdict::Fault {
                     return Err(no_signal());
                 }
-                let phase = exact(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
+                let phase = from_voltages(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
                 fine(rest.raw, phase, geometry, Some(signals.resolution_periods()))
             }
         }
@@ -176,7 +176,7 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
     // An unknown range is treated as one that never wraps.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
-    let synchronised = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
+    let synchronised = synchroniser.combine(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
     if synchronised.verdict == Verdict::Fault {
         let apart = synchronised.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
         return Err(TEXTS.text("commutation.far_apart").with_number("steps", apart, 1));

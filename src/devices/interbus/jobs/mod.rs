@@ -18,7 +18,7 @@ pub use open::{check, open};
 
 use journal::Notes;
 
-use crate::devices::interbus::procedures::check::{Wear as Limits, check as check_device};
+use crate::devices::interbus::procedures::check::{MemoryWear as Limits, check as check_device};
 use crate::devices::interbus::procedures::{
     Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_item, read_programs,
     read_single_value, read_status, save, select, survey,

@@ -9,7 +9,7 @@ use super::{Error, Identity, Master, Survey};
 use crate::analysis::check;
 use crate::devices::interbus::protocol::{ErrorWord, ReadOutNumber, Reply, StartupMode};
 
-pub use crate::analysis::check::{Verdict, Wear};
+pub use crate::analysis::check::{MemoryWear, Verdict};
 
 pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
@@ -90,7 +90,7 @@ const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 /// Returns an error if the gateway does not reply or the check is cancelled. Errors of the handshake are findings.
 pub fn check(
     master: &mut Master<'_>,
-    wear: impl FnOnce(&Identity) -> Wear,
+    wear: impl FnOnce(&Identity) -> MemoryWear,
     progress: &mut dyn FnMut(u64, u64, ReadOutNumber),
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
@@ -103,7 +103,7 @@ pub fn check(
         Ok(survey) => {
             let requested = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / requested.max(1);
-            lines.push(InterbusStepResult::of(
+            lines.push(InterbusStepResult::new(
                 CheckStep::Handshake,
                 vec![(Verdict::Good, CheckFinding::ReadOuts { requested, each_ms })],
             ));
@@ -113,7 +113,7 @@ pub fn check(
         }
         Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
         Err(error) => {
-            lines.push(InterbusStepResult::of(CheckStep::Handshake, vec![(Verdict::Bad, CheckFinding::Failed(error))]))
+            lines.push(InterbusStepResult::new(CheckStep::Handshake, vec![(Verdict::Bad, CheckFinding::Failed(error))]))
         }
     }
     Ok(lines)
@@ -128,7 +128,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
         slowest = slowest.max(master.now().since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
-    let answers = InterbusStepResult::of(
+    let answers = InterbusStepResult::new(
         CheckStep::Gateway,
         vec![(Verdict::Good, CheckFinding::Replies { requested: LOOKS, slowest_ms })],
     );
@@ -147,8 +147,8 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     };
     let lines = vec![
         answers,
-        InterbusStepResult::of(CheckStep::WordOrder, vec![order]),
-        InterbusStepResult::of(CheckStep::InputWord, vec![input]),
+        InterbusStepResult::new(CheckStep::WordOrder, vec![order]),
+        InterbusStepResult::new(CheckStep::InputWord, vec![input]),
     ];
     Ok((lines, fits && free))
 }
@@ -173,15 +173,15 @@ fn identity(survey: &Survey) -> InterbusStepResult {
     if identity.flags.steps_minus_one() {
         findings.push((Verdict::Attention, CheckFinding::StepsMinusOne));
     }
-    InterbusStepResult::of(CheckStep::Identity, findings)
+    InterbusStepResult::new(CheckStep::Identity, findings)
 }
 
 fn temperature(tenths: i32) -> InterbusStepResult {
     let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
-    InterbusStepResult::of(CheckStep::Temperature, vec![(verdict, CheckFinding::Temperature(tenths))])
+    InterbusStepResult::new(CheckStep::Temperature, vec![(verdict, CheckFinding::Temperature(tenths))])
 }
 
-fn wear_result(wear: Wear) -> Option<InterbusStepResult> {
-    let (verdict, seen) = wear.judged()?;
-    Some(InterbusStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
+fn wear_result(wear: MemoryWear) -> Option<InterbusStepResult> {
+    let (verdict, seen) = wear.verdict()?;
+    Some(InterbusStepResult::new(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

@@ -186,7 +186,7 @@ impl<'a> Master<'a> {
     /// Sends 80000000h until the encoder is running.
     ///
     /// # Errors
-    /// Returns [`Error::ReservedBitsError`] if the encoder keeps sending an error, or [`Error::TimeOut`] if it does not run.
+    /// Returns [`Error::Refused`] if the encoder keeps sending an error, or [`Error::TimeOut`] if it does not run.
     /// Other errors come from the exchange.
     pub(super) fn run(&mut self) -> Result<(), Error> {
         self.running(Command::Run, self.patience)?;

@@ -116,7 +116,7 @@ impl Command {
     /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// Returns [`ReservedBitsError`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
+    /// Returns [`Refused`] if the word has no meaning in this mode. The error contains its meaning in another mode, if
     /// any.
     pub fn in_mode(word: u32, mode: EncoderMode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
@@ -129,7 +129,7 @@ impl Command {
     /// Checks that an encoder in the given mode interprets the command as intended.
     ///
     /// # Errors
-    /// Returns [`ReservedBitsError`] if the command must not be sent in this mode.
+    /// Returns [`Refused`] if the command must not be sent in this mode.
     pub fn ensure_legal(self, mode: EncoderMode) -> Result<(), Refused> {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }

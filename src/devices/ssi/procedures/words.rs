@@ -49,7 +49,7 @@ impl Words {
         Words {
             first,
             // The time must not be before the start of the stream.
-            at: Moment::from_elapsed(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
+            at: Moment::from_elapsed(Duration::from_nanos(time.as_nanoseconds().max(0).unsigned_abs())),
             period_ns,
             lost,
             clocks: asking.clocks,

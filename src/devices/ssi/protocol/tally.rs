@@ -119,7 +119,7 @@ mod tests {
             FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
             other => format!("{other:?}"),
         };
-        let milliseconds = |time: SampleTime| time.nanoseconds() / 1_000_000;
+        let milliseconds = |time: SampleTime| time.as_nanoseconds() / 1_000_000;
         let row = |noted: &CountedFinding| {
             (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
         };

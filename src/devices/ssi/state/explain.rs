@@ -188,7 +188,7 @@ pub fn evidence_for(evidence: &ClassEvidence) -> Text {
 
 /// Returns a text that states how often and when a finding occurred.
 pub fn finding_counts(noted: &CountedFinding) -> Text {
-    let seconds = |time: crate::analysis::SampleTime| time.nanoseconds() as f64 / 1e9;
+    let seconds = |time: crate::analysis::SampleTime| time.as_nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
     TEXTS.text(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
         "last",

@@ -17,7 +17,7 @@ fn services() -> (Services, tempfile::TempDir) {
 
 fn started(services: &mut Services) -> Signals {
     let mut signals = Signals::default();
-    signals.act(SignalsAction::Source(SourceAction::Start), services);
+    signals.handle_action(SignalsAction::Source(SourceAction::Start), services);
     assert!(signals.source.is_running());
     signals
 }
@@ -29,7 +29,7 @@ fn measurement(judge: DiagnosisSettings) -> Measurement {
         cosine_v: (0..1000).map(|at| 0.42 * angle(at).cos()).collect(),
         ..Capture::default()
     };
-    Measurement::of(Origin::Virtual, Arc::new(capture), judge)
+    Measurement::from_capture(Origin::Virtual, Arc::new(capture), judge)
 }
 
 /// Takes in tasks until the condition is true.
@@ -64,12 +64,12 @@ fn a_shortened_window_reports_its_length() {
 fn measurements_under_other_limits_are_judged_again() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
-    let before = signals.judge();
-    signals.act(SignalsAction::SetFamily(Family::AfsAfm60), &mut services);
+    let before = signals.diagnosis_settings();
+    signals.handle_action(SignalsAction::SetFamily(Family::AfsAfm60), &mut services);
     // 0.84 V are too little for HIPERFACE only.
-    signals.measured(signals.source.runs, measurement(before), &mut services);
+    signals.handle_measurement(signals.source.runs, measurement(before), &mut services);
     assert!(!signals.findings().is_empty());
-    signals.act(SignalsAction::Source(SourceAction::Stop), &mut services);
+    signals.handle_action(SignalsAction::Source(SourceAction::Stop), &mut services);
     until(&mut signals, &mut services, |signals| signals.findings().is_empty());
 }
 
@@ -81,7 +81,7 @@ fn a_source_that_ends_by_itself_is_reported_and_stopped() {
     let began = Instant::now();
     while signals.source.is_running() {
         assert!(began.elapsed() < Duration::from_secs(20), "it runs for ever");
-        signals.pump(&mut services);
+        signals.process_samples(&mut services);
         std::thread::sleep(Duration::from_millis(1));
     }
     assert_eq!(notice_ids(&services), ["virtual.ended"]);
@@ -92,17 +92,17 @@ fn a_failed_task_is_reported_and_no_longer_awaited() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_mut().unwrap().measuring = true;
-    signals.done(Done::Failed(FailedTask::Measure(signals.source.runs + 1)), &mut services);
+    signals.handle_result(TaskResult::Failed(FailedTask::Measure(signals.source.runs + 1)), &mut services);
     assert!(signals.source.is_running(), "of an earlier start");
-    signals.done(Done::Failed(FailedTask::Measure(signals.source.runs)), &mut services);
+    signals.handle_result(TaskResult::Failed(FailedTask::Measure(signals.source.runs)), &mut services);
     assert!(!signals.source.is_running());
-    signals.act(SignalsAction::Open("/nowhere/at.all.csv".into()), &mut services);
-    let number = signals.reading().unwrap().number;
-    signals.done(Done::Failed(FailedTask::Read(number + 1)), &mut services);
-    assert!(signals.reading().is_some(), "of another attempt");
-    signals.done(Done::Failed(FailedTask::Read(number)), &mut services);
-    assert!(signals.reading().is_none());
-    signals.done(Done::Failed(FailedTask::Judge), &mut services);
+    signals.handle_action(SignalsAction::Open("/nowhere/at.all.csv".into()), &mut services);
+    let number = signals.capture_reading().unwrap().number;
+    signals.handle_result(TaskResult::Failed(FailedTask::Read(number + 1)), &mut services);
+    assert!(signals.capture_reading().is_some(), "of another attempt");
+    signals.handle_result(TaskResult::Failed(FailedTask::Read(number)), &mut services);
+    assert!(signals.capture_reading().is_none());
+    signals.handle_result(TaskResult::Failed(FailedTask::Judge), &mut services);
     let expected = ["signals.measuring_failed", "signals.reading_failed", "signals.judging_failed"];
     let told = notice_ids(&services);
     assert!(told.len() == 3 && expected.iter().all(|id| told.contains(id)), "{told:?}");

@@ -53,7 +53,7 @@ impl Master<'_> {
     /// Opens the cyclic connection. The target sends its packets to the local `port`.
     ///
     /// # Errors
-    /// Returns [`Error::OtherMaster`] or [`Error::ReservedBitsError`] if the device refuses, or an error if the exchange fails.
+    /// Returns [`Error::OtherMaster`] or [`Error::Refused`] if the device refuses, or an error if the exchange fails.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<OpenedConnection, Error> {
         let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
@@ -88,7 +88,7 @@ impl Master<'_> {
     /// Closes a cyclic connection, ignoring cancellation. A connection that has already ended counts as closed.
     ///
     /// # Errors
-    /// Returns [`Error::ReservedBitsError`], or an error if the exchange fails.
+    /// Returns [`Error::Refused`], or an error if the exchange fails.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
         match self

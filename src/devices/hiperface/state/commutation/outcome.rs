@@ -198,8 +198,8 @@ impl Commutation {
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
         let period = whole(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
         let value = preset_position(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
-        let remaining = angle(f64::from(period) + phase.periods(), &inputs);
-        let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.degrees();
+        let remaining = angle(f64::from(period) + phase.to_periods(), &inputs);
+        let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.to_degrees();
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
         Ok(Setting {
             value,

@@ -46,7 +46,7 @@ impl Commutation {
             if let Some(apart) = offset.apart_deg {
                 lines.push(TEXTS.text("commutation.report_apart").with_number("apart", apart, 2));
             }
-            let text = TEXTS.text("commutation.report_offset").with_number("degrees", offset.angle.degrees(), 4);
+            let text = TEXTS.text("commutation.report_offset").with_number("degrees", offset.angle.to_degrees(), 4);
             lines.push(text.with("hex", format!("{:08X}", offset.angle.bits())));
         }
         lines.extend(self.second_vector_result(geometry).and_then(Result::ok).map(|(_, text)| text));
@@ -57,7 +57,7 @@ impl Commutation {
 pub fn reading_kind_text(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
-            let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MOST_STEPS);
+            let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MAX_STEPS);
             text.with_number("residual", residual_periods * 32.0, 2)
         }
         Kind::Absolute => TEXTS.text("commutation.kind_absolute"),

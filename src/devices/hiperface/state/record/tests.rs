@@ -34,7 +34,7 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
     let history = record.track.recorder.history(line).unwrap();
     let sample = |index| history.sample(line.column(), index).unwrap();
-    history.all().map(sample).map(|own| (own.time.nanoseconds(), own.value.to_f64(), own.flags)).collect()
+    history.indices().map(sample).map(|own| (own.time.as_nanoseconds(), own.value.to_f64(), own.flags)).collect()
 }
 
 #[test]
@@ -119,13 +119,13 @@ fn a_long_recording_keeps_every_break_and_wrap() {
     let recorder = &record.track.recorder;
     let own = line(&record, "position");
     let history = recorder.history(own).unwrap();
-    assert_eq!(history.all(), 0..600_000);
+    assert_eq!(history.indices(), 0..600_000);
     for (index, (time, steps, broken)) in expected.into_iter().enumerate() {
         let sample = history.sample(0, index as u64).unwrap();
-        assert_eq!((sample.time.nanoseconds(), sample.value.to_f64() as i64), (time, steps), "{index}");
+        assert_eq!((sample.time.as_nanoseconds(), sample.value.to_f64() as i64), (time, steps), "{index}");
         assert_eq!(sample.flags.contains(Flags::BREAK), broken, "{index}");
     }
-    let speed = history.statistics(1, history.all()).unwrap();
+    let speed = history.statistics(1, history.indices()).unwrap();
     let rpm = 60.0 / 4096.0;
     // A step is 1/4096 of a turn, over a quarter of a second.
     assert!(

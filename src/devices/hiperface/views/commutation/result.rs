@@ -20,7 +20,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
         let offset = encoder.commutation.offset(encoder.geometry());
         let values = offset.as_ref().ok();
         let degrees = |id, degrees, decimals| theme.words(&TEXTS.text(id).with_number("degrees", degrees, decimals));
-        let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.degrees(), 4));
+        let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.to_degrees(), 4));
         ui.label(theme.value(angle.unwrap_or_else(|| "–".to_owned())));
         let resolution = values.and_then(|offset| offset.resolution_deg);
         let parts = [
@@ -103,7 +103,7 @@ fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
     let text = match found.record {
         Ok(record) => TEXTS
             .text("commutation.found")
-            .with_number("degrees", record.offset.degrees(), 4)
+            .with_number("degrees", record.offset.to_degrees(), 4)
             .with("pairs", record.pole_pairs),
         Err(_) => TEXTS.text("commutation.found_damaged"),
     };

@@ -22,7 +22,7 @@ impl Master<'_> {
     /// Sends a setting until its exact echo is stable.
     ///
     /// # Errors
-    /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::ReservedBitsError`],
+    /// Returns [`Error::Illegal`] if the word must not be sent. After sending, it returns [`Error::Refused`],
     /// [`Error::OtherMaster`], [`Error::TimeOut`] or an error of the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
         self.try_send_setting(command, 0)
